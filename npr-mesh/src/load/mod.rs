@@ -1,0 +1,56 @@
+//! One guarded way in for each file format.
+//!
+//! A loader parses with the format's crate, checks everything that is then trusted (indices, lengths, finite
+//! numbers, [`Limits`]), and only then converts.
+
+#[cfg(feature = "gltf")]
+mod gltf;
+#[cfg(feature = "obj")]
+mod obj;
+
+use crate::{Limits, LoadError, Model, normals};
+use std::path::Path;
+
+/// How a file is to be read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LoadOptions {
+    /// Bounds on what is accepted.
+    pub limits: Limits,
+    /// Where the file has no normals, they are made, and split between faces that meet at more than this angle.
+    pub normal_crease_angle_rad: f32,
+}
+
+impl Default for LoadOptions {
+    fn default() -> Self {
+        Self { limits: Limits::default(), normal_crease_angle_rad: 45f32.to_radians() }
+    }
+}
+
+/// A model, and what had to be repaired or left out to get it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Loaded {
+    /// The triangles, every normal present.
+    pub model: Model,
+    /// One line each, without the file's name.
+    pub warnings: Vec<String>,
+}
+
+/// Reads a model by its file's ending (`.obj`, `.gltf`, `.glb`, in any case).
+///
+/// # Errors
+/// [`LoadError`], which names the file and the fault.
+pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, LoadError> {
+    let ending = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
+    let mut loaded = match ending.as_str() {
+        #[cfg(feature = "obj")]
+        "obj" => obj::load(path, &options.limits)?,
+        #[cfg(feature = "gltf")]
+        "gltf" | "glb" => gltf::load(path, &options.limits)?,
+        _ => return Err(LoadError::UnknownFormat { path: path.to_owned() }),
+    };
+    if loaded.model.faces.is_empty() {
+        return Err(LoadError::Empty { path: path.to_owned() });
+    }
+    normals::fill_missing(&mut loaded.model, options.normal_crease_angle_rad);
+    Ok(loaded)
+}
