@@ -11,6 +11,7 @@ mod model;
 pub mod normals;
 pub mod subdivide;
 pub mod triangulate;
+pub mod weld;
 
 pub use error::LoadError;
 pub use limits::Limits;

@@ -1,1 +1,630 @@
-//! (in the making)
+//! Polygons to triangles.
+//!
+//! A polygon of n corners always becomes n − 2 triangles, whatever its shape, so that face counts do not depend on
+//! geometry. The triangles wind as the polygon does. What is flat is decided in the polygon's best-fit plane: the
+//! one through Newell's normal (I. Sutherland, R. Sproull, R. Schumacker, "A Characterization of Ten Hidden-Surface
+//! Algorithms", 1974, credit it to M. Newell), computed in f64.
+//!
+//! | corners | how | time |
+//! | --- | --- | --- |
+//! | 3 | itself | constant |
+//! | 4 | the diagonal that lies inside; of two, the shorter, or the first where they are equal | constant |
+//! | 5 and more, convex | every other corner is cut off until none is left | O(n) |
+//! | 5 and more, else | constrained Delaunay (L. P. Chew, "Constrained Delaunay Triangulations", 1989) | O(n log n) |
+//! | where that fails | ear clipping (G. Meisters, "Polygons Have Ears", 1975), its work bounded | O(n²), 0.2 s at most |
+//!
+//! A hole that is joined to the outline by an edge there and back (a keyhole) comes out right. Ear clipping is for
+//! what has no right answer: outlines that cross or touch themselves. A polygon without area, or with a corner
+//! that is not finite, becomes a fan.
+
+use glam::{DVec2, DVec3, Vec3};
+use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
+
+/// Triangles of the polygon with these corners, as indices into `corners`: [`triangulate_into`] a fresh array.
+pub fn triangulate(corners: &[Vec3]) -> Vec<[u32; 3]> {
+    let mut triangles = Vec::with_capacity(corners.len().saturating_sub(2));
+    triangulate_into(corners, &mut triangles);
+    triangles
+}
+
+/// Replaces `triangles` by those of the polygon with these corners, as indices into `corners`.
+///
+/// There are `corners.len() - 2` of them (none for fewer than 3 corners). Nothing is allocated for triangles and
+/// quads once `triangles` has room for two.
+pub fn triangulate_into(corners: &[Vec3], triangles: &mut Vec<[u32; 3]>) {
+    triangles.clear();
+    match *corners {
+        [] | [_] | [_, _] => {}
+        [_, _, _] => triangles.push([0, 1, 2]),
+        [a, b, c, d] => triangles.extend(quad([a, b, c, d])),
+        _ => polygon(corners, triangles),
+    }
+    debug_assert_eq!(triangles.len(), corners.len().saturating_sub(2));
+}
+
+fn quad(corners: [Vec3; 4]) -> [[u32; 3]; 2] {
+    const FIRST: [[u32; 3]; 2] = [[0, 1, 2], [0, 2, 3]];
+    const SECOND: [[u32; 3]; 2] = [[0, 1, 3], [1, 2, 3]];
+    // f32 coordinates to the fourth power neither overflow nor vanish in f64.
+    let p = corners.map(|c| c.as_dvec3());
+    // Newell's normal of a quad is the cross product of its diagonals.
+    let diagonals = [p[2] - p[0], p[3] - p[1]];
+    let normal = diagonals[0].cross(diagonals[1]);
+    let smaller_area = |split: [[u32; 3]; 2]| {
+        let areas = split.map(|t| {
+            let [a, b, c] = t.map(|i| p[i as usize]);
+            (b - a).cross(c - a).dot(normal)
+        });
+        areas[0].min(areas[1])
+    };
+    let (first, second) = (smaller_area(FIRST), smaller_area(SECOND));
+    let second_is_better = if first > 0.0 && second > 0.0 {
+        diagonals[1].length_squared() < diagonals[0].length_squared()
+    } else {
+        second > first
+    };
+    if second_is_better { SECOND } else { FIRST }
+}
+
+fn polygon(corners: &[Vec3], triangles: &mut Vec<[u32; 3]>) {
+    let Some(flat) = project(corners) else {
+        triangles.extend((1..corners.len() as u32 - 1).map(|i| [0, i, i + 1]));
+        return;
+    };
+    let kept = without_spikes(&flat, triangles);
+    let first = triangles.len();
+    let mut rest = Vec::with_capacity(kept.len().saturating_sub(2));
+    match kept.len() {
+        0..3 => {}
+        n if n == flat.len() => simple(corners, &flat, &mut rest),
+        _ => {
+            let corners: Vec<_> = kept.iter().map(|&i| corners[i as usize]).collect();
+            let flat: Vec<_> = kept.iter().map(|&i| flat[i as usize]).collect();
+            simple(&corners, &flat, &mut rest);
+        }
+    }
+    triangles.extend(rest.iter().map(|t| t.map(|i| kept[i as usize])));
+    debug_assert_eq!(triangles.len() - first, kept.len() - 2);
+}
+
+fn simple(corners: &[Vec3], flat: &[DVec2], triangles: &mut Vec<[u32; 3]>) {
+    if is_strictly_convex(flat) {
+        halve(flat.len(), triangles);
+    } else if !delaunay(corners, flat, triangles) {
+        triangles.clear();
+        clip_ears(flat, triangles);
+    }
+}
+
+/// The corners without those that repeat the one before or after, or where the outline turns straight back. A
+/// triangle without area is added for each that is left out. Two corners are left where there is nothing else.
+fn without_spikes(flat: &[DVec2], triangles: &mut Vec<[u32; 3]>) -> Vec<u32> {
+    let is_spike = |a: u32, b: u32, c: u32| {
+        let [a, b, c] = [a, b, c].map(|i| flat[i as usize]);
+        a == b || b == c || (turn(a, b, c) == 0.0 && (a - b).dot(c - b) > 0.0)
+    };
+    let mut kept: Vec<u32> = Vec::with_capacity(flat.len());
+    for corner in 0..flat.len() as u32 {
+        kept.push(corner);
+        while let [.., a, b, c] = kept[..]
+            && is_spike(a, b, c)
+        {
+            triangles.push([a, b, c]);
+            kept.pop();
+            *kept.last_mut().unwrap_or(&mut 0) = c;
+        }
+    }
+    // The same across the seam.
+    let mut begin = 0;
+    while let [first, second, .., last] = kept[begin..] {
+        let before_last = kept[kept.len() - 2];
+        if is_spike(before_last, last, first) {
+            triangles.push([before_last, last, first]);
+            kept.pop();
+        } else if is_spike(last, first, second) {
+            triangles.push([last, first, second]);
+            begin += 1;
+        } else {
+            break;
+        }
+    }
+    kept.drain(..begin);
+    kept
+}
+
+/// The corners in the best-fit plane, counter-clockwise, the larger side of their box from −1 to 1. `None` without
+/// an area or with a corner that is not finite.
+fn project(corners: &[Vec3]) -> Option<Vec<DVec2>> {
+    let (low, high) = corners
+        .iter()
+        .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), c| (low.min(c.as_dvec3()), high.max(c.as_dvec3())));
+    let half_extent = (high - low).max_element() * 0.5;
+    // `min` and `max` pass over NaN: it is looked for by itself.
+    if !(half_extent > 0.0 && half_extent.is_finite()) || corners.iter().any(|c| !c.is_finite()) {
+        return None;
+    }
+    let middle = (low + high) * 0.5;
+    let scaled = |c: &Vec3| (c.as_dvec3() - middle) / half_extent;
+    let mut normal = DVec3::ZERO;
+    let mut before = scaled(&corners[corners.len() - 1]);
+    for corner in corners {
+        let p = scaled(corner);
+        normal += before.cross(p);
+        before = p;
+    }
+    // Below this, the area is rounding of the products above.
+    if normal.length() <= 1e-15 * corners.len() as f64 {
+        return None;
+    }
+    let normal = normal.normalize();
+    let (u, v) = normal.any_orthonormal_pair();
+    Some(
+        corners
+            .iter()
+            .map(|c| {
+                let p = scaled(c);
+                // spade refuses numbers that are tiny but not zero.
+                let flush = |x: f64| if x.abs() < 1e-30 { 0.0 } else { x };
+                DVec2::new(flush(p.dot(u)), flush(p.dot(v)))
+            })
+            .collect(),
+    )
+}
+
+/// Twice the signed area of a triangle.
+fn turn(a: DVec2, b: DVec2, c: DVec2) -> f64 {
+    (b - a).perp_dot(c - a)
+}
+
+fn is_strictly_convex(flat: &[DVec2]) -> bool {
+    let n = flat.len();
+    let mut direction_changes = 0;
+    for i in 0..n {
+        let (a, b, c) = (flat[i], flat[(i + 1) % n], flat[(i + 2) % n]);
+        if turn(a, b, c) <= 1e-14 {
+            return false;
+        }
+        // An outline that only turns left is convex if it goes round once: to the right once, to the left once.
+        direction_changes += usize::from((b.x > a.x) != (c.x > b.x));
+    }
+    direction_changes == 2
+}
+
+/// Cuts off corners 1, 3, 5 … and then again every other one of those that are left.
+fn halve(n: usize, triangles: &mut Vec<[u32; 3]>) {
+    let mut step = 1;
+    while step < n {
+        for i in (0..n - step).step_by(2 * step) {
+            let third = i + 2 * step;
+            if third < n {
+                triangles.push([i as u32, (i + step) as u32, third as u32]);
+            } else if i > 0 {
+                triangles.push([i as u32, (i + step) as u32, 0]);
+            }
+        }
+        step *= 2;
+    }
+}
+
+/// How often the outline runs along an edge from its lower to its higher vertex, less how often it runs back.
+type Runs = i32;
+
+/// Whether there is a constrained Delaunay triangulation with as many triangles as wanted; then it is in `triangles`.
+fn delaunay(corners: &[Vec3], flat: &[DVec2], triangles: &mut Vec<[u32; 3]>) -> bool {
+    let n = flat.len();
+    // Corners at one place become one vertex; the first of them stands for all.
+    let mut order: Vec<u32> = (0..n as u32).collect();
+    order.sort_unstable_by(|&a, &b| {
+        let (p, q) = (flat[a as usize], flat[b as usize]);
+        p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y)).then(a.cmp(&b))
+    });
+    let mut vertex_of = vec![0u32; n];
+    let mut corner_of: Vec<u32> = Vec::with_capacity(n);
+    let mut vertices: Vec<Point2<f64>> = Vec::with_capacity(n);
+    for &i in &order {
+        let p = flat[i as usize];
+        let repeated = vertices.last().is_some_and(|last| last.x == p.x && last.y == p.y);
+        if repeated {
+            // One above the other is not one place.
+            if corners[corner_of[corner_of.len() - 1] as usize] != corners[i as usize] {
+                return false;
+            }
+        } else {
+            vertices.push(Point2::new(p.x, p.y));
+            corner_of.push(i);
+        }
+        vertex_of[i as usize] = corner_of.len() as u32 - 1;
+    }
+    if vertices.len() < 3 {
+        return false;
+    }
+    let mut edges: Vec<[usize; 2]> = (0..n)
+        .map(|i| [vertex_of[i] as usize, vertex_of[(i + 1) % n] as usize])
+        .filter(|[from, to]| from != to)
+        .map(|[from, to]| [from.min(to), from.max(to)])
+        .collect();
+    edges.sort_unstable();
+    edges.dedup();
+
+    let vertex_count = vertices.len();
+    let edge_count = edges.len();
+    let mut conflicts = 0;
+    let Ok(mut cdt) =
+        ConstrainedDelaunayTriangulation::<Point2<f64>, (), Runs>::try_bulk_load_cdt(vertices, edges, |_| {
+            conflicts += 1
+        })
+    else {
+        return false;
+    };
+    // Fewer constraints or more: the outline crosses itself, or runs through one of its corners.
+    if conflicts > 0 || cdt.num_vertices() != vertex_count || cdt.num_constraints() != edge_count {
+        return false;
+    }
+    for i in 0..n {
+        let (from, to) = (vertex_of[i] as usize, vertex_of[(i + 1) % n] as usize);
+        if from == to {
+            continue;
+        }
+        let handle = spade::handles::FixedVertexHandle::from_index;
+        let Some(edge) = cdt.get_edge_from_neighbors(handle(from), handle(to)).map(|e| e.as_undirected().fix()) else {
+            return false;
+        };
+        *cdt.undirected_edge_data_mut(edge).data_mut() += if from < to { 1 } else { -1 };
+    }
+
+    // Winding numbers spread from the unbounded face inwards: to the left of an edge that the outline runs along
+    // the number is one higher than to its right.
+    let mut winding: Vec<Option<Runs>> = vec![None; cdt.num_all_faces()];
+    let mut open = vec![cdt.outer_face().fix()];
+    winding[open[0].index()] = Some(0);
+    type Edge<'a> = spade::handles::DirectedEdgeHandle<'a, Point2<f64>, (), spade::CdtEdge<Runs>, ()>;
+    let mut cross = |edge: Edge<'_>, open: &mut Vec<_>| {
+        let beyond = edge.rev().face().fix();
+        if winding[beyond.index()].is_none() {
+            let along = *edge.as_undirected().data().data();
+            let runs = if edge.from().index() < edge.to().index() { along } else { -along };
+            winding[beyond.index()] = winding[edge.face().index()].map(|here| here - runs);
+            open.push(beyond);
+        }
+    };
+    for edge in cdt.convex_hull() {
+        let edge = if edge.face().is_outer() { edge } else { edge.rev() };
+        cross(edge, &mut open);
+    }
+    while let Some(face) = open.pop() {
+        if let Some(inner) = cdt.face(face).as_inner() {
+            for edge in inner.adjacent_edges() {
+                cross(edge, &mut open);
+            }
+        }
+    }
+    for face in cdt.inner_faces() {
+        if winding[face.index()].is_some_and(|w| w > 0) {
+            triangles.push(face.vertices().map(|v| corner_of[v.index()]));
+        }
+    }
+    triangles.len() == n - 2
+}
+
+/// How many corners may be compared with ears, about 0.2 s.
+const EAR_TESTS: usize = 50_000_000;
+
+/// Cuts corners off until three are left: one whose triangle is empty while there is one, else a corner without
+/// area, else the next convex one, else any.
+fn clip_ears(flat: &[DVec2], triangles: &mut Vec<[u32; 3]>) {
+    let n = flat.len();
+    let mut next: Vec<u32> = (1..n as u32).chain([0]).collect();
+    let mut before: Vec<u32> = [n as u32 - 1].into_iter().chain(0..n as u32 - 1).collect();
+    let mut tests_left = EAR_TESTS;
+    let mut left = n;
+    let mut corner = 0u32;
+    let mut looked_at = 0;
+    // The best that there is if no corner turns out to be an ear: 2 without area, 1 convex, 0 any.
+    let mut spare = (0, corner);
+    while left > 3 {
+        let (a, c) = (before[corner as usize], next[corner as usize]);
+        let area = turn(flat[a as usize], flat[corner as usize], flat[c as usize]);
+        let is_ear = area > 0.0 && is_empty(flat, &next, [a, corner, c], &mut tests_left);
+        let rank = if area == 0.0 { 2 } else { u8::from(area > 0.0) };
+        if looked_at == 0 || rank > spare.0 {
+            spare = (rank, corner);
+        }
+        looked_at += 1;
+        let cut = if is_ear {
+            corner
+        } else if looked_at >= left || tests_left == 0 {
+            spare.1
+        } else {
+            corner = c;
+            continue;
+        };
+        let (a, c) = (before[cut as usize], next[cut as usize]);
+        triangles.push([a, cut, c]);
+        next[a as usize] = c;
+        before[c as usize] = a;
+        left -= 1;
+        looked_at = 0;
+        // Going on behind the cut spreads the triangles instead of fanning them out from one corner.
+        corner = next[c as usize];
+    }
+    triangles.push([before[corner as usize], corner, next[corner as usize]]);
+}
+
+/// Whether no other corner lies in a counter-clockwise ear or on its border, those at its own corners aside.
+fn is_empty(flat: &[DVec2], next: &[u32], ear: [u32; 3], tests_left: &mut usize) -> bool {
+    let [a, b, c] = ear.map(|i| flat[i as usize]);
+    let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+    let mut i = next[ear[2] as usize];
+    while i != ear[0] {
+        *tests_left = tests_left.saturating_sub(1);
+        let p = flat[i as usize];
+        let in_box = p.cmpge(low).all() && p.cmple(high).all();
+        if in_box && p != a && p != b && p != c && turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0
+        {
+            return false;
+        }
+        i = next[i as usize];
+    }
+    true
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use std::f64::consts::TAU;
+
+    /// Twice the area vector.
+    fn newell(corners: &[Vec3]) -> DVec3 {
+        let p: Vec<DVec3> = corners.iter().map(|c| (*c - corners[0]).as_dvec3()).collect();
+        (0..p.len()).map(|i| p[i].cross(p[(i + 1) % p.len()])).sum()
+    }
+
+    fn triangle_normal(corners: &[Vec3], t: [u32; 3]) -> DVec3 {
+        let [a, b, c] = t.map(|i| corners[i as usize].as_dvec3());
+        (b - a).cross(c - a)
+    }
+
+    /// n − 2 triangles, none turned over, together as large as the polygon.
+    fn check(corners: &[Vec3]) -> Vec<[u32; 3]> {
+        let triangles = triangulate(corners);
+        assert_eq!(triangles.len(), corners.len() - 2);
+        let whole = newell(corners);
+        let normal = whole.normalize();
+        let mut sum = 0.0;
+        for &t in &triangles {
+            let area = triangle_normal(corners, t).dot(normal);
+            assert!(area >= -1e-5 * whole.length(), "{t:?} is turned over by {area}");
+            sum += area.abs();
+        }
+        assert!((sum - whole.length()).abs() <= 1e-5 * whole.length(), "{sum} for {}", whole.length());
+        triangles
+    }
+
+    fn flat(points: &[(f32, f32)]) -> Vec<Vec3> {
+        points.iter().map(|&(x, y)| Vec3::new(x, y, 0.0)).collect()
+    }
+
+    #[test]
+    fn fewer_than_three_corners_give_nothing() {
+        for n in 0..3 {
+            assert!(triangulate(&vec![Vec3::X; n]).is_empty());
+        }
+    }
+
+    #[test]
+    fn a_convex_quad_takes_the_shorter_diagonal_and_the_first_of_two_equal_ones() {
+        let square = flat(&[(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]);
+        assert_eq!(triangulate(&square), [[0, 1, 2], [0, 2, 3]]);
+        let slanted = flat(&[(0.0, 0.0), (1.0, 0.0), (2.0, 1.0), (1.0, 1.0)]);
+        assert_eq!(triangulate(&slanted), [[0, 1, 3], [1, 2, 3]]);
+    }
+
+    #[test]
+    fn a_concave_quad_is_cut_at_its_reflex_corner() {
+        let dart = [(0.0, 0.0), (1.0, 1.0), (0.0, 0.3), (-1.0, 1.0)];
+        for first in 0..4 {
+            let corners: Vec<_> = (0..4).map(|i| dart[(first + i) % 4]).collect();
+            for scale in [1e-30, 1.0, 1e30] {
+                let scaled: Vec<_> = flat(&corners).iter().map(|c| *c * scale).collect();
+                let reflex = (6 - first) as u32 % 4;
+                assert!(triangulate(&scaled).iter().all(|t| t.contains(&reflex)), "{first} {scale}");
+            }
+            check(&flat(&corners));
+        }
+    }
+
+    #[test]
+    fn a_quad_with_three_corners_in_line_has_no_flat_triangle() {
+        let corners = flat(&[(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (1.0, 1.0)]);
+        for t in check(&corners) {
+            assert!(triangle_normal(&corners, t).z > 0.5);
+        }
+    }
+
+    fn ell() -> Vec<Vec3> {
+        flat(&[(0.0, 0.0), (3.0, 0.0), (3.0, 1.0), (1.0, 1.0), (1.0, 4.0), (0.0, 4.0)])
+    }
+
+    fn star(points: usize) -> Vec<Vec3> {
+        (0..2 * points)
+            .map(|i| {
+                let angle = TAU * i as f64 / (2 * points) as f64;
+                let radius = if i % 2 == 0 { 1.0 } else { 0.3 };
+                (DVec3::new(angle.cos(), angle.sin(), 0.0) * radius).as_vec3()
+            })
+            .collect()
+    }
+
+    fn comb(teeth: usize) -> Vec<Vec3> {
+        let mut points = vec![(0.0, 0.0), (2.0 * teeth as f32, 0.0)];
+        for tooth in (0..teeth).rev() {
+            let x = 2.0 * tooth as f32;
+            points.extend([(x + 1.5, 1.0), (x + 1.5, 9.0), (x + 0.5, 9.0), (x + 0.5, 1.0)]);
+        }
+        flat(&points)
+    }
+
+    fn spiral(corners: usize) -> Vec<Vec3> {
+        let arm = |i: usize, offset: f64| {
+            let angle = 0.6 * i as f64;
+            (DVec3::new(angle.cos(), angle.sin(), 0.0) * (1.0 + offset + 0.12 * angle)).as_vec3()
+        };
+        let half = corners / 2;
+        (0..half).map(|i| arm(i, 0.3)).chain((0..half).rev().map(|i| arm(i, 0.0))).collect()
+    }
+
+    #[test]
+    fn concave_polygons_keep_their_area() {
+        for corners in [ell(), star(5), star(50), comb(3), comb(40), spiral(40)] {
+            check(&corners);
+            let reversed: Vec<_> = corners.iter().rev().copied().collect();
+            check(&reversed);
+            let turned = glam::Mat3::from_rotation_y(1.1) * glam::Mat3::from_rotation_x(0.7);
+            check(&corners.iter().map(|&c| turned * c + Vec3::new(5.0, -3.0, 2.0)).collect::<Vec<_>>());
+        }
+    }
+
+    #[test]
+    fn concave_polygons_of_any_scale_keep_their_area() {
+        for scale in [1e-35, 1e-30, 1e-10, 1e10, 1e30, 1e37] {
+            for corners in [ell(), spiral(40)] {
+                let scaled: Vec<_> = corners.iter().map(|&c| c * scale).collect();
+                let triangles = triangulate(&scaled);
+                let whole: f64 = newell(&scaled).length();
+                let sum: f64 = triangles.iter().map(|&t| triangle_normal(&scaled, t).length()).sum();
+                assert!((sum - whole).abs() <= 1e-5 * whole, "{scale}");
+            }
+        }
+    }
+
+    #[test]
+    fn convex_polygons_are_not_fans() {
+        for n in 5..70 {
+            let corners: Vec<_> = (0..n)
+                .map(|i| {
+                    let angle = TAU * i as f64 / n as f64;
+                    DVec3::new(angle.cos(), 0.0, angle.sin()).as_vec3()
+                })
+                .collect();
+            let triangles = check(&corners);
+            let most = (0..n as u32).map(|i| triangles.iter().filter(|t| t.contains(&i)).count()).max();
+            assert!(most.unwrap() <= 2 * (usize::BITS - (n as usize).leading_zeros()) as usize);
+        }
+    }
+
+    #[test]
+    fn a_pentagram_is_not_taken_for_a_convex_polygon() {
+        let corners: Vec<_> = (0..5)
+            .map(|i| {
+                let angle = TAU * (2 * i) as f64 / 5.0;
+                DVec3::new(angle.cos(), angle.sin(), 0.0).as_vec3()
+            })
+            .collect();
+        assert!(!is_strictly_convex(&project(&corners).unwrap()));
+        assert_eq!(triangulate(&corners).len(), 3);
+    }
+
+    #[test]
+    fn a_keyhole_leaves_its_hole_open() {
+        let corners = flat(&[
+            (0.0, 0.0),
+            (4.0, 0.0),
+            (4.0, 4.0),
+            (0.0, 4.0),
+            (0.0, 0.0),
+            (1.0, 1.0),
+            (1.0, 3.0),
+            (3.0, 3.0),
+            (3.0, 1.0),
+            (1.0, 1.0),
+        ]);
+        let triangles = check(&corners);
+        for t in triangles {
+            let middle = t.iter().map(|&i| corners[i as usize]).sum::<Vec3>() / 3.0;
+            let in_hole =
+                middle.cmpgt(Vec3::ONE).bitmask() & 3 == 3 && middle.cmplt(Vec3::splat(3.0)).bitmask() & 3 == 3;
+            assert!(!in_hole, "{t:?}");
+        }
+    }
+
+    #[test]
+    fn corners_in_line_and_repeated_corners_keep_area_and_count() {
+        check(&flat(&[(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (2.0, 2.0), (1.0, 2.0), (0.0, 2.0), (0.0, 1.0)]));
+        check(&flat(&[(0.0, 0.0), (2.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0), (0.0, 2.0)]));
+        check(&flat(&[(0.0, 0.0), (0.0, 0.0), (0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0)]));
+        // A corner that touches an edge.
+        check(&flat(&[(0.0, 0.0), (4.0, 0.0), (4.0, 3.0), (2.0, 0.0), (0.0, 3.0)]));
+        // A spike without width.
+        check(&flat(&[(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (5.0, 1.0), (2.0, 1.0), (2.0, 2.0), (0.0, 2.0)]));
+    }
+
+    #[test]
+    fn what_has_no_area_still_gives_all_triangles() {
+        let cases = [
+            flat(&[(1.0, 1.0); 7]),
+            flat(&[(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (3.0, 0.0), (4.0, 0.0)]),
+            flat(&[(0.0, 0.0), (1.0, 1.0), (1.0, 0.0), (0.0, 1.0)]),
+            flat(&[(0.0, 0.0), (f32::NAN, 0.0), (1.0, 1.0), (0.0, 1.0), (-1.0, 0.5)]),
+            flat(&[(0.0, 0.0), (f32::INFINITY, 0.0), (1.0, 1.0), (0.0, 1.0), (-1.0, 0.5)]),
+            flat(&[(f32::NAN, f32::NAN); 4]),
+            flat(&[
+                (f32::MAX, f32::MAX),
+                (-f32::MAX, f32::MAX),
+                (-f32::MAX, -f32::MAX),
+                (f32::MAX, -f32::MAX),
+                (0.0, 0.0),
+            ]),
+        ];
+        for corners in cases {
+            let triangles = triangulate(&corners);
+            assert_eq!(triangles.len(), corners.len() - 2);
+            assert!(triangles.iter().flatten().all(|&i| (i as usize) < corners.len()));
+        }
+    }
+
+    #[test]
+    fn a_large_tangle_ends() {
+        let mut state = 1u64;
+        let mut random = || {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (state >> 40) as f32 / (1 << 24) as f32
+        };
+        let corners: Vec<_> = (0..3000).map(|_| Vec3::new(random(), random(), random())).collect();
+        assert_eq!(triangulate(&corners).len(), 2998);
+    }
+
+    proptest! {
+        #[test]
+        fn simple_polygons_keep_their_area(
+            radii in prop::collection::vec(0.2f64..1.0, 4..40),
+            axis in (-1.0f64..1.0, -1.0f64..1.0, -1.0f64..1.0),
+            angle in 0.0..TAU,
+        ) {
+            let n = radii.len() as f64;
+            let axis = (DVec3::from(axis) + DVec3::new(0.0, 0.0, 1.5)).normalize();
+            let turned = glam::DMat3::from_axis_angle(axis, angle);
+            let corners: Vec<_> = radii
+                .iter()
+                .enumerate()
+                .map(|(i, r)| {
+                    let a = TAU * i as f64 / n;
+                    (turned * DVec3::new(a.cos() * r, a.sin() * r, 0.0)).as_vec3()
+                })
+                .collect();
+            check(&corners);
+        }
+
+        #[test]
+        fn any_corners_give_all_triangles(
+            // A coarse lattice: corners coincide, touch edges and lie in line often.
+            lattice in prop::collection::vec((-3i8..4, -3i8..4, 0i8..2), 3..14),
+        ) {
+            let corners: Vec<_> =
+                lattice.iter().map(|&(x, y, z)| Vec3::new(x.into(), y.into(), f32::from(z) * 0.1)).collect();
+            let triangles = triangulate(&corners);
+            prop_assert_eq!(triangles.len(), corners.len() - 2);
+            prop_assert!(triangles.iter().flatten().all(|&i| (i as usize) < corners.len()));
+        }
+    }
+}

@@ -1,1 +1,11 @@
-//! t
+//! Which edges are contours, and the geometry that draws them.
+#![warn(missing_docs)]
+
+pub mod contour;
+mod error;
+#[cfg(feature = "wgpu")]
+pub mod line_pass;
+pub mod segment;
+
+pub use contour::{ContourEdges, ContourOptions, LineKind, contour_edges};
+pub use error::OutlineError;

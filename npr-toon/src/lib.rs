@@ -1,1 +1,73 @@
-//! t
+//! Banded light: cartoon shading with any number of N·L bands and an N·H highlight.
+//!
+//! ```
+//! use glam::DVec3;
+//! use npr_toon::{Bands, toon_band_hard, toon_n_dot_l};
+//!
+//! let bands = Bands::listing_3();
+//! bands.validate()?;
+//! let n_dot_l = toon_n_dot_l(DVec3::Z, DVec3::new(0.0, 3.0, 4.0)); // 0.8
+//! assert_eq!(toon_band_hard(&bands, n_dot_l - 1e-6), DVec3::splat(f64::from(0.6_f32)));
+//! assert_eq!(toon_band_hard(&bands, 1.0), bands.tones[2].as_dvec3());
+//! # Ok::<(), npr_toon::ToonError>(())
+//! ```
+//!
+//! The same things under the same names stand here twice: as Rust functions in f64, the reference, and in
+//! [`WGSL`], a library without bindings or entry points to put in front of a shader. [`ToonUniform`] is what
+//! carries [`Bands`] from one to the other.
+//!
+//! # Sources
+//!
+//! - A. Lake, C. Marshall, M. Harris, M. Blackstein: *Stylized Rendering Techniques for Scalable Real-Time 3D
+//!   Animation*, NPAR 2000. Two colours, the border where N·L crosses zero, antialiased by a 1D texture
+//!   ([`Bands::hard_shading`]).
+//! - D. Card, J. L. Mitchell: *Non-Photorealistic Rendering with Pixel and Vertex Shaders*, in *Direct3D ShaderX*,
+//!   2002, listings 2 (vertex shader) and 3 (pixel shader). The bands are computed, no texture is read.
+//!
+//! What was wrong in print: the last instruction but one of listing 2, which normalises the half vector, has lost its
+//! opcode (`mul`). The text describes one threshold on N·L and one on N·H; listing 3 has two on N·L and never
+//! reads the half vector. Both are here, as [`Bands::chapter_text`] and [`Bands::listing_3`].
+//!
+//! # Colours
+//!
+//! All colours are display-referred (sRGB-encoded, 0..=1), as artists pick them and as the listings compute them. A
+//! band's tone *multiplies* the surface's colour; on a white surface it is the colour that one sees.
+//!
+//! # Borders
+//!
+//! A hard band is a sum of steps, and a pixel's colour the mean of the bands that it covers. Where N·L changes linearly
+//! across the pixel by `width`, the share of the pixel above a threshold t is `clamp((N·L - t) / width + 1/2, 0, 1)`,
+//! and band i covers what is above its lower border less what is above its upper one. These shares are never
+//! negative and sum to 1, however many borders fall into one pixel, and where they are 0 or 1 the tone comes out bit
+//! for bit. (Mixing border by border, `mix(c, tone, share)`, agrees for one border in a pixel, but counts a band
+//! thinner than a pixel wrongly.) What is left is that a pixel is a square and its gradient seldom runs along a side.
+#![warn(missing_docs)]
+
+mod bands;
+mod light;
+mod uniform;
+
+pub use bands::{Bands, Highlight, ToonError};
+pub use light::{
+    MIN_WIDTH, toon_band_hard, toon_band_smooth, toon_coverage, toon_half, toon_highlight, toon_n_dot_h,
+    toon_n_dot_h_interpolated, toon_n_dot_l, toon_n_dot_l_interpolated, toon_shade, toon_width,
+};
+pub use uniform::{MAX_BANDS, ToonUniform};
+
+/// The functions of this crate in WGSL: no bindings, no entry points, every name begins with `toon_` or `Toon`.
+///
+/// `toon_shade` takes its [`ToonUniform`] by value, as WGSL cannot pass a uniform by reference. A compiler that
+/// does not see through the copy makes one per pixel; where that counts (software rasterisers), read the uniform
+/// directly, which is the same in few lines:
+///
+/// ```wgsl
+/// var tone = vec3<f32>(0.0);
+/// var share = 1.0; // of the pixel at or above the band's lower border
+/// for (var i = 0u; i + 1u < bands.count; i++) {
+///     let above = toon_coverage(n_dot_l, bands.bands[i].w, width);
+///     tone += (share - above) * bands.bands[i].rgb;
+///     share = above;
+/// }
+/// tone += share * bands.bands[bands.count - 1u].rgb;
+/// ```
+pub const WGSL: &str = include_str!("toon.wgsl");

@@ -5,6 +5,7 @@
 
 #[cfg(feature = "gltf")]
 mod gltf;
+mod image_file;
 #[cfg(feature = "obj")]
 mod obj;
 

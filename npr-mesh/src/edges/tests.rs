@@ -1,0 +1,216 @@
+use super::*;
+use proptest::prelude::*;
+
+fn find_all(positions: &[Vec3], faces: &[[u32; 3]]) -> Edges {
+    find(positions, faces, &[], &[], &EdgeOptions { skip_redundant: false, ..Default::default() })
+}
+
+fn find_drawn(positions: &[Vec3], faces: &[[u32; 3]]) -> Edges {
+    find(positions, faces, &[], &[], &EdgeOptions::default())
+}
+
+fn count(edges: &Edges, kind: EdgeKind) -> usize {
+    edges.edges.iter().filter(|edge| edge.kind() == kind).count()
+}
+
+fn creases(edges: &Edges, degrees: f32) -> usize {
+    edges.edges.iter().filter_map(Edge::dihedral_rad).filter(|&angle| angle > degrees.to_radians()).count()
+}
+
+/// Corners numbered by bits x, y, z; faces wound counter-clockwise from outside.
+fn cube() -> (Vec<Vec3>, Vec<[u32; 3]>) {
+    let positions = (0..8u32).map(|i| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32)).collect();
+    let quads = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+    (positions, quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect())
+}
+
+#[test]
+fn a_cube_has_twelve_creases_of_a_right_angle() {
+    let (positions, faces) = cube();
+    let edges = find_all(&positions, &faces);
+    assert_eq!(edges.edges.len(), 18);
+    assert_eq!(count(&edges, EdgeKind::TwoFace), 18);
+    assert_eq!(creases(&edges, 89.99), 12);
+    assert_eq!(creases(&edges, 90.01), 0);
+}
+
+#[test]
+fn the_diagonals_of_a_cube_of_quads_are_no_edges() {
+    let (positions, faces) = cube();
+    let polygons: Vec<u32> = (0..12).map(|face| face / 2).collect();
+    let edges = find(&positions, &faces, &polygons, &[], &EdgeOptions::default());
+    assert_eq!(edges.edges.len(), 12);
+    assert_eq!(creases(&edges, 89.99), 12);
+}
+
+#[test]
+fn a_warped_quad_has_one_normal() {
+    let positions = [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.4), Vec3::Y];
+    let edges = find(&positions, &[[0, 1, 2], [0, 2, 3]], &[7, 7], &[], &EdgeOptions::default());
+    assert_eq!(edges.edges.len(), 4);
+    assert_eq!(edges.face_normals[0], edges.face_normals[1]);
+    assert_eq!(count(&edges, EdgeKind::Boundary), 4);
+}
+
+#[test]
+fn split_vertices_make_no_boundary() {
+    let (positions, faces) = cube();
+    let split: Vec<Vec3> = faces.iter().flatten().map(|&v| positions[v as usize]).collect();
+    let separate: Vec<[u32; 3]> = (0..12).map(|face| [3 * face, 3 * face + 1, 3 * face + 2]).collect();
+    let edges = find_all(&split, &separate);
+    assert_eq!((edges.edges.len(), count(&edges, EdgeKind::Boundary)), (18, 0));
+}
+
+#[test]
+fn a_face_that_is_turned_round_makes_no_crease() {
+    let positions = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::new(1.0, 1.0, 0.0)];
+    let alike = find_all(&positions, &[[0, 1, 2], [1, 3, 2]]);
+    let turned = find_all(&positions, &[[0, 1, 2], [1, 2, 3]]);
+    for edges in [&alike, &turned] {
+        assert_eq!(creases(edges, 1.0), 0);
+        assert_eq!(edges.edges.iter().filter_map(Edge::dihedral_rad).count(), 1);
+    }
+    assert_eq!(alike.edges.iter().filter(|edge| edge.wound_oppositely()).count(), 0);
+    assert_eq!(turned.edges.iter().filter(|edge| edge.wound_oppositely()).count(), 1);
+}
+
+#[test]
+fn three_sheets_at_one_edge_are_non_manifold_and_all_are_listed() {
+    let positions = [Vec3::ZERO, Vec3::Z, Vec3::X, Vec3::Y, -Vec3::X];
+    let edges = find_all(&positions, &[[0, 1, 2], [0, 1, 3], [0, 1, 4]]);
+    assert_eq!(count(&edges, EdgeKind::NonManifold), 1);
+    assert_eq!(edges.further_faces, [(0, 2)]);
+    assert_eq!(edges.edges[0].faces, [0, 1]);
+    assert_eq!(edges.edges[0].dihedral_rad(), None);
+}
+
+#[test]
+fn a_duplicate_face_is_counted_but_not_drawn() {
+    let (positions, mut faces) = cube();
+    faces.push([faces[3][2], faces[3][1], faces[3][0]]);
+    faces.push(faces[5]);
+    assert_eq!(count(&find_all(&positions, &faces), EdgeKind::NonManifold), 6);
+    let drawn = find_drawn(&positions, &faces);
+    assert_eq!(count(&drawn, EdgeKind::TwoFace), 18);
+    assert_eq!(drawn.skipped.iter().filter(|&&s| s).count(), 2);
+    assert!(drawn.skipped[12] && drawn.skipped[13]);
+}
+
+#[test]
+fn a_lone_face_and_its_back_are_one_sheet() {
+    let positions = [Vec3::ZERO, Vec3::X, Vec3::Y];
+    let drawn = find_drawn(&positions, &[[0, 1, 2], [2, 1, 0]]);
+    assert_eq!(count(&drawn, EdgeKind::Boundary), 3);
+}
+
+#[test]
+fn a_collapsed_face_does_not_part_its_neighbours() {
+    let (positions, mut faces) = cube();
+    faces.push([0, 4, 4]);
+    let drawn = find_drawn(&positions, &faces);
+    assert_eq!((drawn.edges.len(), count(&drawn, EdgeKind::TwoFace)), (18, 18));
+}
+
+#[test]
+fn a_face_of_zero_area_makes_no_crease() {
+    // A sliver with all corners on one line stands between two faces at a right angle.
+    let positions = [Vec3::ZERO, Vec3::X, Vec3::X * 0.5, Vec3::Y, Vec3::Z];
+    let edges = find_all(&positions, &[[0, 1, 3], [1, 0, 2], [0, 2, 4], [2, 1, 4]]);
+    assert_eq!(edges.face_normals[1], Vec3::ZERO);
+    assert_eq!(creases(&edges, 1.0), 0);
+    assert!(has_zero_area(&positions, &[1, 0, 2]));
+}
+
+#[test]
+fn a_right_angle_is_not_mistaken_for_a_missing_normal() {
+    let positions = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+    let edges = find_all(&positions, &[[0, 1, 2], [1, 0, 3]]);
+    assert_eq!(edges.edges[0].cos_dihedral, 0.0);
+    assert_eq!(creases(&edges, 89.0), 1);
+}
+
+#[test]
+fn materials_part_where_they_differ() {
+    let (positions, faces) = cube();
+    let materials: Vec<u32> = (0..12).map(|face| u32::from(face >= 10)).collect();
+    let edges = find(&positions, &faces, &[], &materials, &EdgeOptions::default());
+    assert_eq!(edges.edges.iter().filter(|edge| edge.joins_two_materials()).count(), 4);
+}
+
+#[test]
+fn a_fan_around_one_vertex_is_found_in_linear_time() {
+    // The hub is the lowest-numbered end of half of all edges: with it as their home, the search is quadratic.
+    let rim = 300_000u32;
+    let mut positions = vec![Vec3::Y];
+    positions.extend((0..rim).map(|i| {
+        let angle = f64::from(i) / f64::from(rim) * std::f64::consts::TAU;
+        Vec3::new(angle.cos() as f32, 0.0, angle.sin() as f32)
+    }));
+    let faces: Vec<[u32; 3]> = (0..rim).map(|i| [0, 1 + (i + 1) % rim, 1 + i]).collect();
+    let start = std::time::Instant::now();
+    let edges = find_all(&positions, &faces);
+    assert!(start.elapsed().as_secs() < 5, "took {:?}", start.elapsed());
+    assert_eq!(edges.edges.len(), 2 * rim as usize);
+}
+
+#[test]
+fn triangles_of_any_size_have_unit_normals() {
+    for scale in [1e-30f32, 1.0, 1e30] {
+        let positions = [Vec3::ZERO, Vec3::X * scale, Vec3::Y * scale];
+        assert_eq!(face_normals(&positions, &[[0, 1, 2]], &[]), [Vec3::Z]);
+    }
+}
+
+#[test]
+fn no_faces_have_no_edges() {
+    assert!(find_drawn(&[Vec3::X], &[]).edges.is_empty());
+}
+
+proptest! {
+    /// Against a map filled the plain way, on soups with few vertices, so that every irregularity occurs.
+    #[test]
+    fn any_soup_gives_the_edges_of_a_plain_map(
+        faces in prop::collection::vec([0u32..12, 0u32..12, 0u32..12], 0..60)
+    ) {
+        let positions: Vec<Vec3> = (0..12u32).map(|i| {
+            // Two pairs share a place.
+            let i = if i >= 10 { i - 10 } else { i };
+            Vec3::new((i * 7 % 5) as f32, (i * i % 11) as f32, i as f32)
+        }).collect();
+        let edges = find_all(&positions, &faces);
+        let mut expected = std::collections::BTreeMap::<[u32; 2], Vec<u32>>::new();
+        for (number, face) in faces.iter().enumerate() {
+            let welded = face.map(|v| if v >= 10 { v - 10 } else { v });
+            for corner in 0..3 {
+                let (a, b) = (welded[corner], welded[(corner + 1) % 3]);
+                if a != b {
+                    expected.entry([a.min(b), a.max(b)]).or_default().push(number as u32);
+                }
+            }
+        }
+        prop_assert_eq!(edges.edges.len(), expected.len());
+        for (number, edge) in edges.edges.iter().enumerate() {
+            let mut of_edge: Vec<u32> = edge.faces.iter().copied().filter(|&f| f != NO_FACE).collect();
+            of_edge.extend(edges.further_faces.iter().filter(|f| f.0 as usize == number).map(|f| f.1));
+            prop_assert_eq!(&of_edge, &expected[&edge.ends]);
+        }
+    }
+
+    /// The order of faces changes the order of edges and nothing else.
+    #[test]
+    fn kinds_do_not_depend_on_the_order_of_faces(
+        faces in prop::collection::vec([0u32..9, 0u32..9, 0u32..9], 1..40),
+        turn in 0usize..40
+    ) {
+        let positions: Vec<Vec3> = (0..9u32).map(|i| Vec3::new((i * 7 % 5) as f32, (i * i % 11) as f32, i as f32)).collect();
+        let mut turned = faces.clone();
+        turned.rotate_left(turn % faces.len());
+        let summary = |faces: &[[u32; 3]]| {
+            let mut kinds: Vec<([u32; 2], String)> = find_drawn(&positions, faces)
+                .edges.iter().map(|edge| (edge.ends, format!("{:?}", edge.kind()))).collect();
+            kinds.sort();
+            kinds
+        };
+        prop_assert_eq!(summary(&faces), summary(&turned));
+    }
+}

@@ -1,0 +1,199 @@
+//! Numbers out of buffers, every bound checked (glTF 2.0, 3.6.2 "Accessors").
+
+use super::{Document, files};
+use gltf::json::accessor::{ComponentType, Type, sparse};
+use gltf::json::validation::Checked;
+use gltf::json::{self, Index};
+
+/// An accessor whose elements are known to lie within their buffers.
+///
+/// One without a buffer view is all zeros, and then nothing bounds its count but what the caller asks of it
+/// before reading.
+pub(super) struct Accessor<'d> {
+    number: usize,
+    /// Elements.
+    pub count: u64,
+    /// Whether there is a buffer view behind it.
+    pub stored: bool,
+    /// Numbers in an element.
+    pub lanes: usize,
+    component: ComponentType,
+    normalized: bool,
+    bytes: &'d [u8],
+    /// Bytes from one element to the next.
+    stride: usize,
+    sparse: Option<Sparse<'d>>,
+}
+
+/// Elements that replace some of the others.
+struct Sparse<'d> {
+    indices: &'d [u8],
+    index_type: ComponentType,
+    values: &'d [u8],
+}
+
+/// How integers become fractions.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Integers {
+    /// As the accessor says.
+    AsStated,
+    /// All of them are normalised: for attributes that allow no others, in files that forget to say so.
+    Normalized,
+}
+
+impl<'d> Accessor<'d> {
+    /// Looks an accessor up and checks its extent.
+    ///
+    /// # Errors
+    /// The fault, naming the accessor.
+    pub fn new(document: &'d Document, index: Index<json::Accessor>) -> Result<Self, String> {
+        let number = index.value();
+        let accessor = document.root.get(index).ok_or_else(|| format!("accessor {number} does not exist"))?;
+        let fail = |fault: String| format!("accessor {number}: {fault}");
+        let Checked::Valid(component) = accessor.component_type else {
+            return Err(fail("unknown component type".to_owned()));
+        };
+        let Checked::Valid(kind) = accessor.type_ else { return Err(fail("unknown type".to_owned())) };
+        // Matrices of small components have padded columns; the only matrices that are read here are of floats.
+        if matches!(kind, Type::Mat2 | Type::Mat3) {
+            return Err(fail("a 2x2 or 3x3 matrix, which no attribute is".to_owned()));
+        }
+        let (component, lanes, count) = (component.0, kind.multiplicity(), accessor.count.0);
+        let element = component.size() * lanes;
+        let mut found = Self {
+            number,
+            count,
+            stored: false,
+            lanes,
+            component,
+            normalized: accessor.normalized,
+            bytes: &[],
+            stride: element,
+            sparse: None,
+        };
+        if let Some(view) = accessor.buffer_view {
+            let (bytes, stride) = files::view(document, view).map_err(fail)?;
+            found.stride = stride.unwrap_or(element);
+            if found.stride < element {
+                return Err(fail(format!("elements of {element} bytes every {} bytes", found.stride)));
+            }
+            let length = (count.saturating_sub(1)).checked_mul(found.stride as u64);
+            let length = length.and_then(|l| l.checked_add(if count == 0 { 0 } else { element as u64 }));
+            let offset = accessor.byte_offset.unwrap_or_default().0;
+            found.bytes = length.and_then(|length| files::slice(bytes, offset, length)).ok_or_else(|| {
+                fail(format!(
+                    "{count} elements of {element} bytes every {} bytes from byte {offset} reach beyond buffer view \
+                     {}, which has {} bytes",
+                    found.stride,
+                    view.value(),
+                    bytes.len()
+                ))
+            })?;
+            found.stored = true;
+        }
+        if let Some(sparse) = &accessor.sparse {
+            found.sparse = Some(Sparse::new(document, sparse, element as u64).map_err(fail)?);
+        }
+        Ok(found)
+    }
+
+    /// All elements as floats, `N` to an element.
+    ///
+    /// # Errors
+    /// Another number of them, or a component type that no attribute has.
+    pub fn floats<const N: usize>(&self, integers: Integers) -> Result<Vec<[f32; N]>, String> {
+        let normalized = self.normalized || integers == Integers::Normalized;
+        match (self.component, normalized) {
+            (ComponentType::F32, _) => self.elements(f32::from_le_bytes),
+            (ComponentType::U8, false) => self.elements(|[b]| f32::from(b)),
+            (ComponentType::U8, true) => self.elements(|[b]| f32::from(b) / 255.0),
+            (ComponentType::I8, false) => self.elements(|[b]| f32::from(b as i8)),
+            (ComponentType::I8, true) => self.elements(|[b]| (f32::from(b as i8) / 127.0).max(-1.0)),
+            (ComponentType::U16, false) => self.elements(|b| f32::from(u16::from_le_bytes(b))),
+            (ComponentType::U16, true) => self.elements(|b| f32::from(u16::from_le_bytes(b)) / 65535.0),
+            (ComponentType::I16, false) => self.elements(|b| f32::from(i16::from_le_bytes(b))),
+            (ComponentType::I16, true) => self.elements(|b| (f32::from(i16::from_le_bytes(b)) / 32767.0).max(-1.0)),
+            (ComponentType::U32, _) => Err(self.fault("32-bit integers, which only indices may be")),
+        }
+    }
+
+    /// All elements as unsigned integers, `N` to an element.
+    ///
+    /// # Errors
+    /// Another number of them, or another component type.
+    pub fn integers<const N: usize>(&self) -> Result<Vec<[u32; N]>, String> {
+        match self.component {
+            ComponentType::U8 => self.elements(|[b]| u32::from(b)),
+            ComponentType::U16 => self.elements(|b| u32::from(u16::from_le_bytes(b))),
+            ComponentType::U32 => self.elements(u32::from_le_bytes),
+            _ => Err(self.fault("not unsigned integers")),
+        }
+    }
+
+    fn elements<const N: usize, const SIZE: usize, T: Copy + Default>(
+        &self,
+        convert: impl Fn([u8; SIZE]) -> T,
+    ) -> Result<Vec<[T; N]>, String> {
+        if self.lanes != N {
+            return Err(self.fault(&format!("{} numbers in an element, expected {N}", self.lanes)));
+        }
+        let element = SIZE * N;
+        let read = |bytes: &[u8]| {
+            let (numbers, _) = bytes.as_chunks::<SIZE>();
+            std::array::from_fn(|lane| convert(numbers[lane]))
+        };
+        let count = usize::try_from(self.count).map_err(|_| self.fault("more elements than there is memory"))?;
+        let mut elements: Vec<[T; N]> = if !self.stored {
+            vec![[T::default(); N]; count]
+        } else if self.stride == element {
+            self.bytes.chunks_exact(element).map(read).collect()
+        } else {
+            // The last element ends the slice, however wide the stride.
+            self.bytes.chunks(self.stride).map(|bytes| read(&bytes[..element])).collect()
+        };
+        if let Some(sparse) = &self.sparse {
+            for (at, value) in sparse.indices().zip(sparse.values.chunks_exact(element)) {
+                let Some(slot) = elements.get_mut(at as usize) else {
+                    return Err(self.fault(&format!("sparse index {at} of {count} elements")));
+                };
+                *slot = read(value);
+            }
+        }
+        Ok(elements)
+    }
+
+    /// A message about this accessor.
+    pub fn fault(&self, fault: &str) -> String {
+        format!("accessor {}: {fault}", self.number)
+    }
+}
+
+impl<'d> Sparse<'d> {
+    fn new(document: &'d Document, sparse: &sparse::Sparse, element: u64) -> Result<Self, String> {
+        let Checked::Valid(index_type) = sparse.indices.component_type else {
+            return Err("sparse indices of an unknown component type".to_owned());
+        };
+        let (index_type, count) = (index_type.0, sparse.count.0);
+        let part = |what: &str, view, offset: u64, size: u64| {
+            let (bytes, _) = files::view(document, view)?;
+            let length = count.checked_mul(size);
+            length.and_then(|length| files::slice(bytes, offset, length)).ok_or_else(|| {
+                format!("{count} sparse {what} from byte {offset} reach beyond buffer view {}", view.value())
+            })
+        };
+        let (indices, values) = (&sparse.indices, &sparse.values);
+        Ok(Self {
+            indices: part("indices", indices.buffer_view, indices.byte_offset.0, index_type.size() as u64)?,
+            index_type,
+            values: part("values", values.buffer_view, values.byte_offset.0, element)?,
+        })
+    }
+
+    fn indices(&self) -> impl Iterator<Item = u32> + '_ {
+        self.indices.chunks_exact(self.index_type.size()).map(|bytes| {
+            let mut word = [0; 4];
+            word[..bytes.len()].copy_from_slice(bytes);
+            u32::from_le_bytes(word)
+        })
+    }
+}

@@ -1,0 +1,216 @@
+//! Materials, their textures, and which texture coordinates they want.
+
+use super::{Document, files};
+use crate::load::image_file;
+use crate::{AlphaMode, LoadError, Material, Model, Texture, Wrap};
+use glam::{Vec2, Vec4};
+use gltf::json::texture::{Info, MagFilter, WrappingMode};
+use gltf::json::validation::Checked;
+use gltf::json::{self, Index, material};
+use std::collections::HashMap;
+
+/// Materials and images, converted when a primitive first asks for them.
+#[derive(Default)]
+pub(super) struct Materials {
+    converted: HashMap<Option<usize>, (u32, UvSource)>,
+    /// By image and the look-up that its sampler asks for.
+    textures: HashMap<(usize, [WrapKey; 2], bool), u32>,
+    /// By image: the first texture made of it, or `None` if it cannot be decoded.
+    images: HashMap<usize, Option<u32>>,
+}
+
+type WrapKey = u8;
+
+/// Where the texture coordinates of a primitive come from.
+#[derive(Clone, Copy)]
+pub(super) struct UvSource {
+    /// The `n` of `TEXCOORD_n`.
+    pub set: u32,
+    /// Whether a texture wants them.
+    pub wanted: bool,
+    /// The columns of the matrix and the offset that `KHR_texture_transform` applies.
+    transform: Option<[Vec2; 3]>,
+}
+
+impl UvSource {
+    const DEFAULT: Self = Self { set: 0, wanted: false, transform: None };
+
+    /// The coordinate that the texture is looked up at.
+    pub fn apply(&self, uv: Vec2) -> Vec2 {
+        match self.transform {
+            Some([u, v, offset]) => u * uv.x + v * uv.y + offset,
+            None => uv,
+        }
+    }
+}
+
+impl Materials {
+    /// The number of a material within the model; `None` is glTF's default one, white and single-sided
+    /// (glTF 2.0, 3.9.6 "Default Material").
+    ///
+    /// # Errors
+    /// An index that leads nowhere, a number that is not finite, or an image beyond a limit.
+    pub fn get(
+        &mut self,
+        document: &Document,
+        index: Option<Index<json::Material>>,
+        model: &mut Model,
+        warnings: &mut Vec<String>,
+    ) -> Result<(u32, UvSource), LoadError> {
+        let key = index.map(|i| i.value());
+        if let Some(&found) = self.converted.get(&key) {
+            return Ok(found);
+        }
+        let mut material = Material {
+            name: String::new(),
+            base_color: Vec4::ONE,
+            texture: None,
+            alpha_mode: AlphaMode::Opaque,
+            double_sided: false,
+        };
+        let mut uv = UvSource::DEFAULT;
+        if let Some(index) = index {
+            let number = index.value();
+            let fail = |fault: &str| document.malformed(format!("material {number}: {fault}"));
+            let source = document.root.get(index).ok_or_else(|| fail("does not exist"))?;
+            let pbr = &source.pbr_metallic_roughness;
+            material.name = source.name.clone().unwrap_or_default();
+            material.base_color = Vec4::from_array(pbr.base_color_factor.0);
+            material.alpha_mode = alpha_mode(source).ok_or_else(|| fail("unknown alpha mode"))?;
+            material.double_sided = source.double_sided;
+            if !material.base_color.is_finite() {
+                return Err(fail("its base colour is not finite"));
+            }
+            if let Some(info) = &pbr.base_color_texture {
+                uv = uv_source(info).ok_or_else(|| fail("its texture transform is not finite"))?;
+                material.texture = self.texture(document, number, info, model, warnings)?;
+            }
+        }
+        let slot = model.materials.len() as u32;
+        model.materials.push(material);
+        self.converted.insert(key, (slot, uv));
+        Ok((slot, uv))
+    }
+
+    fn texture(
+        &mut self,
+        document: &Document,
+        material: usize,
+        info: &Info,
+        model: &mut Model,
+        warnings: &mut Vec<String>,
+    ) -> Result<Option<u32>, LoadError> {
+        let fail = |fault: String| document.malformed(format!("material {material}: {fault}"));
+        let number = info.index.value();
+        let texture = document.root.get(info.index).ok_or_else(|| fail(format!("texture {number} does not exist")))?;
+        let sampler = match texture.sampler {
+            Some(index) => Some(
+                document
+                    .root
+                    .get(index)
+                    .ok_or_else(|| fail(format!("texture {number}: sampler {} does not exist", index.value())))?,
+            ),
+            None => None,
+        };
+        let wrap = sampler.map_or([Wrap::Repeat; 2], |s| [wrap(&s.wrap_s), wrap(&s.wrap_t)]);
+        let smooth = !sampler.is_some_and(|s| matches!(s.mag_filter, Some(Checked::Valid(MagFilter::Nearest))));
+        let image = texture.source.value();
+
+        let key = (image, wrap.map(|w| w as WrapKey), smooth);
+        if let Some(&slot) = self.textures.get(&key) {
+            return Ok(Some(slot));
+        }
+        let made = match self.images.get(&image) {
+            Some(None) => return Ok(None),
+            Some(Some(first)) => Texture { wrap, smooth, ..model.textures[*first as usize].clone() },
+            None => match decode(document, image) {
+                Ok(texture) => Texture { wrap, smooth, ..texture },
+                Err(error @ LoadError::TooLarge { .. }) => return Err(error),
+                Err(error) => {
+                    let why = match error {
+                        // Warnings are without the model's name.
+                        LoadError::Malformed { path, fault } if path == document.path => fault,
+                        other => other.to_string(),
+                    };
+                    warnings.push(format!("image {image} is left out: {why}"));
+                    self.images.insert(image, None);
+                    return Ok(None);
+                }
+            },
+        };
+        let slot = model.textures.len() as u32;
+        model.textures.push(made);
+        self.textures.insert(key, slot);
+        self.images.entry(image).or_insert(Some(slot));
+        Ok(Some(slot))
+    }
+}
+
+/// An image from a buffer view, a `data:` URI or a file beside the model, as it is without a sampler.
+fn decode(document: &Document, number: usize) -> Result<Texture, LoadError> {
+    let fail = |fault: String| document.malformed(fault);
+    let image = document.root.images.get(number).ok_or_else(|| fail("does not exist".to_owned()))?;
+    let mut name = image.name.clone().unwrap_or_default();
+    if name.is_empty() {
+        name = format!("#{number}");
+    }
+    let limits = document.limits;
+    let (width, height, rgba8) = match (image.buffer_view, image.uri.as_deref()) {
+        (Some(view), _) => {
+            image_file::decode(files::view(document, view).map_err(fail)?.0, &name, document.path, limits)?
+        }
+        (None, Some(uri)) => match files::data_uri(uri) {
+            Some(bytes) => image_file::decode(&bytes.map_err(fail)?, &name, document.path, limits)?,
+            None => {
+                let file = files::resolve(document.path, uri).map_err(fail)?;
+                name = files::shortened(uri);
+                image_file::decode(&files::read(&file, limits)?, &name, &file, limits)?
+            }
+        },
+        (None, None) => return Err(fail("neither a buffer view nor a URI".to_owned())),
+    };
+    Ok(Texture { name, width, height, rgba8, wrap: [Wrap::Repeat; 2], smooth: true })
+}
+
+fn alpha_mode(material: &json::Material) -> Option<AlphaMode> {
+    Some(match material.alpha_mode {
+        Checked::Valid(material::AlphaMode::Opaque) => AlphaMode::Opaque,
+        Checked::Valid(material::AlphaMode::Mask) => {
+            AlphaMode::Mask { cutoff: material.alpha_cutoff.unwrap_or_default().0 }
+        }
+        Checked::Valid(material::AlphaMode::Blend) => AlphaMode::Blend,
+        Checked::Invalid => return None,
+    })
+}
+
+fn wrap(mode: &Checked<WrappingMode>) -> Wrap {
+    match mode {
+        Checked::Valid(WrappingMode::ClampToEdge) => Wrap::Clamp,
+        Checked::Valid(WrappingMode::MirroredRepeat) => Wrap::Mirror,
+        // What is unknown is as if it were not stated.
+        Checked::Valid(WrappingMode::Repeat) | Checked::Invalid => Wrap::Repeat,
+    }
+}
+
+/// `None` for a transform that is not finite.
+///
+/// The extension says "counter-clockwise", with v downwards, and that its example of a quarter turn shows the lower
+/// left quadrant: the turn takes u towards -v. (Its matrix, read as GLSL's columns, turns the other way.)
+fn uv_source(info: &Info) -> Option<UvSource> {
+    let mut source = UvSource { set: info.tex_coord, wanted: true, transform: None };
+    if let Some(transform) = info.extensions.as_ref().and_then(|e| e.texture_transform.as_ref()) {
+        let (sine, cosine) = transform.rotation.0.sin_cos();
+        let [scale_u, scale_v] = transform.scale.0;
+        let columns = [
+            Vec2::new(cosine, -sine) * scale_u,
+            Vec2::new(sine, cosine) * scale_v,
+            Vec2::from_array(transform.offset.0),
+        ];
+        if !columns.iter().all(|c| c.is_finite()) {
+            return None;
+        }
+        source.set = transform.tex_coord.unwrap_or(source.set);
+        source.transform = Some(columns);
+    }
+    Some(source)
+}

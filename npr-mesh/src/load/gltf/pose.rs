@@ -1,0 +1,246 @@
+//! Where the vertices of a mesh are: morph targets, then the skin or the node (glTF 2.0, 3.7).
+
+use super::Document;
+use super::accessor::{Accessor, Integers};
+use super::scene::Nodes;
+use glam::{DMat3, DMat4, DVec3, Vec3};
+use gltf::json::mesh::{Primitive, Semantic};
+use gltf::json::validation::Checked;
+use gltf::json::{self, Index};
+
+/// What takes a mesh to the world.
+pub(super) enum Placement<'a> {
+    /// One matrix for all of it.
+    Rigid(DMat4),
+    /// The matrices of a skin's joints, blended for each vertex. The transform of the node that has the mesh does
+    /// not count (3.7.3.3 "Skinned Mesh Attributes").
+    Skinned(&'a [DMat4]),
+}
+
+/// Which faces a placement turns inside out, so that their winding is to be reversed (3.7.4 "Instantiation").
+pub(super) enum Mirrored {
+    /// All or none.
+    All(bool),
+    /// By a face's first vertex: the matrices of a skin's joints may differ, and the specification is silent.
+    ByVertex(Vec<bool>),
+}
+
+impl Mirrored {
+    pub fn face(&self, first_vertex: u32) -> bool {
+        match self {
+            Mirrored::All(all) => *all,
+            Mirrored::ByVertex(vertices) => vertices[first_vertex as usize],
+        }
+    }
+}
+
+/// The matrix of each joint: world from joint times the inverse of the binding pose.
+///
+/// # Errors
+/// A joint or accessor that does not exist, or too few matrices.
+pub(super) fn joint_matrices(
+    document: &Document,
+    nodes: &Nodes,
+    index: Index<json::Skin>,
+) -> Result<Vec<DMat4>, String> {
+    let number = index.value();
+    let skin = document.root.get(index).ok_or_else(|| format!("skin {number} does not exist"))?;
+    let fail = |fault: String| format!("skin {number}: {fault}");
+    let inverse_binds = match skin.inverse_bind_matrices {
+        None => Vec::new(),
+        Some(accessor) => {
+            let accessor = Accessor::new(document, accessor).map_err(fail)?;
+            if !accessor.stored || accessor.count < skin.joints.len() as u64 {
+                let fault = format!("{} inverse bind matrices for {} joints", accessor.count, skin.joints.len());
+                return Err(fail(accessor.fault(&fault)));
+            }
+            accessor.floats::<16>(Integers::AsStated).map_err(fail)?
+        }
+    };
+    let matrix = |(at, joint): (usize, &Index<json::Node>)| {
+        let joint = joint.value();
+        let world =
+            nodes.world_from_node.get(joint).ok_or_else(|| fail(format!("its joint {joint} does not exist")))?;
+        // Without the accessor, all of them are the identity.
+        Ok(inverse_binds.get(at).map_or(*world, |bind| *world * DMat4::from_cols_array(&bind.map(f64::from))))
+    };
+    skin.joints.iter().enumerate().map(matrix).collect()
+}
+
+/// Adds the displacements of the morph targets (3.7.2.2 "Morph Targets").
+///
+/// # Errors
+/// An accessor that does not fit.
+pub(super) fn morph(
+    document: &Document,
+    primitive: &Primitive,
+    weights: &[f32],
+    positions: &mut [[f32; 3]],
+    normals: &mut [[f32; 3]],
+) -> Result<(), String> {
+    let targets = primitive.targets.as_deref().unwrap_or(&[]);
+    for (number, (target, &weight)) in targets.iter().zip(weights).enumerate() {
+        if weight == 0.0 {
+            continue;
+        }
+        for (what, accessor, values) in
+            [("POSITION", target.positions, &mut *positions), ("NORMAL", target.normals, &mut *normals)]
+        {
+            // Without normals of its own, the mesh gets made ones, from the displaced positions.
+            let Some(accessor) = accessor.filter(|_| !values.is_empty()) else { continue };
+            let fail = |fault: String| format!("{what} of morph target {number}: {fault}");
+            let accessor = Accessor::new(document, accessor).map_err(fail)?;
+            if accessor.count != values.len() as u64 {
+                let fault = format!("{} elements for {} vertices", accessor.count, values.len());
+                return Err(fail(accessor.fault(&fault)));
+            }
+            for (value, delta) in values.iter_mut().zip(accessor.floats::<3>(Integers::AsStated).map_err(fail)?) {
+                for (v, d) in value.iter_mut().zip(delta) {
+                    *v += weight * d;
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Which joints move a vertex, and how much: the sets `JOINTS_n` and `WEIGHTS_n`.
+pub(super) struct Influences {
+    sets: Vec<InfluenceSet>,
+}
+
+/// Four joints for each vertex, with their weights.
+struct InfluenceSet {
+    joints: Vec<[u32; 4]>,
+    weights: Vec<[f32; 4]>,
+}
+
+impl Influences {
+    /// `None` for a primitive without them.
+    ///
+    /// # Errors
+    /// An accessor that does not fit, or joints without weights.
+    pub fn read(document: &Document, primitive: &Primitive, vertices: usize) -> Result<Option<Self>, String> {
+        let mut sets = Vec::new();
+        for number in 0.. {
+            let find = |semantic| primitive.attributes.get(&Checked::Valid(semantic)).copied();
+            let (joints, weights) = match (find(Semantic::Joints(number)), find(Semantic::Weights(number))) {
+                (None, None) => break,
+                (Some(joints), Some(weights)) => (joints, weights),
+                _ => return Err(format!("only one of JOINTS_{number} and WEIGHTS_{number}")),
+            };
+            let open = |what: &str, index| {
+                let fail = |fault: String| format!("{what}_{number}: {fault}");
+                let accessor = Accessor::new(document, index).map_err(fail)?;
+                if accessor.count != vertices as u64 {
+                    let fault = format!("{} elements for {vertices} vertices", accessor.count);
+                    return Err(fail(accessor.fault(&fault)));
+                }
+                Ok(accessor)
+            };
+            let fail = |fault: String| format!("joints and weights {number}: {fault}");
+            sets.push(InfluenceSet {
+                joints: open("JOINTS", joints)?.integers::<4>().map_err(fail)?,
+                weights: open("WEIGHTS", weights)?.floats::<4>(Integers::Normalized).map_err(fail)?,
+            });
+        }
+        Ok((!sets.is_empty()).then_some(Self { sets }))
+    }
+
+    /// The weighted mean of a vertex's joint matrices, whatever the weights sum up to. A vertex without any weight
+    /// follows its first joint. A joint of weight zero need not exist.
+    ///
+    /// # Errors
+    /// A joint that the skin does not have, or a weight that is not a number.
+    fn blend(&self, vertex: usize, joints: &[DMat4]) -> Result<DMat4, String> {
+        let (mut sum, mut blended) = (0.0, DMat4::ZERO);
+        let find = |joint: u32| {
+            let found = joints.get(joint as usize);
+            found.ok_or_else(|| format!("vertex {vertex}: joint {joint} of a skin with {}", joints.len()))
+        };
+        for set in &self.sets {
+            for (&joint, &weight) in set.joints[vertex].iter().zip(&set.weights[vertex]) {
+                if weight != 0.0 {
+                    sum += f64::from(weight);
+                    blended += *find(joint)? * f64::from(weight);
+                }
+            }
+        }
+        if !sum.is_finite() {
+            return Err(format!("vertex {vertex}: a weight is not finite"));
+        }
+        if sum == 0.0 {
+            return find(self.sets[0].joints[vertex][0]).copied();
+        }
+        // Division would cost the last digit of positions whose weights are in order.
+        Ok(if sum == 1.0 { blended } else { blended * (1.0 / sum) })
+    }
+}
+
+/// Moves positions and normals (empty, or as many) to the world and appends them; normals that are absent or have no
+/// direction become zero.
+///
+/// # Errors
+/// A vertex whose joints do not exist.
+pub(super) fn place(
+    placement: &Placement,
+    influences: Option<&Influences>,
+    positions: &[[f32; 3]],
+    normals: &[[f32; 3]],
+    (to_positions, to_normals): (&mut Vec<Vec3>, &mut Vec<Vec3>),
+) -> Result<Mirrored, String> {
+    let end = to_positions.len() + positions.len();
+    to_positions.reserve(positions.len());
+    to_normals.reserve(positions.len());
+    let mirrored = match (placement, influences) {
+        (Placement::Skinned(joints), Some(influences)) => {
+            let mut mirrored = Vec::with_capacity(positions.len());
+            for (vertex, position) in positions.iter().enumerate() {
+                let matrix = influences.blend(vertex, joints)?;
+                let turn = Turn::new(&matrix);
+                to_positions.push(moved(&matrix, position));
+                to_normals.extend(normals.get(vertex).map(|normal| turn.normal(normal)));
+                mirrored.push(turn.mirrors);
+            }
+            Mirrored::ByVertex(mirrored)
+        }
+        (Placement::Rigid(matrix), _) => {
+            let turn = Turn::new(matrix);
+            to_positions.extend(positions.iter().map(|position| moved(matrix, position)));
+            to_normals.extend(normals.iter().map(|normal| turn.normal(normal)));
+            Mirrored::All(turn.mirrors)
+        }
+        (Placement::Skinned(_), None) => return Err("a skin, and neither JOINTS_0 nor WEIGHTS_0".to_owned()),
+    };
+    to_normals.resize(end, Vec3::ZERO);
+    Ok(mirrored)
+}
+
+fn moved(matrix: &DMat4, position: &[f32; 3]) -> Vec3 {
+    matrix.transform_point3(DVec3::from_array(position.map(f64::from))).as_vec3()
+}
+
+/// What a matrix does to directions.
+struct Turn {
+    /// The inverse transpose times a positive number, or zero where there is no inverse.
+    world_from_normal: DMat3,
+    mirrors: bool,
+}
+
+impl Turn {
+    fn new(matrix: &DMat4) -> Self {
+        let linear = DMat3::from_mat4(*matrix);
+        let [x, y, z] = [linear.x_axis, linear.y_axis, linear.z_axis];
+        // The columns of the inverse transpose times the determinant.
+        let cofactors = [y.cross(z), z.cross(x), x.cross(y)];
+        let determinant = x.dot(cofactors[0]);
+        let sign = if determinant == 0.0 || !determinant.is_finite() { 0.0 } else { determinant.signum() };
+        let [x, y, z] = cofactors.map(|c| c * sign);
+        Self { world_from_normal: DMat3::from_cols(x, y, z), mirrors: determinant < 0.0 }
+    }
+
+    fn normal(&self, normal: &[f32; 3]) -> Vec3 {
+        let turned = self.world_from_normal * DVec3::from_array(normal.map(f64::from));
+        turned.try_normalize().map_or(Vec3::ZERO, DVec3::as_vec3)
+    }
+}

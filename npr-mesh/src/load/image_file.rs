@@ -1,0 +1,78 @@
+//! PNG and JPEG bytes to RGBA8.
+
+use crate::{Limits, LoadError};
+use image::{DynamicImage, ImageDecoder, ImageReader};
+use std::io::Cursor;
+use std::path::Path;
+
+/// Width, height and `width * height * 4` bytes, rows from the top, of a PNG or JPEG file in memory.
+///
+/// The kind is told by the first bytes, not by a file ending. The size that the header states is compared with
+/// [`Limits::texels`] before memory is reserved for it. 16-bit samples are rounded to 8; colour profiles and Exif
+/// orientation are ignored, as glTF 2.0 prescribes (3.8.2).
+///
+/// # Errors
+/// [`LoadError::TooLarge`] and [`LoadError::Malformed`] with `path`, the second naming the image as `name`.
+pub(super) fn decode(bytes: &[u8], name: &str, path: &Path, limits: &Limits) -> Result<(u32, u32, Vec<u8>), LoadError> {
+    let malformed = |why: String| LoadError::Malformed { path: path.to_owned(), fault: format!("image {name}: {why}") };
+    let mut reader =
+        ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| malformed(e.to_string()))?;
+    // Eight bytes per texel are the most that a format here stores; the rest is room for the decoders' own tables.
+    let mut decoder_limits = image::Limits::default();
+    decoder_limits.max_alloc = Some(limits.texels.saturating_mul(16).saturating_add(64 << 20));
+    reader.limits(decoder_limits);
+    let decoder = reader.into_decoder().map_err(|e| malformed(e.to_string()))?;
+    let (width, height) = decoder.dimensions();
+    let texels = u64::from(width) * u64::from(height);
+    if texels > limits.texels {
+        return Err(LoadError::TooLarge {
+            path: path.to_owned(),
+            what: "texels in an image",
+            count: texels,
+            limit: limits.texels,
+        });
+    }
+    if texels == 0 {
+        return Err(malformed("no texel in it".to_owned()));
+    }
+    let image = DynamicImage::from_decoder(decoder).map_err(|e| malformed(e.to_string()))?;
+    Ok((width, height, image.into_rgba8().into_raw()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use image::{ImageFormat, Rgba, RgbaImage};
+
+    fn png(width: u32, height: u32) -> Vec<u8> {
+        let image = RgbaImage::from_fn(width, height, |x, y| Rgba([x as u8, y as u8, 7, 200]));
+        let mut bytes = Cursor::new(Vec::new());
+        image.write_to(&mut bytes, ImageFormat::Png).unwrap();
+        bytes.into_inner()
+    }
+
+    #[test]
+    fn a_png_comes_back_with_its_rows_from_the_top() {
+        let (width, height, rgba8) = decode(&png(3, 2), "a", Path::new("m.obj"), &Limits::default()).unwrap();
+        assert_eq!((width, height), (3, 2));
+        let texels: Vec<_> = rgba8.chunks(4).map(|t| [t[0], t[1], t[2], t[3]]).collect();
+        assert_eq!(texels[4], [1, 1, 7, 200]);
+    }
+
+    #[test]
+    fn too_many_texels_are_refused() {
+        let limits = Limits { texels: 5, ..Limits::default() };
+        let error = decode(&png(3, 2), "a", Path::new("m.obj"), &limits).unwrap_err();
+        assert!(matches!(error, LoadError::TooLarge { count: 6, limit: 5, .. }), "{error}");
+    }
+
+    #[test]
+    fn garbage_is_malformed_and_named() {
+        let whole = png(8, 8);
+        for bytes in [&b""[..], b"not an image at all", &whole[..20], &whole[..whole.len() - 30]] {
+            let error = decode(bytes, "wall", Path::new("m.obj"), &Limits::default()).unwrap_err();
+            assert!(matches!(error, LoadError::Malformed { .. }), "{error}");
+            assert!(error.to_string().contains("wall") && error.to_string().contains("m.obj"), "{error}");
+        }
+    }
+}

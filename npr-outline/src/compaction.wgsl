@@ -1,0 +1,39 @@
+// Which edges are lines, written close together, and the arguments of the draw call that draws them. Appended to
+// `line.wgsl`. The twin of `ContourEdges::scan`; the order of the lines is not that of the edges.
+
+@group(0) @binding(0) var<uniform> view: OutlineView;
+@group(1) @binding(0) var<storage, read> planes: array<vec4<f32>>;
+@group(1) @binding(1) var<storage, read_write> lines: array<u32>;
+
+struct DrawArguments {
+    vertex_count: u32,
+    instance_count: atomic<u32>,
+    first_vertex: u32,
+    first_instance: u32,
+}
+@group(1) @binding(2) var<storage, read_write> arguments: DrawArguments;
+
+var<workgroup> found: atomic<u32>;
+var<workgroup> base: u32;
+
+@compute @workgroup_size(64)
+fn compact(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_index) local: u32) {
+    let edge = id.y * view.row_stride + id.x;
+    var is_line = edge < view.always_count;
+    if !is_line && edge < view.edge_count {
+        is_line = outline_is_silhouette(planes[2u * edge], planes[2u * edge + 1u], view.local_eye);
+    }
+    // One addition to the common counter a workgroup instead of one a line.
+    var slot = 0u;
+    if is_line {
+        slot = atomicAdd(&found, 1u);
+    }
+    workgroupBarrier();
+    if local == 0u {
+        base = atomicAdd(&arguments.instance_count, atomicLoad(&found));
+    }
+    workgroupBarrier();
+    if is_line {
+        lines[base + slot] = edge;
+    }
+}

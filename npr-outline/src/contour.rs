@@ -1,0 +1,306 @@
+//! Which edges are lines: silhouettes for one eye, and the creases and boundaries that are lines for every eye.
+//!
+//! # The test
+//!
+//! An edge is a silhouette where one of its faces is turned towards the eye and the other away from it (Card &
+//! Mitchell 2002, listing 1). The listing multiplies two dot products with the view vector at a vertex and asks for a
+//! product below zero. That loses an edge whose face is seen exactly edge-on, and, with normals that are not
+//! quite perpendicular to their face, lets the two ends of one edge disagree, which tears the fin.
+//!
+//! Here a face is classified as a whole: by the side of its plane on which the eye is. The plane's four numbers
+//! are the same in each of the face's edges, so all of them, and both ends of each, agree by construction, and
+//! silhouettes are closed loops even where a face is within rounding of edge-on. With the eye as a homogeneous
+//! point, a perspective and a parallel view are one formula.
+//!
+//! # The records
+//!
+//! 32 bytes an edge: two planes. Edges that are lines for every eye (boundaries, non-manifold edges, creases) come
+//! first, so that a scan touches only those that can change.
+
+use crate::OutlineError;
+use glam::{DVec3, DVec4, Vec3, Vec4};
+use npr_mesh::edges::{EdgeKind, Edges, NO_FACE};
+use npr_mesh::{AlphaMode, Model};
+use std::collections::HashMap;
+
+/// Why an edge is a line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(u32)]
+pub enum LineKind {
+    /// It parts what is turned towards the eye from what is turned away.
+    Silhouette = 0,
+    /// It has one face.
+    Boundary = 1,
+    /// Its faces meet at more than the crease angle, or there are more than two of them.
+    Crease = 2,
+    /// Its faces are of two materials.
+    MaterialBorder = 3,
+}
+
+impl LineKind {
+    /// All kinds, each at the index of its number.
+    pub const ALL: [Self; 4] = [Self::Silhouette, Self::Boundary, Self::Crease, Self::MaterialBorder];
+}
+
+/// The planes of an edge's two faces: `n · p + d` with a unit normal `n`, relative to [`ContourEdges::origin`].
+///
+/// The second is turned so that both would be wound alike; at a boundary it is the negated first, so that the edge
+/// is a silhouette for every eye (the chapter's step 1b).
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub struct EdgePlanes {
+    /// Of the first face: nx, ny, nz, d.
+    pub plane0: [f32; 4],
+    /// Of the second face.
+    pub plane1: [f32; 4],
+}
+
+const _: () = assert!(size_of::<EdgePlanes>() == 32);
+
+/// What makes an edge a line besides being a silhouette.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContourOptions {
+    /// An edge whose faces meet at more than this angle is a crease. 0..=π.
+    pub crease_angle_rad: f32,
+    /// Whether edges between two materials are lines.
+    pub material_borders: bool,
+}
+
+impl Default for ContourOptions {
+    /// Creases over 45°, no material borders.
+    fn default() -> Self {
+        Self { crease_angle_rad: 45f32.to_radians(), material_borders: false }
+    }
+}
+
+/// The edges of a model that can be lines, ready for scanning.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ContourEdges {
+    /// What the planes are relative to: near the model, so that their last number keeps its precision.
+    pub origin: Vec3,
+    /// Per edge its two planes.
+    pub planes: Vec<EdgePlanes>,
+    /// Per edge its two vertices, in the order in which the first face runs over them.
+    pub ends: Vec<[u32; 2]>,
+    /// Per edge [`LineKind`] (as a number, in the lower 8 bits) that it has when it is not a silhouette, and flags.
+    pub traits: Vec<u32>,
+    /// Per edge its first face.
+    pub first_face: Vec<u32>,
+    /// The first so many edges are lines for every eye.
+    pub always: usize,
+}
+
+/// In [`ContourEdges::traits`]: the edge is a line for every eye.
+pub const TRAIT_ALWAYS: u32 = 1 << 8;
+/// In [`ContourEdges::traits`]: all faces of the edge are cut out by alpha, so the line is seen only where they are.
+pub const TRAIT_CUT_OUT: u32 = 1 << 9;
+
+/// Sorts the edges of a model by whether they are lines for every eye, and makes their planes.
+///
+/// `edges`: of this model, best found with [`npr_mesh::edges::EdgeOptions::skip_redundant`].
+///
+/// A face of zero area borrows the plane of its neighbour over its longest edge, so that a sliver between two
+/// faces passes their silhouette and their crease on instead of swallowing them.
+///
+/// # Errors
+/// [`OutlineError::CreaseAngle`].
+pub fn contour_edges(
+    model: &Model,
+    edges: &Edges,
+    options: &ContourOptions,
+) -> Result<ContourEdges, OutlineError> {
+    let angle_rad = options.crease_angle_rad;
+    if !(0.0..=std::f32::consts::PI).contains(&angle_rad) {
+        return Err(OutlineError::CreaseAngle { angle_rad });
+    }
+    let origin = model.bounds().map_or(Vec3::ZERO, |(low, high)| low.midpoint(high));
+    let cos_crease = angle_rad.cos();
+    let lent = borrowed_normals(&model.positions, edges);
+    let cut_out: Vec<bool> =
+        model.materials.iter().map(|m| matches!(m.alpha_mode, AlphaMode::Mask { .. })).collect();
+    let normal_of = |face: u32| {
+        let own = edges.face_normals[face as usize];
+        if own == Vec3::ZERO { lent.get(&face).copied().unwrap_or(Vec3::ZERO) } else { own }
+    };
+    let mut contours = ContourEdges { origin, ..Default::default() };
+    contours.planes.reserve_exact(edges.edges.len());
+    contours.ends.reserve_exact(edges.edges.len());
+    contours.traits.reserve_exact(edges.edges.len());
+    contours.first_face.reserve_exact(edges.edges.len());
+    for want_always in [true, false] {
+        for edge in &edges.edges {
+            let [first, second] = edge.faces;
+            let n0 = normal_of(first);
+            let (line, n1) = match edge.kind() {
+                EdgeKind::Boundary => (Some(LineKind::Boundary), -n0),
+                EdgeKind::NonManifold => (Some(LineKind::Crease), normal_of(second)),
+                EdgeKind::TwoFace => {
+                    let n1 = if edge.wound_oppositely() { -normal_of(second) } else { normal_of(second) };
+                    let cos = if edge.cos_dihedral.is_nan() { n0.dot(n1) } else { edge.cos_dihedral };
+                    let borrowed_nothing = n0 == Vec3::ZERO || n1 == Vec3::ZERO;
+                    let line = if cos < cos_crease && !borrowed_nothing {
+                        Some(LineKind::Crease)
+                    } else if options.material_borders && edge.joins_two_materials() {
+                        Some(LineKind::MaterialBorder)
+                    } else {
+                        None
+                    };
+                    (line, n1)
+                }
+            };
+            if line.is_some() != want_always {
+                continue;
+            }
+            let is_cut_out =
+                |face: u32| face == NO_FACE || cut_out[model.face_material[face as usize] as usize];
+            let mut flags = line.map_or(0, |kind| kind as u32 | TRAIT_ALWAYS);
+            if is_cut_out(first) && is_cut_out(second) {
+                flags |= TRAIT_CUT_OUT;
+            }
+            let plane = |normal: Vec3, face: u32| {
+                let on = plane_point(model, face) - origin.as_dvec3();
+                normal.extend(-normal.as_dvec3().dot(on) as f32).to_array()
+            };
+            let plane0 = plane(n0, first);
+            let plane1 = if second == NO_FACE { plane0.map(|x| -x) } else { plane(n1, second) };
+            contours.planes.push(EdgePlanes { plane0, plane1 });
+            let [low, high] = edge.ends;
+            contours.ends.push(if edge.first_face_ascends() { [low, high] } else { [high, low] });
+            contours.traits.push(flags);
+            contours.first_face.push(first);
+        }
+        if want_always {
+            contours.always = contours.ends.len();
+        }
+    }
+    Ok(contours)
+}
+
+/// A point of the face's plane, the same for all of the face's edges: its first corner, or of a polygon, which may be
+/// warped, the mean of its triangles' corners.
+fn plane_point(model: &Model, face: u32) -> DVec3 {
+    let corner = |v: u32| model.positions[v as usize].as_dvec3();
+    let face = face as usize;
+    if model.face_polygon.is_empty() {
+        return corner(model.faces[face][0]);
+    }
+    let polygon = model.face_polygon[face];
+    let first = model.face_polygon[..face].iter().rposition(|&p| p != polygon).map_or(0, |before| before + 1);
+    let count = model.face_polygon[first..].iter().take_while(|&&p| p == polygon).count();
+    let sum: DVec3 = model.faces[first..first + count].iter().flatten().map(|&v| corner(v)).sum();
+    sum / (3 * count) as f64
+}
+
+/// For each face of zero area the normal, wound like the face, of the neighbour over its longest edge.
+fn borrowed_normals(positions: &[Vec3], edges: &Edges) -> HashMap<u32, Vec3> {
+    let mut lenders = HashMap::<u32, (f64, u32, bool)>::new();
+    if !edges.face_normals.contains(&Vec3::ZERO) {
+        return HashMap::new();
+    }
+    for edge in edges.edges.iter().filter(|edge| edge.kind() == EdgeKind::TwoFace) {
+        let [p, q] = edge.ends.map(|v| positions[v as usize].as_dvec3());
+        let length = p.distance_squared(q);
+        let [first, second] = edge.faces;
+        for (face, other) in [(first, second), (second, first)] {
+            if edges.face_normals[face as usize] == Vec3::ZERO
+                && lenders.get(&face).is_none_or(|&(longest, ..)| length > longest)
+            {
+                lenders.insert(face, (length, other, edge.wound_oppositely()));
+            }
+        }
+    }
+    let mut lent = HashMap::new();
+    for &face in lenders.keys() {
+        // Slivers may lean on slivers; a ring of them ends after as many steps as there are.
+        let (mut at, mut turned) = (face, false);
+        for _ in 0..=lenders.len() {
+            let Some(&(_, lender, oppositely)) = lenders.get(&at) else { break };
+            turned ^= oppositely;
+            at = lender;
+            let normal = edges.face_normals[at as usize];
+            if normal != Vec3::ZERO {
+                lent.insert(face, if turned { -normal } else { normal });
+                break;
+            }
+        }
+    }
+    lent
+}
+
+/// On which side of a plane a (homogeneous) eye is: positive in front, negative behind, times its distance.
+///
+/// `eye`: a point with w = 1, or for a parallel view the direction to the viewer with w = 0, relative to
+/// [`ContourEdges::origin`]. The sum is in this order so that the WGSL twin gives the same bits.
+#[inline]
+pub fn outline_facing(plane: [f32; 4], eye: Vec4) -> f32 {
+    plane[0] * eye.x + plane[1] * eye.y + plane[2] * eye.z + plane[3] * eye.w
+}
+
+/// Whether exactly one of the two faces is turned towards the eye. A face seen exactly edge-on counts as turned
+/// towards it, so that no loop of silhouettes is interrupted there.
+#[inline]
+pub fn outline_is_silhouette(planes: &EdgePlanes, eye: Vec4) -> bool {
+    (outline_facing(planes.plane0, eye) >= 0.0) != (outline_facing(planes.plane1, eye) >= 0.0)
+}
+
+impl ContourEdges {
+    /// The eye in the planes' own coordinates. `eye` is a world-space point with w = 1 or direction with w = 0.
+    pub fn local_eye(&self, eye: DVec4) -> Vec4 {
+        (eye - self.origin.as_dvec3().extend(0.0) * eye.w).as_vec4()
+    }
+
+    /// Writes the numbers of all edges that are lines for this eye into `lines`, ascending.
+    ///
+    /// `eye`: world space, a point with w = 1, or for a parallel view the direction to the viewer with w = 0.
+    /// `lines` is emptied first; at most as many as there are edges.
+    pub fn scan(&self, eye: DVec4, lines: &mut Vec<u32>) {
+        let eye = self.local_eye(eye);
+        lines.clear();
+        lines.extend(0..self.always as u32);
+        // Two passes over blocks: the test without branches, which the compiler turns into vector code, then
+        // the few hits. Only about one edge in fifty of a scanned model is a hit.
+        const BLOCK: usize = 64;
+        for (block_number, block) in self.planes[self.always..].chunks(BLOCK).enumerate() {
+            let mut hits = 0u64;
+            for (bit, planes) in block.iter().enumerate() {
+                hits |= u64::from(outline_is_silhouette(planes, eye)) << bit;
+            }
+            let first = (self.always + block_number * BLOCK) as u32;
+            while hits != 0 {
+                lines.push(first + hits.trailing_zeros());
+                hits &= hits - 1;
+            }
+        }
+    }
+
+    /// Unit normals of an edge's faces, wound alike; the second is zero at a boundary.
+    pub fn normals(&self, edge: usize) -> [Vec3; 2] {
+        let EdgePlanes { plane0, plane1 } = self.planes[edge];
+        let normal = |plane: [f32; 4]| Vec3::new(plane[0], plane[1], plane[2]);
+        let boundary = self.traits[edge] & 3 == LineKind::Boundary as u32;
+        [normal(plane0), if boundary { Vec3::ZERO } else { normal(plane1) }]
+    }
+
+    /// What kind of line an edge is for this eye (in the planes' own coordinates, [`ContourEdges::local_eye`]),
+    /// or `None` if it is none.
+    pub fn kind(&self, edge: usize, eye: Vec4) -> Option<LineKind> {
+        let traits = self.traits[edge];
+        let own = LineKind::ALL[(traits & 3) as usize];
+        // A boundary's planes make it a silhouette for every eye, but it is not one.
+        if own != LineKind::Boundary && outline_is_silhouette(&self.planes[edge], eye) {
+            Some(LineKind::Silhouette)
+        } else {
+            (traits & TRAIT_ALWAYS != 0).then_some(own)
+        }
+    }
+}
+
+/// The side of a triangle's plane on which a (homogeneous) eye is, in f64 from its corners: the truth that the
+/// records are measured against. Positive in front.
+pub fn facing_exact([a, b, c]: [Vec3; 3], eye: DVec4) -> f64 {
+    let [a, b, c] = [a.as_dvec3(), b.as_dvec3(), c.as_dvec3()];
+    (b - a).cross(c - a).dot(eye.truncate() - a * eye.w)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,161 @@
+// A line on the screen: an edge clipped, projected, widened, and hidden where its centreline is hidden.
+// The twin of `segment.rs`, with the same names. No bindings and no entry points.
+
+struct OutlineView {
+    clip_from_world: mat4x4<f32>,
+    // Width and height of the picture in px.
+    viewport_px: vec2<f32>,
+    // Depth-buffer units of one px along the view: depth * x + y.
+    depth_per_px: vec2<f32>,
+    // Width in px by kind: silhouette, boundary, crease, material border.
+    width_px: vec4<f32>,
+    ink: vec4<f32>,
+    // The eye relative to the planes' origin: a point with w = 1 or a direction with w = 0.
+    local_eye: vec4<f32>,
+    // Edges, those of them that are lines for every eye, and the number of edges in a row of workgroups.
+    edge_count: u32,
+    always_count: u32,
+    row_stride: u32,
+    padding: u32,
+}
+
+struct OutlineSegment {
+    ends_px: vec4<f32>,
+    depths: vec2<f32>,
+    slopes: vec2<f32>,
+    visible: bool,
+}
+
+const OUTLINE_MAX_SLOPE: f32 = 8.0;
+const OUTLINE_DEPTH_SLACK_PX: f32 = 0.5;
+const OUTLINE_TRAIT_ALWAYS: u32 = 256u;
+const OUTLINE_TRAIT_CUT_OUT: u32 = 512u;
+const OUTLINE_BOUNDARY: u32 = 1u;
+
+// On which side of a plane the eye is. The order of the sum is that of the Rust twin.
+fn outline_facing(plane: vec4<f32>, eye: vec4<f32>) -> f32 {
+    return plane.x * eye.x + plane.y * eye.y + plane.z * eye.z + plane.w * eye.w;
+}
+
+fn outline_is_silhouette(plane0: vec4<f32>, plane1: vec4<f32>, eye: vec4<f32>) -> bool {
+    return (outline_facing(plane0, eye) >= 0.0) != (outline_facing(plane1, eye) >= 0.0);
+}
+
+// The kind of line that an edge with these traits is for this eye.
+fn outline_kind(traits: u32, plane0: vec4<f32>, plane1: vec4<f32>, eye: vec4<f32>) -> u32 {
+    let own = traits & 3u;
+    if own != OUTLINE_BOUNDARY && outline_is_silhouette(plane0, plane1, eye) {
+        return 0u;
+    }
+    return own;
+}
+
+// The part of a segment before the near plane and within the widened viewport: fractions, the first above the second
+// where nothing is left.
+fn outline_clip(a: vec4<f32>, b: vec4<f32>, viewport_px: vec2<f32>, margin_px: f32) -> vec2<f32> {
+    let guard = vec2<f32>(1.0) + 2.0 * margin_px / viewport_px;
+    var in_a = array<f32, 5>(a.w - a.z, guard.x * a.w - a.x, guard.x * a.w + a.x, guard.y * a.w - a.y, guard.y * a.w + a.y);
+    var in_b = array<f32, 5>(b.w - b.z, guard.x * b.w - b.x, guard.x * b.w + b.x, guard.y * b.w - b.y, guard.y * b.w + b.y);
+    var part = vec2<f32>(0.0, 1.0);
+    for (var i = 0; i < 5; i++) {
+        if in_a[i] < 0.0 && in_b[i] < 0.0 {
+            return vec2<f32>(1.0, 0.0);
+        }
+        if in_a[i] < 0.0 {
+            part.x = max(part.x, in_a[i] / (in_a[i] - in_b[i]));
+        }
+        if in_b[i] < 0.0 {
+            part.y = min(part.y, in_a[i] / (in_a[i] - in_b[i]));
+        }
+    }
+    return part;
+}
+
+// A clip-space point on the screen: px, and depth.
+fn outline_screen(clip: vec4<f32>, viewport_px: vec2<f32>) -> vec3<f32> {
+    let ndc = clip.xyz / clip.w;
+    return vec3<f32>(vec2<f32>(0.5 + 0.5 * ndc.x, 0.5 - 0.5 * ndc.y) * viewport_px, ndc.z);
+}
+
+fn outline_direction(ends_px: vec4<f32>) -> vec2<f32> {
+    let span = ends_px.zw - ends_px.xy;
+    let squared = dot(span, span);
+    if squared > 0.0 {
+        return span * inverseSqrt(squared);
+    }
+    return vec2<f32>(1.0, 0.0);
+}
+
+fn outline_cross(a: vec2<f32>, b: vec2<f32>) -> f32 {
+    return a.x * b.y - a.y * b.x;
+}
+
+// (offset, slope) of a face beside the line.
+fn outline_face_slope(inward: vec3<f32>, middle: vec4<f32>, segment: OutlineSegment, view: OutlineView) -> vec2<f32> {
+    let step = view.clip_from_world * vec4<f32>(inward, 0.0);
+    let moved = (step.xyz * middle.w - middle.xyz * step.w) / (middle.w * middle.w);
+    let moved_px = vec2<f32>(0.5 * moved.x, -0.5 * moved.y) * view.viewport_px;
+    let direction = outline_direction(segment.ends_px);
+    let span = length(segment.ends_px.zw - segment.ends_px.xy);
+    let along = dot(moved_px, direction);
+    let across = outline_cross(direction, moved_px);
+    var depth_along = 0.0;
+    if span > 0.0 {
+        depth_along = (segment.depths.y - segment.depths.x) / span;
+    }
+    if across == 0.0 {
+        return vec2<f32>(0.0);
+    }
+    return vec2<f32>(across, (moved.z - along * depth_along) / abs(across));
+}
+
+fn outline_project(
+    end0: vec3<f32>, end1: vec3<f32>, normal0: vec3<f32>, normal1: vec3<f32>, width_px: f32, view: OutlineView,
+) -> OutlineSegment {
+    var segment: OutlineSegment;
+    var a = view.clip_from_world * vec4<f32>(end0, 1.0);
+    var b = view.clip_from_world * vec4<f32>(end1, 1.0);
+    let part = outline_clip(a, b, view.viewport_px, 0.5 * width_px + 2.0);
+    let span = b - a;
+    b = a + span * part.y;
+    a = a + span * part.x;
+    segment.visible = part.x <= part.y && a.w > 0.0 && b.w > 0.0;
+    if !segment.visible {
+        return segment;
+    }
+    let s0 = outline_screen(a, view.viewport_px);
+    let s1 = outline_screen(b, view.viewport_px);
+    segment.ends_px = vec4<f32>(s0.xy, s1.xy);
+    segment.depths = vec2<f32>(s0.z, s1.z);
+    let middle = 0.5 * (a + b);
+    let edge = end1 - end0;
+    let first = outline_face_slope(cross(normal0, edge), middle, segment, view);
+    let second = outline_face_slope(cross(normal1, -edge), middle, segment, view);
+    segment.slopes = vec2<f32>(
+        max(0.0, max(select(first.y, 0.0, first.x < 0.0), select(second.y, 0.0, second.x < 0.0))),
+        max(0.0, max(select(0.0, first.y, first.x < 0.0), select(0.0, second.y, second.x < 0.0))),
+    );
+    return segment;
+}
+
+// The nearest point of the centreline, as a fraction of the way.
+fn outline_nearest(ends_px: vec4<f32>, point_px: vec2<f32>) -> f32 {
+    let span = ends_px.zw - ends_px.xy;
+    let squared = dot(span, span);
+    if squared > 0.0 {
+        return clamp(dot(point_px - ends_px.xy, span) / squared, 0.0, 1.0);
+    }
+    return 0.0;
+}
+
+fn outline_coverage(on_line: vec2<f32>, point_px: vec2<f32>, width_px: f32) -> f32 {
+    return clamp(0.5 * width_px + 0.5 - distance(on_line, point_px), 0.0, min(width_px, 1.0));
+}
+
+// (seen, surface) votes of one of the four pixels around a point of the centreline.
+fn outline_vote(scene_depth: f32, depth: f32, offset: f32, slopes: vec2<f32>, per_px: f32) -> vec2<bool> {
+    let slope = min(select(slopes.x, slopes.y, offset < 0.0), OUTLINE_MAX_SLOPE * per_px);
+    let allowed = OUTLINE_DEPTH_SLACK_PX * per_px + slope * abs(offset);
+    let behind = scene_depth - depth;
+    return vec2<bool>(behind <= allowed, abs(behind) <= (OUTLINE_DEPTH_SLACK_PX + OUTLINE_MAX_SLOPE) * per_px);
+}

@@ -1,0 +1,545 @@
+//! Lines on wgpu: coverage by maximum, then ink.
+//!
+//! Two small passes over the lines' rectangles. The first writes into an `R8Unorm` target how much of each pixel
+//! lines cover, blended by maximum: where segments of a polyline overlap at their joints, no pixel is counted twice, and the
+//! order of the lines does not matter. The second lays ink over the colour target with that coverage, each pixel
+//! once (a stencil sees to that). Neither touches a pixel that has no line near it.
+//!
+//! Needs: the scene's depth buffer as a texture of the same size, `Depth32Float`, reversed.
+
+use crate::contour::{ContourEdges, TRAIT_ALWAYS, TRAIT_CUT_OUT};
+use crate::segment::LineView;
+use crate::{LineKind, OutlineError};
+use glam::{DVec4, Vec3};
+use wgpu::util::DeviceExt;
+
+/// The WGSL library of this crate: no bindings, no entry points.
+pub const WGSL: &str = include_str!("line.wgsl");
+const PASS_WGSL: &str = include_str!("line_pass.wgsl");
+const PULLED_WGSL: &str = include_str!("line_pulled.wgsl");
+const COMPACTION_WGSL: &str = include_str!("compaction.wgsl");
+
+/// The coverage target's format.
+pub const COVERAGE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
+/// The stencil that keeps ink to once a pixel.
+pub const STENCIL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Stencil8;
+
+/// How lines look.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LineLook {
+    /// Width in px by [`LineKind`]; 0 draws none of that kind.
+    pub width_px: [f32; 4],
+    /// Display-referred colour and opacity, 0..=1.
+    pub ink: [f32; 4],
+}
+
+impl LineLook {
+    /// Checks the widths.
+    ///
+    /// # Errors
+    /// [`OutlineError::Width`].
+    pub fn validate(&self) -> Result<(), OutlineError> {
+        match self.width_px.iter().find(|w| !(w.is_finite() && **w >= 0.0)) {
+            Some(&width_px) => Err(OutlineError::Width { width_px }),
+            None => Ok(()),
+        }
+    }
+}
+
+/// `OutlineView` of `line.wgsl`.
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub struct OutlineUniform {
+    clip_from_world: [[f32; 4]; 4],
+    viewport_px: [f32; 2],
+    depth_per_px: [f32; 2],
+    width_px: [f32; 4],
+    ink: [f32; 4],
+    local_eye: [f32; 4],
+    edge_count: u32,
+    always_count: u32,
+    row_stride: u32,
+    padding: u32,
+}
+
+const _: () = assert!(size_of::<OutlineUniform>() == 144);
+
+/// A line as a scan on the CPU sends it: 56 bytes.
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub struct LineRecord {
+    /// World space, in the order in which the first face runs over the edge.
+    pub end0: [f32; 3],
+    /// [`LineKind`] in the two lowest bits, and the edge's traits.
+    pub kind_traits: u32,
+    /// World space.
+    pub end1: [f32; 3],
+    /// Of the first face, unit.
+    pub normal0: [f32; 3],
+    /// Of the second face, wound like the first; zero at a boundary.
+    pub normal1: [f32; 3],
+}
+
+const _: () = assert!(size_of::<LineRecord>() == 52);
+
+/// Gathers the records of the lines that a scan found. `eye` as for [`ContourEdges::scan`].
+pub fn line_records(
+    contours: &ContourEdges,
+    positions: &[Vec3],
+    lines: &[u32],
+    eye: DVec4,
+    records: &mut Vec<LineRecord>,
+) {
+    let eye = contours.local_eye(eye);
+    records.clear();
+    records.extend(lines.iter().filter_map(|&line| {
+        let edge = line as usize;
+        let kind = contours.kind(edge, eye)?;
+        let [normal0, normal1] = contours.normals(edge);
+        let [end0, end1] = contours.ends[edge].map(|v| positions[v as usize].to_array());
+        let kind_traits = kind as u32 | (contours.traits[edge] & (TRAIT_ALWAYS | TRAIT_CUT_OUT));
+        Some(LineRecord {
+            end0,
+            kind_traits,
+            end1,
+            normal0: normal0.to_array(),
+            normal1: normal1.to_array(),
+        })
+    }));
+}
+
+/// All edges of a model on the device, for finding lines there.
+#[derive(Debug)]
+pub struct EdgesOnDevice {
+    compaction_group: wgpu::BindGroup,
+    pulled_group: wgpu::BindGroup,
+    lines: wgpu::Buffer,
+    arguments: wgpu::Buffer,
+    edge_count: u32,
+    always_count: u32,
+    local_origin: Vec3,
+}
+
+/// Where the lines of a frame come from.
+#[derive(Clone, Copy, Debug)]
+pub enum LineSource<'a> {
+    /// Scanned on the CPU, sent as records. The way of choice where vertex and compute work run on the same cores.
+    Records(&'a [LineRecord]),
+    /// Found by a compute pass and drawn indirectly, nothing sent. The way of choice on hardware.
+    OnDevice(&'a EdgesOnDevice),
+}
+
+/// What a frame draws into.
+#[derive(Clone, Copy, Debug)]
+pub struct LineTargets<'a> {
+    /// Colour, of the format that the pass was made for; kept outside the lines.
+    pub color: &'a wgpu::TextureView,
+    /// The scene's depth, reversed, readable as a texture.
+    pub depth: &'a wgpu::TextureView,
+    /// [`COVERAGE_FORMAT`], renderable and readable; overwritten. Holds the lines' coverage afterwards.
+    pub coverage: &'a wgpu::TextureView,
+    /// [`STENCIL_FORMAT`]; overwritten.
+    pub stencil: &'a wgpu::TextureView,
+}
+
+/// The pipelines that draw lines.
+#[derive(Debug)]
+pub struct LinePass {
+    view_layout: wgpu::BindGroupLayout,
+    coverage_layout: wgpu::BindGroupLayout,
+    ink_layout: wgpu::BindGroupLayout,
+    record_pipelines: [wgpu::RenderPipeline; 2],
+    on_device: Option<OnDevicePipelines>,
+}
+
+#[derive(Debug)]
+struct OnDevicePipelines {
+    pulled_layout: wgpu::BindGroupLayout,
+    compaction_layout: wgpu::BindGroupLayout,
+    compaction: wgpu::ComputePipeline,
+    pulled_pipelines: [wgpu::RenderPipeline; 2],
+}
+
+const RECORD_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
+    array_stride: size_of::<LineRecord>() as u64,
+    step_mode: wgpu::VertexStepMode::Instance,
+    attributes: &wgpu::vertex_attr_array![
+        0 => Float32x3, 1 => Uint32, 2 => Float32x3, 3 => Float32x3, 4 => Float32x3
+    ],
+};
+
+const EDGE_NUMBER_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
+    array_stride: 4,
+    step_mode: wgpu::VertexStepMode::Instance,
+    attributes: &wgpu::vertex_attr_array![0 => Uint32],
+};
+
+impl LinePass {
+    /// Makes the pipelines for a colour target of `color_format`.
+    ///
+    /// `on_device`: also those of [`LineSource::OnDevice`], which need storage buffers in vertex shaders and indirect
+    /// drawing ([`wgpu::DownlevelFlags::VERTEX_STORAGE`], [`wgpu::DownlevelFlags::INDIRECT_EXECUTION`]).
+    pub fn new(device: &wgpu::Device, color_format: wgpu::TextureFormat, on_device: bool) -> Self {
+        let layout = |label, entries: &[wgpu::BindGroupLayoutEntry]| {
+            device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
+        };
+        let all_stages =
+            wgpu::ShaderStages::VERTEX | wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE;
+        let view_layout = layout("outline view", &[buffer_entry(0, all_stages, wgpu::BufferBindingType::Uniform)]);
+        let depth_type = wgpu::TextureSampleType::Depth;
+        let coverage_layout = layout("outline depth", &[texture_entry(0, depth_type)]);
+        let unfilterable = wgpu::TextureSampleType::Float { filterable: false };
+        let ink_layout = layout("outline coverage", &[texture_entry(1, unfilterable)]);
+        let pipelines = |module: &wgpu::ShaderModule, vertex: (&str, &wgpu::VertexBufferLayout<'_>), pulled: &[_]| {
+            [(true, &coverage_layout, COVERAGE_FORMAT), (false, &ink_layout, color_format)].map(
+                |(coverage, group1, format)| {
+                    let groups = [&[Some(&view_layout), Some(group1)], pulled].concat();
+                    line_pipeline(device, module, vertex, &groups, format, coverage)
+                },
+            )
+        };
+        let module = shader(device, "outline lines", &[WGSL, PASS_WGSL]);
+        let record_pipelines = pipelines(&module, ("vs_record", &RECORD_LAYOUT), &[]);
+        let read = wgpu::BufferBindingType::Storage { read_only: true };
+        let vertex = wgpu::ShaderStages::VERTEX;
+        let pulled_layout = layout(
+            "outline edges",
+            &[buffer_entry(0, vertex, read), buffer_entry(1, vertex, read), buffer_entry(2, vertex, read)],
+        );
+        let on_device = on_device.then(|| {
+            let write = wgpu::BufferBindingType::Storage { read_only: false };
+            let compute = wgpu::ShaderStages::COMPUTE;
+            let compaction_layout = layout(
+                "outline compaction",
+                &[buffer_entry(0, compute, read), buffer_entry(1, compute, write), buffer_entry(2, compute, write)],
+            );
+            let module = shader(device, "outline pulled lines", &[WGSL, PASS_WGSL, PULLED_WGSL]);
+            let pulled_pipelines = pipelines(&module, ("vs_pulled", &EDGE_NUMBER_LAYOUT), &[Some(&pulled_layout)]);
+            let compaction = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some("outline compaction"),
+                layout: Some(&device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                    label: Some("outline compaction"),
+                    bind_group_layouts: &[Some(&view_layout), Some(&compaction_layout)],
+                    immediate_size: 0,
+                })),
+                module: &shader(device, "outline compaction", &[WGSL, COMPACTION_WGSL]),
+                entry_point: Some("compact"),
+                compilation_options: Default::default(),
+                cache: None,
+            });
+            OnDevicePipelines { pulled_layout: pulled_layout.clone(), compaction_layout, compaction, pulled_pipelines }
+        });
+        Self { view_layout, coverage_layout, ink_layout, record_pipelines, on_device }
+    }
+
+    /// Sends a model's edges to the device: 52 bytes an edge and 12 a position.
+    ///
+    /// # Errors
+    /// [`OutlineError::TooManyEdges`] where a buffer would be larger than the device allows.
+    ///
+    /// # Panics
+    /// If the pass was made without `on_device`.
+    pub fn upload_edges(
+        &self,
+        device: &wgpu::Device,
+        contours: &ContourEdges,
+        positions: &[Vec3],
+    ) -> Result<EdgesOnDevice, OutlineError> {
+        let pipelines = self.on_device.as_ref().expect("the pass was made for lines found on the device");
+        let limit = device.limits().max_storage_buffer_binding_size.min(device.limits().max_buffer_size);
+        let bytes = (size_of_val(&contours.planes[..]).max(size_of_val(positions))) as u64;
+        if bytes > limit {
+            return Err(OutlineError::TooManyEdges { bytes, limit });
+        }
+        // A binding of no bytes is refused; one blank record stands in where there are no edges.
+        let buffer = |label, contents: &[u8], usage| {
+            let contents = if contents.is_empty() { &[0u8; 32][..] } else { contents };
+            device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
+        };
+        let storage = wgpu::BufferUsages::STORAGE;
+        let planes = buffer("outline planes", bytemuck::cast_slice(&contours.planes), storage);
+        let edges: Vec<[u32; 4]> =
+            contours.ends.iter().zip(&contours.traits).map(|(&[a, b], &traits)| [a, b, traits, 0]).collect();
+        let edges = buffer("outline edges", bytemuck::cast_slice(&edges), storage);
+        let positions = buffer("outline positions", bytemuck::cast_slice(positions), storage);
+        let lines = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("outline lines"),
+            size: 4 * contours.ends.len().max(1) as u64,
+            usage: storage | wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_SRC,
+            mapped_at_creation: false,
+        });
+        // Four corners, no instance yet.
+        let copied = wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
+        let arguments = buffer(
+            "outline draw arguments",
+            bytemuck::cast_slice(&[4u32, 0, 0, 0]),
+            storage | wgpu::BufferUsages::INDIRECT | copied,
+        );
+        let group = |layout, buffers: [&wgpu::Buffer; 3]| {
+            device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("outline edges"),
+                layout,
+                entries: &std::array::from_fn::<_, 3, _>(|i| wgpu::BindGroupEntry {
+                    binding: i as u32,
+                    resource: buffers[i].as_entire_binding(),
+                }),
+            })
+        };
+        Ok(EdgesOnDevice {
+            compaction_group: group(&pipelines.compaction_layout, [&planes, &lines, &arguments]),
+            pulled_group: group(&pipelines.pulled_layout, [&planes, &edges, &positions]),
+            lines,
+            arguments,
+            edge_count: contours.ends.len() as u32,
+            always_count: contours.always as u32,
+            local_origin: contours.origin,
+        })
+    }
+
+    /// Records finding and drawing a frame's lines.
+    ///
+    /// `eye`: world space, a point with w = 1 or the direction to the viewer with w = 0.
+    ///
+    /// # Errors
+    /// [`OutlineError::Width`].
+    #[expect(clippy::too_many_arguments, reason = "each is a thing of its own; a struct would only rename them")]
+    pub fn record(
+        &self,
+        device: &wgpu::Device,
+        encoder: &mut wgpu::CommandEncoder,
+        source: LineSource<'_>,
+        look: &LineLook,
+        view: &LineView,
+        eye: DVec4,
+        targets: &LineTargets<'_>,
+    ) -> Result<(), OutlineError> {
+        look.validate()?;
+        let uniform = OutlineUniform::new(look, view, eye, source);
+        let uniform = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some("outline view"),
+            contents: bytemuck::bytes_of(&uniform),
+            usage: wgpu::BufferUsages::UNIFORM,
+        });
+        let group = |layout, binding, resource| {
+            device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("outline"),
+                layout,
+                entries: &[wgpu::BindGroupEntry { binding, resource }],
+            })
+        };
+        let view_group = group(&self.view_layout, 0, uniform.as_entire_binding());
+        let coverage_group = group(&self.coverage_layout, 0, wgpu::BindingResource::TextureView(targets.depth));
+        let ink_group = group(&self.ink_layout, 1, wgpu::BindingResource::TextureView(targets.coverage));
+        let records = match source {
+            LineSource::Records([]) => None,
+            LineSource::Records(records) => {
+                Some(device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                    label: Some("outline records"),
+                    contents: bytemuck::cast_slice(records),
+                    usage: wgpu::BufferUsages::VERTEX,
+                }))
+            }
+            LineSource::OnDevice(edges) => {
+                self.record_compaction(encoder, &view_group, edges);
+                None
+            }
+        };
+        for (step, group1) in [&coverage_group, &ink_group].into_iter().enumerate() {
+            let covering = step == 0;
+            let load = if covering { wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) } else { wgpu::LoadOp::Load };
+            let stencil = wgpu::RenderPassDepthStencilAttachment {
+                view: targets.stencil,
+                depth_ops: None,
+                stencil_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0), store: wgpu::StoreOp::Discard }),
+            };
+            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some(if covering { "line coverage" } else { "line ink" }),
+                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                    view: if covering { targets.coverage } else { targets.color },
+                    depth_slice: None,
+                    resolve_target: None,
+                    ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
+                })],
+                depth_stencil_attachment: (!covering).then_some(stencil),
+                ..Default::default()
+            });
+            pass.set_bind_group(0, &view_group, &[]);
+            pass.set_bind_group(1, group1, &[]);
+            match (source, &records) {
+                (LineSource::Records(lines), Some(buffer)) => {
+                    pass.set_pipeline(&self.record_pipelines[step]);
+                    pass.set_vertex_buffer(0, buffer.slice(..));
+                    pass.draw(0..4, 0..lines.len() as u32);
+                }
+                (LineSource::OnDevice(edges), _) => {
+                    let pipelines = self.on_device.as_ref().expect("the edges were uploaded by this pass");
+                    pass.set_pipeline(&pipelines.pulled_pipelines[step]);
+                    pass.set_bind_group(2, &edges.pulled_group, &[]);
+                    pass.set_vertex_buffer(0, edges.lines.slice(..));
+                    pass.draw_indirect(&edges.arguments, 0);
+                }
+                (LineSource::Records(_), None) => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// Records the compute pass alone: afterwards [`EdgesOnDevice::lines`] holds the lines' numbers.
+    fn record_compaction(&self, encoder: &mut wgpu::CommandEncoder, view: &wgpu::BindGroup, edges: &EdgesOnDevice) {
+        let pipelines = self.on_device.as_ref().expect("the edges were uploaded by this pass");
+        // The vertex count stays what it is; the instances are counted from 0.
+        encoder.clear_buffer(&edges.arguments, 4, Some(4));
+        let mut pass = encoder
+            .begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("line scan"), timestamp_writes: None });
+        pass.set_pipeline(&pipelines.compaction);
+        pass.set_bind_group(0, view, &[]);
+        pass.set_bind_group(1, &edges.compaction_group, &[]);
+        let (columns, rows) = edges.workgroups();
+        pass.dispatch_workgroups(columns, rows, 1);
+    }
+}
+
+impl EdgesOnDevice {
+    /// Workgroups of 64 edges, in rows of at most 65,535, which every device can dispatch.
+    fn workgroups(&self) -> (u32, u32) {
+        let groups = self.edge_count.div_ceil(64).max(1);
+        let rows = groups.div_ceil(65_535);
+        (groups.div_ceil(rows), rows)
+    }
+
+    /// The numbers of the lines that the last frame's compute pass found, in no order; the first
+    /// [`EdgesOnDevice::arguments`]' instance count of them are valid. `COPY_SRC`.
+    pub fn lines(&self) -> &wgpu::Buffer {
+        &self.lines
+    }
+
+    /// The draw call's arguments: vertex count, instance count (the lines found), 0, 0. `COPY_SRC`.
+    pub fn arguments(&self) -> &wgpu::Buffer {
+        &self.arguments
+    }
+}
+
+impl OutlineUniform {
+    fn new(look: &LineLook, view: &LineView, eye: DVec4, source: LineSource<'_>) -> Self {
+        let (edge_count, always_count, row_stride, origin) = match source {
+            LineSource::Records(_) => (0, 0, 0, Vec3::ZERO),
+            LineSource::OnDevice(edges) => {
+                (edges.edge_count, edges.always_count, 64 * edges.workgroups().0, edges.local_origin)
+            }
+        };
+        Self {
+            clip_from_world: view.clip_from_world.as_mat4().to_cols_array_2d(),
+            viewport_px: view.viewport_px.as_vec2().to_array(),
+            depth_per_px: view.depth_per_px.as_vec2().to_array(),
+            width_px: look.width_px,
+            ink: look.ink,
+            local_eye: (eye - origin.as_dvec3().extend(0.0) * eye.w).as_vec4().to_array(),
+            edge_count,
+            always_count,
+            row_stride,
+            padding: 0,
+        }
+    }
+}
+
+fn shader(device: &wgpu::Device, label: &str, parts: &[&str]) -> wgpu::ShaderModule {
+    device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some(label),
+        source: wgpu::ShaderSource::Wgsl(parts.concat().into()),
+    })
+}
+
+fn buffer_entry(
+    binding: u32,
+    visibility: wgpu::ShaderStages,
+    ty: wgpu::BufferBindingType,
+) -> wgpu::BindGroupLayoutEntry {
+    let ty = wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
+    wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None }
+}
+
+fn texture_entry(binding: u32, sample_type: wgpu::TextureSampleType) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::FRAGMENT,
+        ty: wgpu::BindingType::Texture {
+            sample_type,
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        },
+        count: None,
+    }
+}
+
+fn line_pipeline(
+    device: &wgpu::Device,
+    module: &wgpu::ShaderModule,
+    (entry, buffer): (&str, &wgpu::VertexBufferLayout<'_>),
+    groups: &[Option<&wgpu::BindGroupLayout>],
+    format: wgpu::TextureFormat,
+    coverage: bool,
+) -> wgpu::RenderPipeline {
+    let maximum = wgpu::BlendComponent {
+        src_factor: wgpu::BlendFactor::One,
+        dst_factor: wgpu::BlendFactor::One,
+        operation: wgpu::BlendOperation::Max,
+    };
+    let once = wgpu::StencilFaceState {
+        compare: wgpu::CompareFunction::Equal,
+        fail_op: wgpu::StencilOperation::Keep,
+        depth_fail_op: wgpu::StencilOperation::Keep,
+        pass_op: wgpu::StencilOperation::IncrementClamp,
+    };
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some(if coverage { "line coverage" } else { "line ink" }),
+        layout: Some(&device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("outline"),
+            bind_group_layouts: groups,
+            immediate_size: 0,
+        })),
+        vertex: wgpu::VertexState {
+            module,
+            entry_point: Some(entry),
+            compilation_options: Default::default(),
+            buffers: &[Some(buffer.clone())],
+        },
+        primitive: wgpu::PrimitiveState {
+            topology: wgpu::PrimitiveTopology::TriangleStrip,
+            ..Default::default()
+        },
+        depth_stencil: (!coverage).then(|| wgpu::DepthStencilState {
+            format: STENCIL_FORMAT,
+            depth_write_enabled: None,
+            depth_compare: None,
+            stencil: wgpu::StencilState { front: once, back: once, read_mask: !0, write_mask: !0 },
+            bias: Default::default(),
+        }),
+        multisample: Default::default(),
+        fragment: Some(wgpu::FragmentState {
+            module,
+            entry_point: Some(if coverage { "fs_coverage" } else { "fs_ink" }),
+            compilation_options: Default::default(),
+            targets: &[Some(wgpu::ColorTargetState {
+                format,
+                blend: Some(if coverage {
+                    wgpu::BlendState { color: maximum, alpha: maximum }
+                } else {
+                    wgpu::BlendState::ALPHA_BLENDING
+                }),
+                write_mask: wgpu::ColorWrites::ALL,
+            })],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}
+
+/// The kinds' widths in the order of their numbers.
+pub fn widths_px(silhouette: f32, boundary: f32, crease: f32, material_border: f32) -> [f32; 4] {
+    let mut widths = [0.0; 4];
+    widths[LineKind::Silhouette as usize] = silhouette;
+    widths[LineKind::Boundary as usize] = boundary;
+    widths[LineKind::Crease as usize] = crease;
+    widths[LineKind::MaterialBorder as usize] = material_border;
+    widths
+}

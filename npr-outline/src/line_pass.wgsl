@@ -1,0 +1,93 @@
+// Entry points of the line pass; appended to `line.wgsl`.
+
+@group(0) @binding(0) var<uniform> view: OutlineView;
+
+// Coverage: what of each pixel the lines cover, hidden parts left out. Blended by maximum.
+@group(1) @binding(0) var scene_depth: texture_depth_2d;
+
+struct LineVertex {
+    @builtin(position) position: vec4<f32>,
+    @location(0) @interpolate(flat) ends_px: vec4<f32>,
+    @location(1) @interpolate(flat) depths_slopes: vec4<f32>,
+    @location(2) @interpolate(flat) width_px: f32,
+    @location(3) @interpolate(flat) traits: u32,
+}
+
+fn line_vertex(
+    corner: u32, end0: vec3<f32>, end1: vec3<f32>, normal0: vec3<f32>, normal1: vec3<f32>, kind: u32, traits: u32,
+) -> LineVertex {
+    var out: LineVertex;
+    out.position = vec4<f32>(2.0, 2.0, 0.0, 1.0);
+    out.width_px = view.width_px[kind];
+    out.traits = traits;
+    if out.width_px <= 0.0 {
+        return out;
+    }
+    let segment = outline_project(end0, end1, normal0, normal1, out.width_px, view);
+    if !segment.visible {
+        return out;
+    }
+    out.ends_px = segment.ends_px;
+    out.depths_slopes = vec4<f32>(segment.depths, segment.slopes);
+    // A rectangle around the line and its round ends, and the pixel beside them that they cover in part.
+    let reach = 0.5 * out.width_px + 1.0;
+    let along = outline_direction(segment.ends_px);
+    let across = vec2<f32>(-along.y, along.x);
+    let at_end = (corner & 1u) != 0u;
+    let side = select(-reach, reach, (corner & 2u) != 0u);
+    let point_px = select(segment.ends_px.xy - along * reach, segment.ends_px.zw + along * reach, at_end) + across * side;
+    let ndc = vec2<f32>(2.0, -2.0) * point_px / view.viewport_px + vec2<f32>(-1.0, 1.0);
+    out.position = vec4<f32>(ndc, 0.0, 1.0);
+    return out;
+}
+
+// A line from a record of its own: what a scan on the CPU sends.
+@vertex
+fn vs_record(
+    @builtin(vertex_index) corner: u32,
+    @location(0) end0: vec3<f32>,
+    @location(1) kind_traits: u32,
+    @location(2) end1: vec3<f32>,
+    @location(3) normal0: vec3<f32>,
+    @location(4) normal1: vec3<f32>,
+) -> LineVertex {
+    return line_vertex(corner, end0, end1, normal0, normal1, kind_traits & 3u, kind_traits);
+}
+
+@fragment
+fn fs_coverage(in: LineVertex) -> @location(0) vec4<f32> {
+    let fraction = outline_nearest(in.ends_px, in.position.xy);
+    let on_line = mix(in.ends_px.xy, in.ends_px.zw, fraction);
+    let coverage = outline_coverage(on_line, in.position.xy, in.width_px);
+    if coverage <= 0.0 {
+        discard;
+    }
+    let depth = mix(in.depths_slopes.x, in.depths_slopes.y, fraction);
+    let per_px = depth * view.depth_per_px.x + view.depth_per_px.y;
+    let direction = outline_direction(in.ends_px);
+    let corner = floor(on_line - 0.5);
+    let last = vec2<i32>(view.viewport_px) - 1;
+    var votes = vec2<bool>(false);
+    for (var tap = 0; tap < 4; tap++) {
+        let pixel = corner + vec2<f32>(f32(tap & 1), f32(tap >> 1u));
+        let scene = textureLoad(scene_depth, clamp(vec2<i32>(pixel), vec2<i32>(0), last), 0);
+        let offset = outline_cross(direction, pixel + 0.5 - on_line);
+        votes = votes | outline_vote(scene, depth, offset, in.depths_slopes.zw, per_px);
+    }
+    if !votes.x || (!votes.y && (in.traits & OUTLINE_TRAIT_CUT_OUT) != 0u) {
+        discard;
+    }
+    return vec4<f32>(coverage);
+}
+
+// Ink: the same shapes again, each pixel once (the stencil sees to that), with the greatest coverage of any line.
+@group(1) @binding(1) var coverage_map: texture_2d<f32>;
+
+@fragment
+fn fs_ink(in: LineVertex) -> @location(0) vec4<f32> {
+    let coverage = textureLoad(coverage_map, vec2<i32>(in.position.xy), 0).r;
+    if coverage <= 0.0 {
+        discard;
+    }
+    return vec4<f32>(view.ink.rgb, view.ink.a * coverage);
+}

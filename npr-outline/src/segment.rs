@@ -1,0 +1,198 @@
+//! A line on the screen: an edge clipped, projected, widened, and hidden where its centreline is hidden.
+//!
+//! The twin of `line.wgsl`, in f64 and with the same names.
+//!
+//! # Width
+//!
+//! A line is the set of points within half its width of the segment, so its ends are round and lines that meet
+//! close their joint. The coverage of a pixel is that of the disc's border at the pixel's centre: `half width +
+//! ½ − distance`, in 0..=1, and at most the width itself, so that hair lines fade instead of breaking. Being
+//! measured on the screen, the width is the same at any distance; the chapter's listing 1 scales by clip z instead of
+//! w, which thins lines towards the near plane.
+//!
+//! # Visibility
+//!
+//! A fin centred on a silhouette lies half inside its own surface, so a depth test of the fin's own triangles cuts the
+//! line in half. Here one decision is taken for each point of the centreline: it is seen if at least one of
+//! the four pixel centres around it shows a surface that is not in front of it. On the outer side of a
+//! silhouette that surface is the background; at a crease it is one of the edge's own faces, whose slope across
+//! the line is known from its normal and allowed for, up to 8 px of depth a px (83°). Half a pixel's depth is
+//! allowed on top: what lies less than that behind a surface cannot be told from it.
+//!
+//! Depth is the depth buffer's own, reversed: 1 at the near plane, falling with distance. It is linear on the screen, in
+//! perspective too, so that interpolating and extrapolating it are exact.
+
+use glam::{DMat4, DVec2, DVec3, DVec4};
+
+/// Depth that a surface may gain within a px across the line, in px of depth.
+pub const MAX_SLOPE: f64 = 8.0;
+/// How far a line may lie behind a surface and still be seen, in px of depth.
+pub const DEPTH_SLACK_PX: f64 = 0.5;
+
+/// The view that lines are drawn for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LineView {
+    /// To clip space (x right, y up, z reversed: w at the near plane, towards 0 with distance).
+    pub clip_from_world: DMat4,
+    /// Width and height of the picture in px.
+    pub viewport_px: DVec2,
+    /// Depth-buffer units that correspond to one px's size along the view: `depth * .x + .y`. In perspective the
+    /// size of a px grows with distance, and `.x` is 2 tan(fov/2) / height; in a parallel view `.y` is a px's size over
+    /// the depth range.
+    pub depth_per_px: DVec2,
+}
+
+/// A line's centreline on the screen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ScreenSegment {
+    /// Ends in px, y down, pixel centres at halves.
+    pub ends_px: [DVec2; 2],
+    /// Depth-buffer values at the ends.
+    pub depths: [f64; 2],
+    /// On the side of positive and of negative [`ScreenSegment::offset_px`]: by how much an own face's depth-buffer
+    /// value grows a px away from the line; not below 0.
+    pub slopes: [f64; 2],
+}
+
+/// Cuts a segment to the near plane and to the viewport widened by `margin_px`, and returns its ends in clip
+/// space, or `None` if nothing is left.
+///
+/// Everything that follows divides by w, and f32 loses the centreline's place when an end is a thousand screens away.
+pub fn outline_clip(ends: [DVec4; 2], viewport_px: DVec2, margin_px: f64) -> Option<[DVec4; 2]> {
+    let guard = DVec2::ONE + 2.0 * margin_px / viewport_px;
+    let inside = |p: DVec4| {
+        [p.w - p.z, guard.x * p.w - p.x, guard.x * p.w + p.x, guard.y * p.w - p.y, guard.y * p.w + p.y]
+    };
+    let (a, b) = (inside(ends[0]), inside(ends[1]));
+    let (mut from, mut to) = (0.0f64, 1.0f64);
+    for (a, b) in a.into_iter().zip(b) {
+        if a < 0.0 && b < 0.0 {
+            return None;
+        }
+        if a < 0.0 {
+            from = from.max(a / (a - b));
+        }
+        if b < 0.0 {
+            to = to.min(a / (a - b));
+        }
+    }
+    let span = ends[1] - ends[0];
+    let clipped = [ends[0] + span * from, ends[0] + span * to];
+    // An eye without a near plane has w = 0 on its own plane.
+    (from <= to && clipped.iter().all(|end| end.w > 0.0)).then_some(clipped)
+}
+
+/// A clip-space point on the screen: px, and depth.
+pub fn outline_screen(clip: DVec4, viewport_px: DVec2) -> (DVec2, f64) {
+    let ndc = clip.truncate() / clip.w;
+    (DVec2::new(0.5 + 0.5 * ndc.x, 0.5 - 0.5 * ndc.y) * viewport_px, ndc.z)
+}
+
+/// Where the face lies beside the line, and how its depth-buffer value changes there: (offset, slope), with the sign of
+/// the offset telling the side and the slope in depth per px. Zero offset where the face is seen edge-on.
+fn outline_face_slope(inward: DVec3, middle: DVec4, segment: &ScreenSegment, view: &LineView) -> (f64, f64) {
+    // The derivative of the projection along a direction in the face, away from the edge.
+    let step = view.clip_from_world * inward.extend(0.0);
+    let moved = (step.truncate() * middle.w - middle.truncate() * step.w) / (middle.w * middle.w);
+    let moved_px = DVec2::new(0.5 * moved.x, -0.5 * moved.y) * view.viewport_px;
+    let (direction, length) = segment.direction();
+    let along = moved_px.dot(direction);
+    let across = direction.perp_dot(moved_px);
+    let depth_along = if length > 0.0 { (segment.depths[1] - segment.depths[0]) / length } else { 0.0 };
+    (across, (moved.z - along * depth_along) / across.abs())
+}
+
+/// Projects an edge.
+///
+/// - `ends`: world space, in the order in which the first face runs over the edge.
+/// - `normals`: unit normals of the two faces, wound alike; zero where there is none.
+/// - `width_px`: of the line.
+pub fn outline_project(
+    ends: [DVec3; 2],
+    normals: [DVec3; 2],
+    width_px: f64,
+    view: &LineView,
+) -> Option<ScreenSegment> {
+    let clip = ends.map(|end| view.clip_from_world * end.extend(1.0));
+    let clip = outline_clip(clip, view.viewport_px, 0.5 * width_px + 2.0)?;
+    let [(p0, z0), (p1, z1)] = clip.map(|end| outline_screen(end, view.viewport_px));
+    let mut segment = ScreenSegment { ends_px: [p0, p1], depths: [z0, z1], slopes: [0.0; 2] };
+    let middle = 0.5 * (clip[0] + clip[1]);
+    let edge = ends[1] - ends[0];
+    for inward in [normals[0].cross(edge), normals[1].cross(-edge)] {
+        let (across, slope) = outline_face_slope(inward, middle, &segment, view);
+        let side = usize::from(across < 0.0);
+        // Not a number or infinite where the face is seen edge-on: it covers no pixel then.
+        if slope.is_finite() && slope > segment.slopes[side] {
+            segment.slopes[side] = slope;
+        }
+    }
+    Some(segment)
+}
+
+impl ScreenSegment {
+    /// Unit vector from the first end to the second, and the length in px. Along x where the length is 0.
+    pub fn direction(&self) -> (DVec2, f64) {
+        let span = self.ends_px[1] - self.ends_px[0];
+        let length = span.length();
+        if length > 0.0 { (span / length, length) } else { (DVec2::X, 0.0) }
+    }
+
+    /// The nearest point of the centreline, as a fraction of the way from the first end to the second.
+    pub fn nearest(&self, point_px: DVec2) -> f64 {
+        let span = self.ends_px[1] - self.ends_px[0];
+        let squared = span.length_squared();
+        if squared > 0.0 { ((point_px - self.ends_px[0]).dot(span) / squared).clamp(0.0, 1.0) } else { 0.0 }
+    }
+
+    /// The centreline at a fraction of the way.
+    pub fn at(&self, fraction: f64) -> (DVec2, f64) {
+        let [p0, p1] = self.ends_px;
+        (p0 + (p1 - p0) * fraction, self.depths[0] + (self.depths[1] - self.depths[0]) * fraction)
+    }
+
+    /// Distance of a point from the infinite centreline, positive to the left of its direction on a screen whose y
+    /// grows downwards.
+    pub fn offset_px(&self, point_px: DVec2) -> f64 {
+        self.direction().0.perp_dot(point_px - self.ends_px[0])
+    }
+}
+
+/// How much of the pixel around `point_px` a line of `width_px` covers, 0..=1.
+pub fn outline_coverage(segment: &ScreenSegment, point_px: DVec2, width_px: f64) -> f64 {
+    let distance = segment.at(segment.nearest(point_px)).0.distance(point_px);
+    (0.5 * width_px + 0.5 - distance).clamp(0.0, width_px.min(1.0))
+}
+
+/// Whether the centreline is seen at a fraction of its length.
+///
+/// - `depth_at`: the depth buffer's value at a pixel; x and y may lie outside the picture by a few px, and the
+///   caller clamps them.
+/// - `cut_out`: the edge's own faces may be absent; the line is then seen only where a surface at its own depth is.
+pub fn outline_is_visible(
+    segment: &ScreenSegment,
+    fraction: f64,
+    view: &LineView,
+    cut_out: bool,
+    depth_at: impl Fn(i64, i64) -> f64,
+) -> bool {
+    let (on_line, depth) = segment.at(fraction);
+    let corner = (on_line - 0.5).floor();
+    let per_px = depth * view.depth_per_px.x + view.depth_per_px.y;
+    let direction = segment.direction().0;
+    let (mut seen, mut surface) = (false, false);
+    for tap in 0..4 {
+        let pixel = corner + DVec2::new(f64::from(tap & 1), f64::from(tap >> 1));
+        let offset = direction.perp_dot(pixel + 0.5 - on_line);
+        let slope = segment.slopes[usize::from(offset < 0.0)].min(MAX_SLOPE * per_px);
+        let allowed = DEPTH_SLACK_PX * per_px + slope * offset.abs();
+        let behind = depth_at(pixel.x as i64, pixel.y as i64) - depth;
+        seen |= behind <= allowed;
+        // A surface of its own may lie as far behind the line as it may lie in front.
+        surface |= behind.abs() <= (DEPTH_SLACK_PX + MAX_SLOPE) * per_px;
+    }
+    seen && (surface || !cut_out)
+}
+
+#[cfg(test)]
+mod tests;

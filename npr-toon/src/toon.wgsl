@@ -1,0 +1,118 @@
+// Banded light. No bindings, no entry points; the names and meanings are those of the crate npr-toon.
+// Colours are display-referred. Vectors may be in any one space.
+
+const TOON_MAX_BANDS: u32 = 8u;
+// Below this change across a pixel a border is hard: 2^-23.
+const TOON_MIN_WIDTH: f32 = 1.1920928955078125e-7;
+
+struct ToonBands {
+    // From dark to light: rgb the tone, w the N.L where the next band begins (unused in the last).
+    bands: array<vec4<f32>, TOON_MAX_BANDS>,
+    // rgb the highlight's colour, w its threshold on N.H.
+    highlight: vec4<f32>,
+    // 1 .. TOON_MAX_BANDS.
+    count: u32,
+    // 0: no highlight.
+    highlight_strength: f32,
+    // 1: no highlight at N.L < 0.
+    highlight_lit_only: u32,
+    // 1: borders are antialiased.
+    antialias: u32,
+}
+
+// Unit length; a zero vector stays zero.
+fn toon_unit(v: vec3<f32>) -> vec3<f32> {
+    return v * inverseSqrt(max(dot(v, v), 1e-30));
+}
+
+fn toon_n_dot_l(normal: vec3<f32>, to_light: vec3<f32>) -> f32 {
+    return dot(toon_unit(normal), toon_unit(to_light));
+}
+
+fn toon_n_dot_l_interpolated(normal: vec3<f32>, to_light: vec3<f32>) -> f32 {
+    return dot(normal, to_light);
+}
+
+fn toon_half(to_light: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
+    return toon_unit(toon_unit(to_light) + toon_unit(to_eye));
+}
+
+fn toon_n_dot_h(normal: vec3<f32>, to_light: vec3<f32>, to_eye: vec3<f32>) -> f32 {
+    return dot(toon_unit(normal), toon_half(to_light, to_eye));
+}
+
+fn toon_n_dot_h_interpolated(normal: vec3<f32>, half_vector: vec3<f32>) -> f32 {
+    return dot(normal, half_vector);
+}
+
+fn toon_width(along_x: f32, along_y: f32) -> f32 {
+    return length(vec2<f32>(along_x, along_y));
+}
+
+// The change of x across this pixel. Fragment shaders only, and in uniform control flow: call it before any
+// branch, loop or discard that differs between pixels.
+fn toon_pixel_width(x: f32) -> f32 {
+    return toon_width(dpdxFine(x), dpdyFine(x));
+}
+
+// The share of the pixel where x is at least the threshold.
+fn toon_coverage(x: f32, threshold: f32, width: f32) -> f32 {
+    let share = saturate((x - threshold) / max(width, TOON_MIN_WIDTH) + 0.5);
+    return select(select(0.0, 1.0, x >= threshold), share, width > TOON_MIN_WIDTH);
+}
+
+// One border: the tone below, the tone above, or their mean by the share of the pixel that each covers.
+fn toon_step(below: vec3<f32>, above: vec3<f32>, threshold: f32, n_dot_l: f32, width: f32) -> vec3<f32> {
+    return mix(below, above, toon_coverage(n_dot_l, threshold, width));
+}
+
+// All borders: each tone by the share of the pixel that its band covers. Width 0 is the hard form.
+fn toon_band(bands: ToonBands, n_dot_l: f32, width: f32) -> vec3<f32> {
+    var tone = vec3<f32>(0.0);
+    // The share of the pixel at or above the band's lower border; all of it for the darkest.
+    var share = 1.0;
+    for (var i = 0u; i + 1u < bands.count; i++) {
+        let above = toon_coverage(n_dot_l, bands.bands[i].w, width);
+        tone += (share - above) * bands.bands[i].rgb;
+        share = above;
+    }
+    return tone + share * bands.bands[bands.count - 1u].rgb;
+}
+
+// How opaque the highlight is.
+fn toon_highlight(
+    threshold: f32,
+    strength: f32,
+    lit_only: u32,
+    n_dot_l: f32,
+    nl_width: f32,
+    n_dot_h: f32,
+    nh_width: f32,
+) -> f32 {
+    let lit = select(1.0, toon_coverage(n_dot_l, 0.0, nl_width), lit_only != 0u);
+    return strength * lit * toon_coverage(n_dot_h, threshold, nh_width);
+}
+
+// The surface's colour times its band's tone, under the highlight.
+fn toon_shade(
+    bands: ToonBands,
+    base_color: vec3<f32>,
+    n_dot_l: f32,
+    nl_width: f32,
+    n_dot_h: f32,
+    nh_width: f32,
+) -> vec3<f32> {
+    let smooth_nl = select(0.0, nl_width, bands.antialias != 0u);
+    let smooth_nh = select(0.0, nh_width, bands.antialias != 0u);
+    let color = base_color * toon_band(bands, n_dot_l, smooth_nl);
+    let opacity = toon_highlight(
+        bands.highlight.w,
+        bands.highlight_strength,
+        bands.highlight_lit_only,
+        n_dot_l,
+        smooth_nl,
+        n_dot_h,
+        smooth_nh,
+    );
+    return mix(color, bands.highlight.rgb, opacity);
+}

@@ -1,0 +1,130 @@
+//! Hand-computed values, limits and the area that a border covers.
+
+use approx::assert_abs_diff_eq;
+use glam::{DVec3, Vec3};
+use npr_toon::*;
+
+fn gray(value: f32) -> DVec3 {
+    DVec3::splat(f64::from(value))
+}
+
+#[test]
+fn listing_3_at_its_thresholds() {
+    let bands = Bands::listing_3();
+    let (dark, average, bright) = (gray(0.2), gray(0.6), Vec3::new(0.9, 0.9, 1.0).as_dvec3());
+    let (low, high) = (f64::from(0.1_f32), f64::from(0.8_f32));
+    let expected = [
+        (-1.0, dark),
+        (low.next_down(), dark),
+        (low, average),
+        (low.next_up(), average),
+        (high.next_down(), average),
+        (high, bright),
+        (1.0, bright),
+    ];
+    for (n_dot_l, tone) in expected {
+        assert_eq!(toon_band_hard(&bands, n_dot_l), tone, "{n_dot_l}");
+        assert_eq!(toon_band_smooth(&bands, n_dot_l, 0.0), tone, "{n_dot_l}");
+        assert_eq!(toon_shade(&bands, DVec3::ONE, n_dot_l, 0.3, 1.0, 0.3), tone, "not antialiased: {n_dot_l}");
+    }
+    // A tenth of a pixel above the border: six tenths of the pixel are average.
+    assert!(toon_band_smooth(&bands, low + 0.002, 0.02).abs_diff_eq(0.4 * dark + 0.6 * average, 1e-12));
+}
+
+#[test]
+fn hard_shading_turns_at_zero() {
+    let bands = Bands::hard_shading();
+    assert_eq!(toon_band_hard(&bands, -f64::MIN_POSITIVE), DVec3::splat(0.5));
+    assert_eq!(toon_band_hard(&bands, 0.0), DVec3::ONE);
+    assert_eq!(toon_band_smooth(&bands, 0.0, 0.01), DVec3::splat(0.75));
+}
+
+#[test]
+fn highlight_replaces_the_band() {
+    let mut bands = Bands::chapter_text();
+    let threshold = f64::from(0.8_f32);
+    let (base, specular) = (DVec3::new(1.0, 0.5, 0.25), Vec3::new(0.9, 0.9, 1.0).as_dvec3());
+    assert_eq!(toon_shade(&bands, base, 0.5, 0.0, threshold.next_down(), 0.0), base * gray(0.6));
+    assert_eq!(toon_shade(&bands, base, 0.5, 0.0, threshold, 0.0), specular);
+    // As the text has it, on the dark side too.
+    assert_eq!(toon_shade(&bands, base, -0.5, 0.0, 0.9, 0.0), specular);
+
+    let highlight = bands.highlight.as_mut().unwrap();
+    (highlight.strength, highlight.lit_only) = (0.5, true);
+    assert_eq!(toon_shade(&bands, base, -0.5, 0.0, 0.9, 0.0), base * gray(0.2));
+    assert_eq!(toon_shade(&bands, base, 0.5, 0.0, 0.9, 0.0), (base * gray(0.6) + specular) / 2.0);
+    bands.antialias = true;
+    assert_eq!(toon_highlight(&bands, 0.5, 0.0, threshold, 0.1), 0.25);
+    assert_eq!(toon_highlight(&bands, 0.0, 0.1, 1.0, 0.1), 0.25);
+}
+
+#[test]
+fn vectors() {
+    let (n, l, e) = (DVec3::new(0.0, 0.0, 2.0), DVec3::new(0.0, 3.0, 4.0), DVec3::new(0.0, -3.0, 4.0));
+    assert_abs_diff_eq!(toon_n_dot_l(n, l), 0.8, epsilon = 1e-15);
+    assert_eq!(toon_n_dot_l_interpolated(n, l), 8.0);
+    assert_eq!(toon_half(l, e), DVec3::Z);
+    assert_eq!(toon_n_dot_h(n, l, e), 1.0);
+    assert_eq!(toon_n_dot_h_interpolated(n, DVec3::Z), 2.0);
+    assert_eq!(toon_width(3.0, -4.0), 5.0);
+    // No direction at all is not NaN.
+    assert_eq!(toon_n_dot_l(DVec3::ZERO, l), 0.0);
+    assert_eq!(toon_n_dot_h(n, l, -l), 0.0);
+}
+
+/// The mean of the hard bands over a pixel, by 256 samples of an N·L that is linear across it.
+fn sampled(bands: &Bands, n_dot_l: f64, width: f64) -> DVec3 {
+    let at = |i: i32| n_dot_l + width * ((f64::from(i) + 0.5) / 256.0 - 0.5);
+    (0..256).map(|i| toon_band_hard(bands, at(i))).sum::<DVec3>() / 256.0
+}
+
+#[test]
+fn smooth_is_the_mean_over_the_pixel() {
+    let one = Bands { thresholds: vec![0.25], tones: vec![Vec3::ZERO, Vec3::ONE], ..Bands::listing_3() };
+    // Two borders in one pixel at the larger widths.
+    let close = Bands {
+        thresholds: vec![0.2, 0.25, 0.3],
+        tones: vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::ONE],
+        ..Bands::listing_3()
+    };
+    for bands in [one, close] {
+        for step in -100..=100 {
+            for width in [0.001, 0.02, 0.1, 0.5] {
+                let n_dot_l = 0.25 + f64::from(step) * 0.004;
+                let error = toon_band_smooth(&bands, n_dot_l, width) - sampled(&bands, n_dot_l, width);
+                assert!(error.abs().max_element() < 1.0 / 255.0, "{n_dot_l} {width}: {error}");
+            }
+        }
+    }
+}
+
+#[test]
+fn one_band_is_flat() {
+    let bands = Bands { thresholds: vec![], tones: vec![Vec3::splat(0.5)], ..Bands::listing_3() };
+    assert_eq!(bands.validate(), Ok(()));
+    assert_eq!(toon_band_smooth(&bands, -1.0, 0.5), DVec3::splat(0.5));
+}
+
+#[test]
+fn presets_are_valid_and_each_rule_is_checked() {
+    for bands in [Bands::hard_shading(), Bands::listing_3(), Bands::chapter_text(), Bands::default()] {
+        assert_eq!(bands.validate(), Ok(()));
+    }
+    let broken = |change: &dyn Fn(&mut Bands)| {
+        let mut bands = Bands::default();
+        change(&mut bands);
+        bands.validate().unwrap_err()
+    };
+    assert_eq!(broken(&|b| b.tones.clear()), ToonError::NoTones);
+    assert_eq!(broken(&|b| b.thresholds.clear()), ToonError::Counts { tones: 3, thresholds: 0 });
+    assert_eq!(
+        broken(&|b| b.thresholds = vec![0.5, 0.5]),
+        ToonError::ThresholdOrder { index: 1, value: 0.5, before: 0.5 }
+    );
+    assert!(matches!(broken(&|b| b.thresholds[1] = f32::NAN), ToonError::ThresholdNotFinite { index: 1, .. }));
+    assert!(matches!(broken(&|b| b.tones[2].y = -0.1), ToonError::Tone { index: 2, .. }));
+    let highlight = |change: &dyn Fn(&mut Highlight)| broken(&|b| change(b.highlight.as_mut().unwrap()));
+    assert!(matches!(highlight(&|h| h.threshold = f32::INFINITY), ToonError::HighlightThreshold { .. }));
+    assert!(matches!(highlight(&|h| h.color.x = f32::NAN), ToonError::HighlightColor { .. }));
+    assert_eq!(highlight(&|h| h.strength = 1.5), ToonError::HighlightStrength { value: 1.5 });
+}
