@@ -9,7 +9,7 @@
 
 use glam::{DVec3, Vec3};
 use npr_mesh::edges::has_zero_area;
-use obvhs::{BvhBuildParams, aabb::Aabb, bvh2::Bvh2, bvh2::builder::build_bvh2, fast_stack, faststack::FastStack};
+use obvhs::{BvhBuildParams, aabb::Aabb, bvh2::Bvh2, bvh2::builder::build_bvh2, fast_stack};
 use obvhs::{ray::Ray, ray::RayHit};
 use std::{ops::ControlFlow, time::Duration};
 

@@ -16,6 +16,8 @@ use glam::{DVec3, Vec3};
 /// to all vertex arrays.
 ///
 /// - Vertices at exactly equal positions are one position, and a UV seam leaves no trace in the normals.
+/// - Where the normals of all faces at a position are within half the crease angle of the first one's, they are one
+///   group even if some share no edge.
 /// - Faces of one polygon ([`Model::face_polygon`]) have the polygon's normal and are always in one group.
 /// - Two faces of opposite winding are compared with one of the normals turned round; each then gets the normal of the
 ///   group on its own front.
@@ -36,13 +38,22 @@ pub fn fill_missing(model: &mut Model, crease_angle_rad: f32) {
     let shapes = face_shapes(model);
     let (first_corner, corners) = corners_by_place(model, &place);
     // Rounding of the positions must not part faces that meet at just the crease angle.
-    let least_cos =
-        (f64::from(crease_angle_rad).clamp(0.0, std::f64::consts::PI) + 1e-5).min(std::f64::consts::PI).cos();
+    let widest = (f64::from(crease_angle_rad).clamp(0.0, std::f64::consts::PI) + 1e-5).min(std::f64::consts::PI);
+    let (least_cos, half_cos) = (widest.cos() - 1e-12, (0.5 * widest).cos());
     let mut fan = Fan::default();
     for here in 0..wanted.len() {
         let around = &corners[first_corner[here] as usize..first_corner[here + 1] as usize];
         if wanted[here] && !around.is_empty() {
-            fan.group(model, &place, &shapes, here as u32, around, least_cos - 1e-12);
+            if let Some(normal) = sum_if_smooth(&shapes, around, half_cos) {
+                for &corner in around {
+                    let vertex = model.faces[corner as usize / 3][corner as usize % 3] as usize;
+                    if missing.get(vertex) == Some(&true) {
+                        model.normals[vertex] = normal;
+                    }
+                }
+                continue;
+            }
+            fan.group(model, &place, &shapes, here as u32, around, least_cos);
             fan.sum_up(&shapes, around);
             fan.assign(model, &mut place, &missing, around);
         }
@@ -168,6 +179,20 @@ fn corners_by_place(model: &Model, place: &[u32]) -> (Vec<u32>, Vec<u32>) {
     (first, corners)
 }
 
+/// The normal of all faces at one place, if all are sound and within half the crease angle of the first.
+fn sum_if_smooth(shapes: &[FaceShape], around: &[u32], half_cos: f64) -> Option<Vec3> {
+    let first = shapes[around[0] as usize / 3].normal;
+    let mut sum = DVec3::ZERO;
+    for &corner in around {
+        let shape = &shapes[corner as usize / 3];
+        if !shape.sound || shape.normal.dot(first) < half_cos {
+            return None;
+        }
+        sum += shape.normal * f64::from(shape.angles_rad[corner as usize % 3]);
+    }
+    sum.try_normalize().map(DVec3::as_vec3).filter(|n| n.is_finite())
+}
+
 /// The face corners at one place, numbered from 0, and the groups that they form. Kept for its memory only.
 #[derive(Default)]
 struct Fan {
@@ -255,7 +280,19 @@ impl Fan {
             }
         }
         self.edges = edges;
-        if self.bridges.is_empty() {
+        self.settle_unsound(shapes, around, &meet_smoothly);
+    }
+
+    /// Faces on both sides of an unsound one are compared; then each unsound corner joins one group.
+    fn settle_unsound(
+        &mut self,
+        shapes: &[FaceShape],
+        around: &[u32],
+        meet_smoothly: &impl Fn(u32, u32, bool) -> bool,
+    ) {
+        let is_sound = |i: u32| shapes[around[i as usize] as usize / 3].sound;
+        let corners = 0..around.len() as u32;
+        if corners.clone().all(is_sound) {
             return;
         }
         let mut bridges = std::mem::take(&mut self.bridges);
@@ -268,10 +305,17 @@ impl Fan {
                 }
             }
         }
-        // Only now, lest the unsound face joins what it must not.
+        // Only now, lest the unsound face joins what it must not. A face with two corners at this place runs along its
+        // edge both ways: the same winding is meant.
         for bridge in bridges.chunk_by(|a, b| a.0 == b.0) {
-            let (unsound, sound, opposite) = bridge[0];
+            let &(unsound, sound, opposite) = bridge.iter().find(|b| !b.2).unwrap_or(&bridge[0]);
             self.join(unsound, sound, opposite);
+        }
+        let any = corners.clone().find(|&i| is_sound(i)).unwrap_or(0);
+        for i in corners {
+            if !is_sound(i) && bridges.binary_search_by_key(&i, |b| b.0).is_err() {
+                self.join(i, any, false);
+            }
         }
         self.bridges = bridges;
     }
@@ -288,7 +332,6 @@ impl Fan {
                 self.normals[root as usize] += if turned { -share } else { share };
             }
         }
-        let some_sound = (0..around.len() as u32).find(|&i| shape_of(i).sound);
         for i in 0..around.len() as u32 {
             let (root, turned) = self.root(i);
             let own = shape_of(i);
@@ -305,20 +348,10 @@ impl Fan {
                 self.normals[root as usize] = if turned { -own.normal } else { own.normal };
             }
         }
-        let rest = match some_sound {
-            Some(i) => {
-                let (root, turned) = self.root(i);
-                if turned { -self.normals[root as usize] } else { self.normals[root as usize] }
-            }
-            None => {
-                let sum: DVec3 = (0..around.len() as u32).map(|i| shape_of(i).normal).sum();
-                sum.try_normalize().unwrap_or(DVec3::Y)
-            }
-        };
-        for i in 0..around.len() as u32 {
-            if self.root(i).0 == i && self.normals[i as usize] == DVec3::ZERO {
-                self.normals[i as usize] = rest;
-            }
+        // Nothing sound here, and one group.
+        if self.normals[0] == DVec3::ZERO && self.root(0).0 == 0 {
+            let sum: DVec3 = (0..around.len() as u32).map(|i| shape_of(i).normal).sum();
+            self.normals[0] = sum.try_normalize().unwrap_or(DVec3::Y);
         }
     }
 

@@ -11,7 +11,7 @@
 //! | 4 | the diagonal that lies inside; of two, the shorter, or the first where they are equal | constant |
 //! | 5 and more, convex | every other corner is cut off until none is left | O(n) |
 //! | 5 and more, else | constrained Delaunay (L. P. Chew, "Constrained Delaunay Triangulations", 1989) | O(n log n) |
-//! | where that fails | ear clipping (G. Meisters, "Polygons Have Ears", 1975), its work bounded | O(n²), 0.2 s at most |
+//! | where that fails | ear clipping (G. Meisters, "Polygons Have Ears", 1975), bounded | O(n²), below a second |
 //!
 //! A hole that is joined to the outline by an edge there and back (a keyhole) comes out right. Ear clipping is for
 //! what has no right answer: outlines that cross or touch themselves. A polygon without area, or with a corner
@@ -306,8 +306,8 @@ fn delaunay(corners: &[Vec3], flat: &[DVec2], triangles: &mut Vec<[u32; 3]>) -> 
     triangles.len() == n - 2
 }
 
-/// How many corners may be compared with ears, about 0.2 s.
-const EAR_TESTS: usize = 50_000_000;
+/// How many corners may be compared with ears, for a time of some tenths of a second.
+const EAR_TESTS: usize = 20_000_000;
 
 /// Cuts corners off until three are left: one whose triangle is empty while there is one, else a corner without
 /// area, else the next convex one, else any.

@@ -289,7 +289,7 @@ fn strided_and_quantised_positions() {
         .flat_map(|v| v.to_le_bytes())
         .collect();
     doc.view(&bytes[..22]);
-    doc.views[0].insert_str(doc.views[0].len() - 1, r#","byteStride":8"#);
+    doc.views[0] = doc.views[0].replace('}', r#","byteStride":8}"#);
     doc.accessor(r#"{"bufferView":0,"componentType":5122,"normalized":true,"type":"VEC3","count":3}"#.into());
     let rest = r#","extensionsRequired":["KHR_mesh_quantization"],"extensionsUsed":["KHR_mesh_quantization"]"#;
     let loaded = doc.mesh(r#""attributes":{"POSITION":0}"#, "", rest).unwrap();
@@ -553,7 +553,7 @@ fn broken_accessors() {
     let unknown = doc.accessor(r#"{"componentType":5130,"type":"VEC3","count":3}"#.into());
     let position = |p: usize| format!(r#""attributes":{{"POSITION":{p}}}"#);
     for (primitive, fault) in [
-        (position(big), "4000000000 vertices, more than the limit of 100000000"),
+        (position(big), "POSITION: accessor 2: 4000000000 elements of 12 bytes"),
         (position(zeros), "4000000000 vertices, more than the limit of 100000000"),
         (position(long), "mesh 0 primitive 0: POSITION: accessor 4: 4 elements of 12 bytes every 12 bytes from byte 0"),
         (position(late), "reach beyond buffer view 0, which has 36 bytes"),
@@ -623,6 +623,7 @@ fn broken_files() {
     assert_eq!(loaded.warnings, ["the extension KHR_materials_ior is ignored"]);
 }
 
+#[allow(clippy::print_stdout, reason = "a skipped test says so")]
 fn shared(name: &str) -> Option<PathBuf> {
     let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/data"));
     if !folder.is_dir() {
@@ -659,7 +660,6 @@ fn every_shared_model_loads() {
         ("VertexColorTest.glb", 72, 36),
     ] {
         let Some(model) = shared_model(name) else { return };
-        println!("{name}: {} vertices, {} faces, {:?}", model.positions.len(), model.faces.len(), model.bounds());
         // Where several nodes show one mesh, the total is tested elsewhere.
         if vertices > 0 {
             assert_eq!((model.positions.len(), model.faces.len()), (vertices, faces), "{name}");

@@ -149,12 +149,16 @@ fn materials_colours_alpha_and_textures() {
     folder.write("maps/c.png", png());
     folder.write(
         "m.mtl",
-        "Kd 1 1 1\nnewmtl one\nKd 1 0.5 0\nd 0.25\nmap_Kd maps/a b.png\n\nnewmtl two\r\nTr 0.5\r\nmap_Kd -s 1 1 1 -clamp on maps\\c.png\r\n\
+        "Kd 1 1 1\nnewmtl one\nKd 1 0.5 0\nd 0.25\nmap_Kd maps/a b.png\n\n\
+         newmtl two\r\nTr 0.5\r\nmap_Kd -s 1 1 1 -clamp on maps\\c.png\r\n\
          newmtl three\nKd spectral x.rfl\nKd 0.5\nmap_Kd nowhere.png\nmap_d x.png\nillum x\nNs\n",
     );
     let path = folder.write(
         "m.obj",
-        format!("mtllib m.mtl\nmtllib m.mtl missing.mtl\n{TRIANGLE}usemtl one\nf 1 2 3\nusemtl two\nf 1 2 3\nusemtl three\nf 1 2 3\nusemtl one\nf 3 2 1\n"),
+        format!(
+            "mtllib m.mtl\nmtllib m.mtl missing.mtl\n{TRIANGLE}usemtl one\nf 1 2 3\n\
+             usemtl two\nf 1 2 3\nusemtl three\nf 1 2 3\nusemtl one\nf 3 2 1\n"
+        ),
     );
     let Loaded { model, warnings } = load(&path, &LoadOptions::default()).unwrap();
     assert_eq!(model.face_material, [0, 1, 2, 0]);

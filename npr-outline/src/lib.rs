@@ -3,6 +3,7 @@
 
 pub mod contour;
 mod error;
+pub mod line_look;
 #[cfg(feature = "wgpu")]
 pub mod line_pass;
 pub mod segment;

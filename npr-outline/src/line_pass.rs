@@ -8,8 +8,9 @@
 //! Needs: the scene's depth buffer as a texture of the same size, `Depth32Float`, reversed.
 
 use crate::contour::{ContourEdges, TRAIT_ALWAYS, TRAIT_CUT_OUT};
+use crate::OutlineError;
+use crate::line_look::LineLook;
 use crate::segment::LineView;
-use crate::{LineKind, OutlineError};
 use glam::{DVec4, Vec3};
 use wgpu::util::DeviceExt;
 
@@ -23,28 +24,6 @@ const COMPACTION_WGSL: &str = include_str!("compaction.wgsl");
 pub const COVERAGE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
 /// The stencil that keeps ink to once a pixel.
 pub const STENCIL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Stencil8;
-
-/// How lines look.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LineLook {
-    /// Width in px by [`LineKind`]; 0 draws none of that kind.
-    pub width_px: [f32; 4],
-    /// Display-referred colour and opacity, 0..=1.
-    pub ink: [f32; 4],
-}
-
-impl LineLook {
-    /// Checks the widths.
-    ///
-    /// # Errors
-    /// [`OutlineError::Width`].
-    pub fn validate(&self) -> Result<(), OutlineError> {
-        match self.width_px.iter().find(|w| !(w.is_finite() && **w >= 0.0)) {
-            Some(&width_px) => Err(OutlineError::Width { width_px }),
-            None => Ok(()),
-        }
-    }
-}
 
 /// `OutlineView` of `line.wgsl`.
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -532,14 +511,4 @@ fn line_pipeline(
         multiview_mask: None,
         cache: None,
     })
-}
-
-/// The kinds' widths in the order of their numbers.
-pub fn widths_px(silhouette: f32, boundary: f32, crease: f32, material_border: f32) -> [f32; 4] {
-    let mut widths = [0.0; 4];
-    widths[LineKind::Silhouette as usize] = silhouette;
-    widths[LineKind::Boundary as usize] = boundary;
-    widths[LineKind::Crease as usize] = crease;
-    widths[LineKind::MaterialBorder as usize] = material_border;
-    widths
 }

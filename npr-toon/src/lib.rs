@@ -56,18 +56,15 @@ pub use uniform::{MAX_BANDS, ToonUniform};
 
 /// The functions of this crate in WGSL: no bindings, no entry points, every name begins with `toon_` or `Toon`.
 ///
-/// `toon_shade` takes its [`ToonUniform`] by value, as WGSL cannot pass a uniform by reference. A compiler that
-/// does not see through the copy makes one per pixel; where that counts (software rasterisers), read the uniform
-/// directly, which is the same in few lines:
+/// Set the override [`TOON_BANDS_OVERRIDE`] to the number of bands in use (in wgpu,
+/// `PipelineCompilationOptions::constants`). Unset, the result is the same and slower.
 ///
-/// ```wgsl
-/// var tone = vec3<f32>(0.0);
-/// var share = 1.0; // of the pixel at or above the band's lower border
-/// for (var i = 0u; i + 1u < bands.count; i++) {
-///     let above = toon_coverage(n_dot_l, bands.bands[i].w, width);
-///     tone += (share - above) * bands.bands[i].rgb;
-///     share = above;
-/// }
-/// tone += share * bands.bands[bands.count - 1u].rgb;
-/// ```
+/// `toon_band` and `toon_shade` take [`ToonUniform`] by value, as WGSL cannot pass a uniform by reference. Since the
+/// loop over the bands has a length that is known when the pipeline is made, compilers unroll it and read only the
+/// fields they need; with a length from the uniform a software rasteriser copies the whole struct for every pixel,
+/// and took ten times as long.
 pub const WGSL: &str = include_str!("toon.wgsl");
+
+/// The name of the override in [`WGSL`] that says how many bands its functions look at: 1..=[`MAX_BANDS`], at least
+/// as many as [`ToonUniform::count`], by default all.
+pub const TOON_BANDS_OVERRIDE: &str = "toon_bands";

@@ -2,11 +2,14 @@
 // Colours are display-referred. Vectors may be in any one space.
 
 const TOON_MAX_BANDS: u32 = 8u;
+// How many bands toon_band reads; those that are not in use cost time and nothing else. Set it to the number in use
+// when the pipeline is made: the loop's length is then known and the compiler unrolls it.
+override toon_bands: u32 = TOON_MAX_BANDS;
 // Below this change across a pixel a border is hard: 2^-23.
 const TOON_MIN_WIDTH: f32 = 1.1920928955078125e-7;
 
 struct ToonBands {
-    // From dark to light: rgb the tone, w the N.L where the next band begins (unused in the last).
+    // From dark to light: rgb the tone, w the N.L where the next band begins (far above 1 in the last).
     bands: array<vec4<f32>, TOON_MAX_BANDS>,
     // rgb the highlight's colour, w its threshold on N.H.
     highlight: vec4<f32>,
@@ -55,10 +58,12 @@ fn toon_pixel_width(x: f32) -> f32 {
     return toon_width(dpdxFine(x), dpdyFine(x));
 }
 
-// The share of the pixel where x is at least the threshold.
+// The share of the pixel where x is at least the threshold. All but the comparison's one multiplication and addition
+// depends on the width alone, so a compiler does it once for all borders.
 fn toon_coverage(x: f32, threshold: f32, width: f32) -> f32 {
-    let share = saturate((x - threshold) / max(width, TOON_MIN_WIDTH) + 0.5);
-    return select(select(0.0, 1.0, x >= threshold), share, width > TOON_MIN_WIDTH);
+    let ramp = width > TOON_MIN_WIDTH;
+    let slope = select(1e30, 1.0 / max(width, TOON_MIN_WIDTH), ramp);
+    return saturate((x - threshold) * slope + select(1.0, 0.5, ramp));
 }
 
 // One border: the tone below, the tone above, or their mean by the share of the pixel that each covers.
@@ -71,12 +76,12 @@ fn toon_band(bands: ToonBands, n_dot_l: f32, width: f32) -> vec3<f32> {
     var tone = vec3<f32>(0.0);
     // The share of the pixel at or above the band's lower border; all of it for the darkest.
     var share = 1.0;
-    for (var i = 0u; i + 1u < bands.count; i++) {
+    for (var i = 0u; i + 1u < toon_bands; i++) {
         let above = toon_coverage(n_dot_l, bands.bands[i].w, width);
         tone += (share - above) * bands.bands[i].rgb;
         share = above;
     }
-    return tone + share * bands.bands[bands.count - 1u].rgb;
+    return tone + share * bands.bands[toon_bands - 1u].rgb;
 }
 
 // How opaque the highlight is.
@@ -102,17 +107,17 @@ fn toon_shade(
     n_dot_h: f32,
     nh_width: f32,
 ) -> vec3<f32> {
-    let smooth_nl = select(0.0, nl_width, bands.antialias != 0u);
-    let smooth_nh = select(0.0, nh_width, bands.antialias != 0u);
-    let color = base_color * toon_band(bands, n_dot_l, smooth_nl);
+    let nl_ramp = select(0.0, nl_width, bands.antialias != 0u);
+    let nh_ramp = select(0.0, nh_width, bands.antialias != 0u);
+    let color = base_color * toon_band(bands, n_dot_l, nl_ramp);
     let opacity = toon_highlight(
         bands.highlight.w,
         bands.highlight_strength,
         bands.highlight_lit_only,
         n_dot_l,
-        smooth_nl,
+        nl_ramp,
         n_dot_h,
-        smooth_nh,
+        nh_ramp,
     );
     return mix(color, bands.highlight.rgb, opacity);
 }

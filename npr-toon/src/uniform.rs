@@ -7,11 +7,15 @@ use crate::{Bands, ToonError};
 /// How many bands a [`ToonUniform`] holds.
 pub const MAX_BANDS: usize = 8;
 
+/// Finite, so that the shader meets no infinity; beyond the reach of any border's ramp.
+const UNREACHED: f32 = 1e4;
+
 /// `ToonBands` of the WGSL: what to write into the uniform buffer, 160 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct ToonUniform {
-    /// From dark to light: the tone, and N·L where the next band begins (unused in the last).
+    /// From dark to light: the tone, and N·L where the next band begins. In the last band in use, and in those that
+    /// are not, this is 10,000, which no pixel reaches.
     pub bands: [[f32; 4]; MAX_BANDS],
     /// The highlight's colour, and its threshold on N·H.
     pub highlight: [f32; 4],
@@ -32,10 +36,14 @@ impl ToonUniform {
         if bands.tones.len() > MAX_BANDS {
             return Err(ToonError::TooManyTones { tones: bands.tones.len(), max: MAX_BANDS });
         }
-        let mut uniform =
-            Self { count: bands.tones.len() as u32, antialias: u32::from(bands.antialias), ..Self::zeroed() };
+        let mut uniform = Self {
+            bands: [[0.0, 0.0, 0.0, UNREACHED]; MAX_BANDS],
+            count: bands.tones.len() as u32,
+            antialias: u32::from(bands.antialias),
+            ..Self::zeroed()
+        };
         for (band, tone) in uniform.bands.iter_mut().zip(&bands.tones) {
-            *band = tone.extend(0.0).to_array();
+            band[..3].copy_from_slice(&tone.to_array());
         }
         for (band, &threshold) in uniform.bands.iter_mut().zip(&bands.thresholds) {
             band[3] = threshold;

@@ -4,7 +4,7 @@ use std::mem::{offset_of, size_of};
 
 use glam::Vec3;
 use naga::{Module, TypeInner};
-use npr_toon::{Bands, MAX_BANDS, ToonError, ToonUniform, WGSL};
+use npr_toon::{Bands, MAX_BANDS, TOON_BANDS_OVERRIDE, ToonError, ToonUniform, WGSL};
 
 fn validated(source: &str) -> Module {
     let module = naga::front::wgsl::parse_str(source).unwrap_or_else(|e| panic!("{}", e.emit_to_string(source)));
@@ -19,6 +19,10 @@ fn is_a_library() {
     let module = validated(WGSL);
     assert!(module.entry_points.is_empty());
     assert!(module.global_variables.is_empty());
+    // Its only override has a default.
+    let overrides: Vec<_> =
+        module.overrides.iter().map(|(_, o)| (o.name.as_deref().unwrap(), o.init.is_some())).collect();
+    assert_eq!(overrides, [(TOON_BANDS_OVERRIDE, true)]);
     for (_, function) in module.functions.iter() {
         let name = function.name.as_deref().unwrap();
         assert!(name.starts_with("toon_"), "{name}");
@@ -81,7 +85,7 @@ fn serves_a_fragment_shader() {
 fn packs_bands() {
     let uniform = ToonUniform::new(&Bands::chapter_text()).unwrap();
     assert_eq!(uniform.bands[0], [0.2, 0.2, 0.2, 0.1]);
-    assert_eq!(uniform.bands[1], [0.6, 0.6, 0.6, 0.0]);
+    assert_eq!(uniform.bands[1], [0.6, 0.6, 0.6, 1e4]);
     assert_eq!(uniform.highlight, [0.9, 0.9, 1.0, 0.8]);
     assert_eq!((uniform.count, uniform.highlight_strength), (2, 1.0));
     assert_eq!((uniform.highlight_lit_only, uniform.antialias), (0, 0));

@@ -74,9 +74,8 @@ fn icosphere(levels: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
 
 /// The cube −1..1, two faces a side, counter-clockwise seen from outside.
 fn cube() -> (Vec<Vec3>, Vec<[u32; 3]>) {
-    let positions = (0..8)
-        .map(|i| Vec3::new([-1.0, 1.0][i & 1], [-1.0, 1.0][i >> 1 & 1], [-1.0, 1.0][i >> 2]))
-        .collect();
+    let positions =
+        (0..8).map(|i| Vec3::new([-1.0, 1.0][i & 1], [-1.0, 1.0][i >> 1 & 1], [-1.0, 1.0][i >> 2])).collect();
     let quads = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
     (positions, quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect())
 }
@@ -202,12 +201,10 @@ fn a_cube_has_no_gaps_at_edges_corners_and_diagonals() {
     for axis in [DVec3::X, DVec3::Y, DVec3::Z, -DVec3::X, -DVec3::Y, -DVec3::Z] {
         let hits = caster.all(axis * 2.0, -axis, EVERYWHERE, any_hit);
         // Both faces of the near side and both of the far one share the diagonal.
-        assert_eq!(hits.iter().map(|hit| (hit.t, hit.front)).collect::<Vec<_>>(), [
-            (1.0, true),
-            (1.0, true),
-            (3.0, false),
-            (3.0, false)
-        ]);
+        assert_eq!(
+            hits.iter().map(|hit| (hit.t, hit.front)).collect::<Vec<_>>(),
+            [(1.0, true), (1.0, true), (3.0, false), (3.0, false)]
+        );
     }
 }
 
@@ -224,12 +221,13 @@ fn a_closed_sphere_does_not_leak() {
             _ => DVec3::new(0.0, random.signed() * 0.5, 0.0),
         };
         let outside = random.unit() * (1.5 + random.signed() * 0.25);
-        let middles = edges(&faces)
-            .map(|(a, b)| (positions[a as usize].as_dvec3() + positions[b as usize].as_dvec3()) / 2.0);
+        let middles =
+            edges(&faces).map(|(a, b)| (positions[a as usize].as_dvec3() + positions[b as usize].as_dvec3()) / 2.0);
         for spot in positions.iter().map(|p| p.as_dvec3()).chain(middles) {
             let hit = caster.closest(inside, spot - inside, EVERYWHERE, any_hit).expect("no leak");
             assert!((hit.t - 1.0).abs() < 1e-9 && !hit.front, "{hit:?}");
-            if spot.dot(outside - spot) > 0.1 {
+            // Well off the silhouette: there the facets fall away from a corner by up to 6°.
+            if spot.dot(outside - spot) > 0.2 * (outside - spot).length() {
                 let hits = caster.all(outside, spot - outside, EVERYWHERE, any_hit);
                 assert!((hits[0].t - 1.0).abs() < 1e-9 && hits[0].front, "{hits:?}");
                 assert!(hits.iter().any(|hit| !hit.front), "it must leave again: {hits:?}");
@@ -273,10 +271,10 @@ fn the_hierarchy_loses_nothing() {
             assert_eq!(caster.all(origin, direction, range, any_hit), expected);
             assert_eq!(caster.closest(origin, direction, range, any_hit).as_ref(), expected.first());
             assert_eq!(caster.any(origin, direction, range, any_hit), !expected.is_empty());
-            let even = |hit: &Hit| hit.face % 2 == 0;
+            let even = |hit: &Hit| hit.face.is_multiple_of(2);
             assert_eq!(
                 caster.closest(origin, direction, range, even),
-                expected.iter().copied().find(|hit| hit.face % 2 == 0)
+                expected.iter().copied().find(|hit| hit.face.is_multiple_of(2))
             );
             rays += 1;
             hits += expected.len();
@@ -324,8 +322,8 @@ fn size_and_distance_do_not_matter() {
                 assert!(caster.closest(origin, -direction, EVERYWHERE, any_hit).is_none());
                 assert!(caster.closest(origin, -direction, (f64::NEG_INFINITY, 0.0), any_hit).is_some());
                 // Past the sphere, close by.
-                let aside = direction.any_orthonormal_vector() * 1.001 * size;
-                assert!(!caster.any(origin + aside, -origin, EVERYWHERE, |hit| hit.t > 2.0));
+                let aside = origin.normalize().any_orthonormal_vector() * 1.01 * size;
+                assert!(!caster.any(origin + aside, -origin, EVERYWHERE, any_hit));
             }
         }
     }
@@ -379,9 +377,7 @@ fn of_faces_on_each_other_the_first_is_hit() {
     // Enough copies that the hierarchy puts them in many leaves, the second half wound the other way.
     let copies = 500u32;
     let many: Vec<[u32; 3]> = (0..copies)
-        .flat_map(|copy| {
-            faces.iter().map(move |&[a, b, c]| if copy >= copies / 2 { [a, c, b] } else { [b, c, a] })
-        })
+        .flat_map(|copy| faces.iter().map(move |&[a, b, c]| if copy >= copies / 2 { [a, c, b] } else { [b, c, a] }))
         .collect();
     let one = RayCaster::new(&positions, &faces);
     let caster = RayCaster::new(&positions, &many);

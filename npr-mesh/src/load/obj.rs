@@ -140,7 +140,8 @@ struct Counts {
 struct Prepared {
     text: Vec<u8>,
     counts: Counts,
-    /// Corners (numbered through all faces that tobj is given) without texture coordinate, and without normal; ascending.
+    /// Corners without texture coordinate, and without normal, numbered through all faces that
+    /// tobj is given; ascending.
     absent: [Vec<u64>; 2],
     materials_used: BTreeSet<String>,
     warnings: Vec<String>,
@@ -204,16 +205,19 @@ fn prepare(mut bytes: Vec<u8>, path: &Path, limits: &Limits) -> Result<Prepared,
         line = trimmed;
         let word_length = line.iter().position(u8::is_ascii_whitespace).unwrap_or(line.len());
         let (keyword, mut rest) = line.split_at(word_length);
-        let is_data = matches!(keyword, b"v" | b"vt" | b"vn" | b"f");
-        if is_data && let Some(comment) = rest.iter().position(|b| *b == b'#') {
-            rest = trim_end(&rest[..comment]);
-            line = &line[..word_length + rest.len()];
-            rewritten = true;
+        let mut words = 0;
+        if matches!(keyword, b"v" | b"vt" | b"vn") {
+            let length;
+            (words, length) = count_words(rest);
+            if length < rest.len() {
+                rest = &rest[..length];
+                line = trim_end(&line[..word_length + length]);
+                rewritten = true;
+            }
         }
         match keyword {
             b"v" => {
                 counts.arrays[0] += 1;
-                let words = count_words(rest);
                 match words {
                     0..=2 => return Err(bad(format!("a vertex of {words} coordinates"))),
                     3 | 4 => {}
@@ -237,7 +241,7 @@ fn prepare(mut bytes: Vec<u8>, path: &Path, limits: &Limits) -> Result<Prepared,
             }
             b"vt" => {
                 counts.arrays[1] += 1;
-                if count_words(rest) == 1 {
+                if words == 1 {
                     edit.replace(begin, at, &[line, b" 0"].concat());
                     continue;
                 }
@@ -247,8 +251,8 @@ fn prepare(mut bytes: Vec<u8>, path: &Path, limits: &Limits) -> Result<Prepared,
                 let mut corners = 0u64;
                 let corners_before = counts.corners;
                 let absent_before = [absent[0].len(), absent[1].len()];
-                let mut words = Corners { rest };
-                while let Some(corner) = words.next_corner().map_err(|fault| bad(fault.to_owned()))? {
+                let mut outline = Corners { rest };
+                while let Some(corner) = outline.next_corner().map_err(|fault| bad(fault.to_owned()))? {
                     for kind in 0..3 {
                         let index = corner[kind];
                         if index > 0 {
@@ -284,6 +288,10 @@ fn prepare(mut bytes: Vec<u8>, path: &Path, limits: &Limits) -> Result<Prepared,
                 }
                 counts.corners += corners;
                 counts.triangles += corners - 2;
+                if !outline.rest.is_empty() {
+                    line = &line[..line.len() - outline.rest.len()];
+                    rewritten = true;
+                }
             }
             b"usemtl" | b"mtllib" => {
                 // Names can have any bytes; tobj takes UTF-8 only, and a single space before them.
@@ -391,15 +399,19 @@ fn trim_end(line: &[u8]) -> &[u8] {
     line.trim_ascii_end()
 }
 
-fn count_words(line: &[u8]) -> usize {
+/// How many words there are before a comment, and where that begins.
+fn count_words(line: &[u8]) -> (usize, usize) {
     let mut words = 0;
     let mut in_space = true;
-    for b in line {
-        let is_space = b.is_ascii_whitespace();
+    for (i, &b) in line.iter().enumerate() {
+        if b == b'#' {
+            return (words, i);
+        }
+        let is_space = b <= b' ';
         words += usize::from(in_space && !is_space);
         in_space = is_space;
     }
-    words
+    (words, line.len())
 }
 
 fn words_of(line: &[u8]) -> impl Iterator<Item = &[u8]> {
@@ -414,19 +426,21 @@ fn number(word: &[u8]) -> Option<f32> {
     std::str::from_utf8(word).ok()?.parse().ok()
 }
 
-/// The corners of an `f` line.
+/// The corners of an `f` line that are still to come; a comment in the end.
 struct Corners<'a> {
     rest: &'a [u8],
 }
 
 impl Corners<'_> {
     /// Numbers of vertex, texture coordinate and normal as in the file, 0 where there is none.
+    #[inline]
     fn next_corner(&mut self) -> Result<Option<[i64; 3]>, &'static str> {
         let mut bytes = self.rest;
         while let [b' ' | b'\t' | b'\r' | 12, after @ ..] = bytes {
             bytes = after;
         }
-        if bytes.is_empty() {
+        if matches!(bytes, [] | [b'#', ..]) {
+            self.rest = bytes;
             return Ok(None);
         }
         let mut corner = [0i64; 3];
@@ -452,7 +466,7 @@ impl Corners<'_> {
             }
             corner[kind] = if negative { -value } else { value };
             match bytes {
-                [] | [b' ' | b'\t' | b'\r' | 12, ..] => break,
+                [] | [b' ' | b'\t' | b'\r' | 12 | b'#', ..] => break,
                 [b'/', after @ ..] if kind < 2 => {
                     kind += 1;
                     bytes = after;
@@ -474,7 +488,7 @@ fn color_all(text: &[u8]) -> Vec<u8> {
         if let [b'v', space, rest @ ..] = line
             && space.is_ascii_whitespace()
         {
-            let words = count_words(rest);
+            let (words, _) = count_words(rest);
             if words == 4 {
                 // A weight cannot stand beside a colour. It is 1 wherever this has been met.
                 let end = line.iter().rposition(u8::is_ascii_whitespace).unwrap_or(line.len());
@@ -588,12 +602,12 @@ fn read_materials(text: &str, folder: &Path, materials: &mut Vec<MtlMaterial>, w
                 _ => warnings.push(format!("material {name:?}: Kd {rest:?} is not understood")),
             },
             // The number comes last; `-halo` may stand before it.
-            "d" => match numbers().last().flatten() {
+            "d" => match numbers().next_back().flatten() {
                 Some(alpha) => (material.base_color.w, *has_dissolve) = (alpha.clamp(0.0, 1.0), true),
                 None => warnings.push(format!("material {name:?}: d {rest:?} is not understood")),
             },
             // Exporters disagree about `Tr`: where there is a `d` it is that which counts.
-            "Tr" if !*has_dissolve => match numbers().last().flatten() {
+            "Tr" if !*has_dissolve => match numbers().next_back().flatten() {
                 Some(clear) => material.base_color.w = (1.0 - clear).clamp(0.0, 1.0),
                 None => warnings.push(format!("material {name:?}: Tr {rest:?} is not understood")),
             },

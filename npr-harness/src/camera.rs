@@ -1,0 +1,269 @@
+//! Where a picture is taken from.
+
+use glam::{DMat4, DVec2, DVec3, DVec4, Vec3};
+use npr_outline::segment::LineView;
+
+/// How depth turns into size.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Projection {
+    /// Farther is smaller.
+    Perspective {
+        /// Angle between the upper and the lower border.
+        fov_y_rad: f64,
+    },
+    /// Parallel.
+    Orthographic {
+        /// Between the upper and the lower border, world units.
+        height: f64,
+        /// Eye depth of the far plane, world units; the depth buffer's range ends there.
+        far: f64,
+    },
+}
+
+/// A camera: right-handed, looking from `eye` to `target`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// World space.
+    pub eye: DVec3,
+    /// World space; not the eye.
+    pub target: DVec3,
+    /// Roughly upwards; not along the line of sight.
+    pub up: DVec3,
+    /// Perspective or parallel.
+    pub projection: Projection,
+    /// Eye depth of the near plane, world units, above 0.
+    pub near: f64,
+}
+
+/// The direction from which a model is seen, and how large.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Framing {
+    /// To the right around the model, from the side of +Z.
+    pub yaw_rad: f64,
+    /// Upwards from the horizon, −π/2..=π/2.
+    pub pitch_rad: f64,
+    /// 1 fits the whole model; 2 is twice as far away, or in a parallel view half the size.
+    pub distance: f64,
+    /// `Some` angle between the upper and lower border, or `None` for a parallel view.
+    pub fov_y_rad: Option<f64>,
+}
+
+impl Default for Framing {
+    fn default() -> Self {
+        Self {
+            yaw_rad: 30f64.to_radians(),
+            pitch_rad: 20f64.to_radians(),
+            distance: 1.0,
+            fov_y_rad: Some(35f64.to_radians()),
+        }
+    }
+}
+
+/// What of the picture's width and height a fitted model takes up.
+const FILL: f64 = 0.9;
+
+impl Camera {
+    /// Looks at all of `points` so that they just fit, with a margin.
+    ///
+    /// - `points`: at least one; world space.
+    /// - `aspect`: width over height.
+    pub fn framed(points: impl Iterator<Item = Vec3> + Clone, aspect: f64, framing: &Framing) -> Self {
+        let (yaw, pitch) = (framing.yaw_rad, framing.pitch_rad);
+        let back = DVec3::new(yaw.sin() * pitch.cos(), pitch.sin(), yaw.cos() * pitch.cos());
+        // Straight up and down, "up" on the picture is away from the viewer's feet.
+        let up = DVec3::new(-yaw.sin() * pitch.sin(), pitch.cos(), -yaw.cos() * pitch.sin());
+        let right = up.cross(back);
+        let in_view = |p: Vec3| {
+            let p = p.as_dvec3();
+            DVec3::new(p.dot(right), p.dot(up), p.dot(back))
+        };
+        let empty = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        let (low, high) = points.clone().map(in_view).fold(empty, |(l, h), p| (l.min(p), h.max(p)));
+        let middle = (low + high) / 2.0;
+        let size = (high - low).max_element().max(f64::MIN_POSITIVE);
+        let center = right * middle.x + up * middle.y + back * middle.z;
+        match framing.fov_y_rad {
+            Some(fov_y_rad) => {
+                let tan = DVec2::new(aspect, 1.0) * (fov_y_rad / 2.0).tan() * FILL;
+                // For each point the distance from the centre at which it just fits.
+                let fitting = points.map(in_view).fold(0.0f64, |distance, p| {
+                    let p = p - middle;
+                    distance.max(p.z + (p.x.abs() / tan.x).max(p.y.abs() / tan.y))
+                });
+                let distance = fitting.max(size * 1e-3) * framing.distance;
+                Self {
+                    eye: center + back * distance,
+                    target: center,
+                    up,
+                    projection: Projection::Perspective { fov_y_rad },
+                    near: distance * 1e-3,
+                }
+            }
+            None => {
+                let extent = (high - low).truncate();
+                let height = extent.y.max(extent.x / aspect).max(size * 1e-3) / FILL * framing.distance;
+                let depth = size * 2.0;
+                Self {
+                    eye: center + back * depth,
+                    target: center,
+                    up,
+                    projection: Projection::Orthographic { height, far: 2.0 * depth },
+                    near: depth * 1e-3,
+                }
+            }
+        }
+    }
+
+    /// Right, up, and back (towards the viewer): unit vectors of view space in world space.
+    pub fn axes(&self) -> [DVec3; 3] {
+        let back = (self.eye - self.target).normalize();
+        let right = self.up.cross(back).normalize();
+        [right, back.cross(right), back]
+    }
+
+    /// The eye as a homogeneous point: where it is with w = 1, or in a parallel view the direction to it with w = 0.
+    pub fn homogeneous_eye(&self) -> DVec4 {
+        match self.projection {
+            Projection::Perspective { .. } => self.eye.extend(1.0),
+            Projection::Orthographic { .. } => self.axes()[2].extend(0.0),
+        }
+    }
+
+    /// Half the picture's width and height: at eye depth 1 in perspective, everywhere in a parallel view.
+    fn half_extent(&self, aspect: f64) -> DVec2 {
+        let half_height = match self.projection {
+            Projection::Perspective { fov_y_rad } => (fov_y_rad / 2.0).tan(),
+            Projection::Orthographic { height, .. } => height / 2.0,
+        };
+        DVec2::new(aspect, 1.0) * half_height
+    }
+
+    /// To clip space with reversed depth: 1 at the near plane; in perspective 0 at infinity, else 0 at the far plane.
+    pub fn clip_from_world(&self, aspect: f64) -> DMat4 {
+        let [right, up, back] = self.axes();
+        let view_from_world = DMat4::from_cols(
+            DVec4::new(right.x, up.x, back.x, 0.0),
+            DVec4::new(right.y, up.y, back.y, 0.0),
+            DVec4::new(right.z, up.z, back.z, 0.0),
+            DVec4::new(-right.dot(self.eye), -up.dot(self.eye), -back.dot(self.eye), 1.0),
+        );
+        let half = self.half_extent(aspect);
+        let clip_from_view = match self.projection {
+            Projection::Perspective { .. } => DMat4::from_cols(
+                DVec4::new(1.0 / half.x, 0.0, 0.0, 0.0),
+                DVec4::new(0.0, 1.0 / half.y, 0.0, 0.0),
+                DVec4::new(0.0, 0.0, 0.0, -1.0),
+                DVec4::new(0.0, 0.0, self.near, 0.0),
+            ),
+            Projection::Orthographic { far, .. } => DMat4::from_cols(
+                DVec4::new(1.0 / half.x, 0.0, 0.0, 0.0),
+                DVec4::new(0.0, 1.0 / half.y, 0.0, 0.0),
+                DVec4::new(0.0, 0.0, 1.0 / (far - self.near), 0.0),
+                DVec4::new(0.0, 0.0, far / (far - self.near), 1.0),
+            ),
+        };
+        clip_from_view * view_from_world
+    }
+
+    /// The depth buffer's value at an eye depth; 0 for what is infinitely far.
+    pub fn buffer_depth(&self, eye_depth: f64) -> f64 {
+        match self.projection {
+            Projection::Perspective { .. } => self.near / eye_depth,
+            Projection::Orthographic { far, .. } => ((far - eye_depth) / (far - self.near)).max(0.0),
+        }
+    }
+
+    /// The ray through a point of the picture: origin, and a direction of which one unit is one unit of eye depth.
+    pub fn ray(&self, point_px: DVec2, size_px: DVec2) -> (DVec3, DVec3) {
+        let [right, up, back] = self.axes();
+        let half = self.half_extent(size_px.x / size_px.y);
+        let ndc = DVec2::new(2.0 * point_px.x / size_px.x - 1.0, 1.0 - 2.0 * point_px.y / size_px.y);
+        let aside = right * (ndc.x * half.x) + up * (ndc.y * half.y);
+        match self.projection {
+            Projection::Perspective { .. } => (self.eye, aside - back),
+            Projection::Orthographic { .. } => (self.eye + aside, -back),
+        }
+    }
+
+    /// The eye depths between which rays may hit.
+    pub fn depth_range(&self) -> (f64, f64) {
+        match self.projection {
+            Projection::Perspective { .. } => (self.near, f64::INFINITY),
+            Projection::Orthographic { far, .. } => (self.near, far),
+        }
+    }
+
+    /// What npr-outline needs to know.
+    pub fn line_view(&self, size_px: DVec2) -> LineView {
+        let px = 2.0 * self.half_extent(size_px.x / size_px.y).y / size_px.y;
+        let depth_per_px = match self.projection {
+            Projection::Perspective { .. } => DVec2::new(px, 0.0),
+            Projection::Orthographic { far, .. } => DVec2::new(0.0, px / (far - self.near)),
+        };
+        LineView { clip_from_world: self.clip_from_world(size_px.x / size_px.y), viewport_px: size_px, depth_per_px }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    fn cameras() -> [Camera; 2] {
+        let corners = (0..8u8).map(|i| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32));
+        [Some(0.6), None].map(|fov_y_rad| {
+            Camera::framed(corners.clone(), 1.5, &Framing { fov_y_rad, yaw_rad: 0.7, pitch_rad: 0.4, distance: 1.0 })
+        })
+    }
+
+    #[test]
+    fn a_ray_and_the_matrix_agree_on_where_a_pixel_looks() {
+        let size = DVec2::new(300.0, 200.0);
+        for camera in cameras() {
+            let pixel = DVec2::new(71.3, 150.9);
+            let (origin, direction) = camera.ray(pixel, size);
+            let depth = 3.7;
+            let clip = camera.clip_from_world(1.5) * (origin + direction * depth).extend(1.0);
+            let (on_screen, buffer) = npr_outline::segment::outline_screen(clip, size);
+            assert_relative_eq!(on_screen, pixel, epsilon = 1e-9);
+            assert_relative_eq!(buffer, camera.buffer_depth(depth), epsilon = 1e-12);
+        }
+    }
+
+    #[test]
+    fn depth_is_one_at_the_near_plane_and_falls() {
+        for camera in cameras() {
+            assert_relative_eq!(camera.buffer_depth(camera.near), 1.0, epsilon = 1e-12);
+            assert!(camera.buffer_depth(2.0) > camera.buffer_depth(2.1));
+        }
+    }
+
+    #[test]
+    fn a_px_of_depth_is_a_px_of_size() {
+        let size = DVec2::new(300.0, 200.0);
+        for camera in cameras() {
+            let view = camera.line_view(size);
+            let depth = 2.5;
+            // A step of one px's width at this depth, taken along the view.
+            let (origin, direction) = camera.ray(size / 2.0, size);
+            let (beside, other) = camera.ray(size / 2.0 + DVec2::X, size);
+            let px = (origin + direction * depth).distance(beside + other * depth);
+            let slope = camera.buffer_depth(depth) - camera.buffer_depth(depth + px);
+            let buffer = camera.buffer_depth(depth);
+            assert_relative_eq!(slope, buffer * view.depth_per_px.x + view.depth_per_px.y, max_relative = 0.01);
+        }
+    }
+
+    #[test]
+    fn a_framed_model_fills_the_picture_and_does_not_leave_it() {
+        for camera in cameras() {
+            let mut widest = 0.0f64;
+            for i in 0..8u8 {
+                let corner = DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2));
+                let clip = camera.clip_from_world(1.5) * corner.extend(1.0);
+                widest = widest.max((clip.truncate() / clip.w).truncate().abs().max_element());
+            }
+            assert!((0.8..=0.901).contains(&widest), "{widest}");
+        }
+    }
+}

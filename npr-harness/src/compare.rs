@@ -1,0 +1,455 @@
+//! The one comparer of images, and what it leaves behind.
+//!
+//! Differences are counted per pixel, as the largest of its four channels' differences (0..=255), alpha being a
+//! channel like any other. Pixels at which the reference itself is not stable can be exempt ([`exempt_mask`]); both
+//! counts, with and without them, are kept, so that what was exempt can be stated and bounded.
+
+use image::{ExtendedColorType, ImageEncoder, ImageFormat, codecs::png::PngEncoder};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    sync::atomic::{AtomicU64, Ordering},
+};
+
+/// A picture in memory.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Image {
+    /// Pixels.
+    pub width: u32,
+    /// Pixels.
+    pub height: u32,
+    /// `width * height * 4` bytes: rows from the top; red, green, blue and alpha, not premultiplied.
+    pub rgba8: Vec<u8>,
+}
+
+/// Why an image could not be made, read or written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ImageError {
+    /// Not four bytes a pixel.
+    #[error("{bytes} bytes are no {width}×{height} image of four bytes a pixel")]
+    Length {
+        /// Pixels.
+        width: u32,
+        /// Pixels.
+        height: u32,
+        /// How many there were.
+        bytes: usize,
+    },
+    /// The file could not be read.
+    #[error("{}: {source}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The file is no PNG.
+    #[error("{}: {source}", path.display())]
+    Decode {
+        /// The file.
+        path: PathBuf,
+        /// What the decoder said.
+        source: image::ImageError,
+    },
+    /// No PNG could be made of it.
+    #[error("{}: {source}", path.display())]
+    Encode {
+        /// The file that was to be written.
+        path: PathBuf,
+        /// What the encoder said.
+        source: image::ImageError,
+    },
+    /// The file or its folder could not be written.
+    #[error("{}: {source}", path.display())]
+    Write {
+        /// The file or folder.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// A difference image was wanted of what cannot be compared.
+    #[error(transparent)]
+    Compare(#[from] CompareError),
+}
+
+/// Why two images cannot be compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CompareError {
+    /// They have different sizes.
+    #[error(
+        "the expected image has {}×{} pixels, the actual one {}×{}",
+        expected.0, expected.1, actual.0, actual.1
+    )]
+    Size {
+        /// Width and height, pixels.
+        expected: (u32, u32),
+        /// Width and height, pixels.
+        actual: (u32, u32),
+    },
+    /// The mask of exempt pixels is for another image.
+    #[error("the mask has {mask} entries, the image {pixels} pixels")]
+    Mask {
+        /// Its length.
+        mask: usize,
+        /// What its length should be.
+        pixels: usize,
+    },
+    /// An image's bytes do not fit its size.
+    #[error("{bytes} bytes are no {width}×{height} image of four bytes a pixel")]
+    Bytes {
+        /// Pixels.
+        width: u32,
+        /// Pixels.
+        height: u32,
+        /// How many there were.
+        bytes: usize,
+    },
+}
+
+impl Image {
+    /// # Errors
+    /// [`ImageError::Length`] where `rgba8` has not four bytes a pixel.
+    pub fn new(width: u32, height: u32, rgba8: Vec<u8>) -> Result<Self, ImageError> {
+        if byte_count(width, height) == Some(rgba8.len()) {
+            Ok(Self { width, height, rgba8 })
+        } else {
+            Err(ImageError::Length { width, height, bytes: rgba8.len() })
+        }
+    }
+
+    /// The same colour everywhere.
+    ///
+    /// # Panics
+    /// If the image does not fit the address space.
+    pub fn filled(width: u32, height: u32, color: [u8; 4]) -> Self {
+        let bytes = byte_count(width, height).expect("the image fits the address space");
+        Self { width, height, rgba8: color.repeat(bytes / 4) }
+    }
+
+    /// The colour at a column and row, from the upper left.
+    ///
+    /// # Panics
+    /// Outside the image.
+    pub fn pixel(&self, x: u32, y: u32) -> [u8; 4] {
+        let at = self.offset(x, y);
+        std::array::from_fn(|channel| self.rgba8[at + channel])
+    }
+
+    /// Sets the colour at a column and row, from the upper left.
+    ///
+    /// # Panics
+    /// Outside the image.
+    pub fn set_pixel(&mut self, x: u32, y: u32, color: [u8; 4]) {
+        let at = self.offset(x, y);
+        self.rgba8[at..at + 4].copy_from_slice(&color);
+    }
+
+    fn offset(&self, x: u32, y: u32) -> usize {
+        assert!(x < self.width && y < self.height, "({x}, {y}) is outside {}×{}", self.width, self.height);
+        (y as usize * self.width as usize + x as usize) * 4
+    }
+
+    /// Reads a PNG of any colour type.
+    ///
+    /// # Errors
+    /// [`ImageError::Read`] and [`ImageError::Decode`], which name the file.
+    pub fn load_png(path: &Path) -> Result<Self, ImageError> {
+        let bytes = fs::read(path).map_err(|source| ImageError::Read { path: path.to_owned(), source })?;
+        let decoded = image::load_from_memory_with_format(&bytes, ImageFormat::Png)
+            .map_err(|source| ImageError::Decode { path: path.to_owned(), source })?
+            .into_rgba8();
+        Self::new(decoded.width(), decoded.height(), decoded.into_raw())
+    }
+
+    /// Writes a PNG. It is written under another name beside and then renamed, so that there is never half a file.
+    ///
+    /// # Errors
+    /// [`ImageError::Encode`] and [`ImageError::Write`], which name the file.
+    pub fn save_png(&self, path: &Path) -> Result<(), ImageError> {
+        let mut bytes = Vec::new();
+        if byte_count(self.width, self.height) != Some(self.rgba8.len()) {
+            return Err(ImageError::Length { width: self.width, height: self.height, bytes: self.rgba8.len() });
+        }
+        PngEncoder::new(&mut bytes)
+            .write_image(&self.rgba8, self.width, self.height, ExtendedColorType::Rgba8)
+            .map_err(|source| ImageError::Encode { path: path.to_owned(), source })?;
+        write_whole(path, &bytes)
+    }
+}
+
+/// `None` where it leaves the address space.
+fn byte_count(width: u32, height: u32) -> Option<usize> {
+    (width as usize).checked_mul(height as usize)?.checked_mul(4)
+}
+
+fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), ImageError> {
+    static NUMBER: AtomicU64 = AtomicU64::new(0);
+    let mut name = path.file_name().unwrap_or_default().to_owned();
+    name.push(format!(".{}-{}.part", std::process::id(), NUMBER.fetch_add(1, Ordering::Relaxed)));
+    let temporary = path.with_file_name(name);
+    fs::write(&temporary, bytes).and_then(|()| fs::rename(&temporary, path)).map_err(|source| {
+        // The first error is the one to report.
+        let _ = fs::remove_file(&temporary);
+        ImageError::Write { path: path.to_owned(), source }
+    })
+}
+
+/// At most `count` pixels may differ by more than `magnitude` in any channel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Tolerance {
+    /// Difference that is of no account, of 255.
+    pub magnitude: u8,
+    /// Pixels.
+    pub count: u64,
+}
+
+/// How two images differ.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Comparison {
+    /// All of them, exempt or not.
+    pub pixels: u64,
+    /// How many of them are exempt.
+    pub exempt: u64,
+    /// How many pixels that are not exempt differ by exactly the index, in the channel that differs most.
+    pub histogram: [u64; 256],
+    /// The same for all pixels.
+    pub histogram_all: [u64; 256],
+    /// The largest difference of a pixel that is not exempt.
+    pub worst: u8,
+    /// The first pixel that differs so much (column and row, from the upper left); `None` if none differs.
+    pub worst_at: Option<(u32, u32)>,
+}
+
+impl Comparison {
+    /// Pixels that are not exempt and differ by more than `magnitude`.
+    pub fn over(&self, magnitude: u8) -> u64 {
+        self.histogram[usize::from(magnitude) + 1..].iter().sum()
+    }
+
+    /// Pixels, exempt or not, that differ by more than `magnitude`.
+    pub fn over_all(&self, magnitude: u8) -> u64 {
+        self.histogram_all[usize::from(magnitude) + 1..].iter().sum()
+    }
+
+    /// Whether every one of the tolerances is kept. Without any, no pixel may differ at all.
+    pub fn passes(&self, tolerances: &[Tolerance]) -> bool {
+        if tolerances.is_empty() {
+            return self.over(0) == 0;
+        }
+        tolerances.iter().all(|tolerance| self.over(tolerance.magnitude) <= tolerance.count)
+    }
+
+    /// The share of the pixels that is exempt, 0..=1.
+    pub fn exempt_share(&self) -> f64 {
+        if self.pixels == 0 { 0.0 } else { self.exempt as f64 / self.pixels as f64 }
+    }
+}
+
+/// Counts the differences.
+///
+/// - `exempt`: per pixel, row by row, or empty for none.
+///
+/// # Errors
+/// [`CompareError`] where the sizes or the mask's length do not fit.
+pub fn compare(expected: &Image, actual: &Image, exempt: &[bool]) -> Result<Comparison, CompareError> {
+    check(expected, actual, exempt)?;
+    let mut result = Comparison {
+        pixels: (expected.rgba8.len() / 4) as u64,
+        exempt: 0,
+        histogram: [0; 256],
+        histogram_all: [0; 256],
+        worst: 0,
+        worst_at: None,
+    };
+    for (number, difference) in differences(expected, actual).enumerate() {
+        result.histogram_all[usize::from(difference)] += 1;
+        if !exempt.is_empty() && exempt[number] {
+            result.exempt += 1;
+            continue;
+        }
+        result.histogram[usize::from(difference)] += 1;
+        if difference > result.worst {
+            result.worst = difference;
+            let width = expected.width as usize;
+            result.worst_at = Some(((number % width) as u32, (number / width) as u32));
+        }
+    }
+    Ok(result)
+}
+
+/// Per pixel, row by row: whether any of the `shifted` renders of the reference differs from the reference by more
+/// than `magnitude` in any channel. What the pixel shows there hangs on where exactly it is sampled.
+///
+/// # Errors
+/// [`CompareError::Size`] where one of the images has another size.
+pub fn exempt_mask(reference: &Image, shifted: &[Image], magnitude: u8) -> Result<Vec<bool>, CompareError> {
+    let mut mask = vec![false; reference.rgba8.len() / 4];
+    for image in shifted {
+        check(reference, image, &[])?;
+        for (exempt, difference) in mask.iter_mut().zip(differences(reference, image)) {
+            *exempt |= difference > magnitude;
+        }
+    }
+    Ok(mask)
+}
+
+/// A picture of the channels' differences, on black and opaque: a difference of 1 is shown as 64, of 255 as 255. A
+/// difference in alpha is shown in all three colours. Exempt pixels are on dark teal (0, 32, 48).
+///
+/// # Errors
+/// [`CompareError`] where the sizes or the mask's length do not fit.
+pub fn difference_image(expected: &Image, actual: &Image, exempt: &[bool]) -> Result<Image, CompareError> {
+    check(expected, actual, exempt)?;
+    let amplified = |difference: u8| match difference {
+        0 => 0,
+        _ => 64 + (u16::from(difference - 1) * 191 / 254) as u8,
+    };
+    let mut rgba8 = Vec::with_capacity(expected.rgba8.len());
+    for (number, (e, a)) in pixels(expected).zip(pixels(actual)).enumerate() {
+        let [r, g, b, alpha] = std::array::from_fn(|channel| amplified(e[channel].abs_diff(a[channel])));
+        let ground = if !exempt.is_empty() && exempt[number] { [0, 32, 48] } else { [0, 0, 0] };
+        rgba8.extend([r.max(alpha).max(ground[0]), g.max(alpha).max(ground[1]), b.max(alpha).max(ground[2]), 255]);
+    }
+    Ok(Image { width: expected.width, height: expected.height, rgba8 })
+}
+
+fn check(expected: &Image, actual: &Image, exempt: &[bool]) -> Result<(), CompareError> {
+    for image in [expected, actual] {
+        if byte_count(image.width, image.height) != Some(image.rgba8.len()) {
+            let (width, height, bytes) = (image.width, image.height, image.rgba8.len());
+            return Err(CompareError::Bytes { width, height, bytes });
+        }
+    }
+    let sizes = [expected, actual].map(|image| (image.width, image.height));
+    if sizes[0] != sizes[1] {
+        return Err(CompareError::Size { expected: sizes[0], actual: sizes[1] });
+    }
+    let pixels = expected.rgba8.len() / 4;
+    if !exempt.is_empty() && exempt.len() != pixels {
+        return Err(CompareError::Mask { mask: exempt.len(), pixels });
+    }
+    Ok(())
+}
+
+fn pixels(image: &Image) -> impl Iterator<Item = &[u8]> {
+    image.rgba8.chunks_exact(4)
+}
+
+/// Per pixel the largest difference of its channels.
+fn differences<'a>(expected: &'a Image, actual: &'a Image) -> impl Iterator<Item = u8> + 'a {
+    pixels(expected).zip(pixels(actual)).map(|(e, a)| (0..4).fold(0, |worst, c| worst.max(e[c].abs_diff(a[c]))))
+}
+
+/// Writes `name`-expected.png, `name`-actual.png and `name`-difference.png into `dir`, which is made if need be, and
+/// returns their paths in this order. In the names every character but ASCII letters, digits, `.`, `_` and `-`
+/// becomes `_`.
+///
+/// Images of different sizes have no difference: the first two are written, and then it is an error.
+///
+/// # Errors
+/// [`ImageError`], which names the file.
+pub fn leave_behind(
+    dir: &Path,
+    name: &str,
+    expected: &Image,
+    actual: &Image,
+    exempt: &[bool],
+) -> Result<[PathBuf; 3], ImageError> {
+    fs::create_dir_all(dir).map_err(|source| ImageError::Write { path: dir.to_owned(), source })?;
+    let name: String =
+        name.chars().map(|c| if c.is_ascii_alphanumeric() || "._-".contains(c) { c } else { '_' }).collect();
+    let paths = ["expected", "actual", "difference"].map(|which| dir.join(format!("{name}-{which}.png")));
+    expected.save_png(&paths[0])?;
+    actual.save_png(&paths[1])?;
+    difference_image(expected, actual, exempt)?.save_png(&paths[2])?;
+    Ok(paths)
+}
+
+/// One comparison of a report.
+#[derive(Clone, Debug)]
+pub struct ReportRow {
+    /// What was compared.
+    pub name: String,
+    /// Files of the expected, actual and difference images, as [`leave_behind`] returns them.
+    pub images: [PathBuf; 3],
+    /// The numbers.
+    pub comparison: Comparison,
+    /// What was allowed.
+    pub tolerances: Vec<Tolerance>,
+}
+
+/// Writes `index.html` into `dir`, which is made if need be, and returns its path: the three images of every row
+/// side by side, with the numbers. The images are copied into the page, so that it can be passed on by itself.
+///
+/// # Errors
+/// [`ImageError::Read`] for an image and [`ImageError::Write`] for the page.
+pub fn html_report(dir: &Path, rows: &[ReportRow]) -> Result<PathBuf, ImageError> {
+    fs::create_dir_all(dir).map_err(|source| ImageError::Write { path: dir.to_owned(), source })?;
+    let failed = rows.iter().filter(|row| !row.comparison.passes(&row.tolerances)).count();
+    let mut page = format!(
+        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Images compared</title>\n<style>\n\
+         body {{ font-family: sans-serif; background: #ddd; }}\n\
+         table {{ border-collapse: collapse; }}\n\
+         th, td {{ border: 1px solid #888; padding: 4px; text-align: left; vertical-align: top; }}\n\
+         img {{ max-width: 28vw; image-rendering: pixelated; }}\n\
+         .failed {{ background: #fbb; }}\n\
+         </style></head><body>\n<h1>Images compared</h1>\n<p>{} of {} failed.</p>\n\
+         <table>\n<tr><th>name</th><th>expected</th><th>actual</th><th>difference</th></tr>\n",
+        failed,
+        rows.len(),
+    );
+    for row in rows {
+        let c = &row.comparison;
+        let passes = c.passes(&row.tolerances);
+        page.push_str(if passes { "<tr>" } else { "<tr class=\"failed\">" });
+        let verdict = if passes { "passed" } else { "failed" };
+        page.push_str(&format!("<td><b>{}</b><br>{verdict}<br>{} pixels", escape(&row.name), c.pixels));
+        page.push_str(&format!("<br>{} exempt ({:.3} %)", c.exempt, c.exempt_share() * 100.0));
+        if let Some((x, y)) = c.worst_at {
+            page.push_str(&format!("<br>worst difference {} at ({x}, {y})", c.worst));
+        }
+        let any_difference = [Tolerance { magnitude: 0, count: 0 }];
+        for t in if row.tolerances.is_empty() { &any_difference[..] } else { &row.tolerances } {
+            let (over, over_all) = (c.over(t.magnitude), c.over_all(t.magnitude));
+            page.push_str(&format!(
+                "<br>over {}: {over} of at most {} ({over_all} with the exempt ones)",
+                t.magnitude, t.count
+            ));
+        }
+        page.push_str("</td>");
+        for (path, which) in row.images.iter().zip(["expected", "actual", "difference"]) {
+            let bytes = fs::read(path).map_err(|source| ImageError::Read { path: path.clone(), source })?;
+            page.push_str(&format!("<td><img alt=\"{which}\" src=\"data:image/png;base64,{}\"></td>", base64(&bytes)));
+        }
+        page.push_str("</tr>\n");
+    }
+    page.push_str("</table>\n</body></html>\n");
+    let path = dir.join("index.html");
+    write_whole(&path, page.as_bytes())?;
+    Ok(path)
+}
+
+/// Text for an element or a quoted attribute of HTML.
+fn escape(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;").replace('\'', "&#39;")
+}
+
+/// RFC 4648, section 4.
+fn base64(bytes: &[u8]) -> String {
+    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
+    for chunk in bytes.chunks(3) {
+        let byte = |i: usize| u32::from(chunk.get(i).copied().unwrap_or(0));
+        let bits = byte(0) << 16 | byte(1) << 8 | byte(2);
+        for digit in 0..4 {
+            let value = bits >> (18 - 6 * digit) & 63;
+            text.push(if digit <= chunk.len() { char::from(DIGITS[value as usize]) } else { '=' });
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests;

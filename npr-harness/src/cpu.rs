@@ -1,0 +1,199 @@
+//! The frame on the CPU: rays, f64, the reference.
+//!
+//! One ray through each pixel's centre finds what a rasteriser with exact arithmetic would find there; everything after
+//! that is written as the formulas read. `samples` per pixel along each axis supersample the whole picture, lines
+//! included: that is the truth against which accuracy is measured.
+
+mod lines;
+mod surface;
+
+pub use lines::draw_lines;
+
+use crate::camera::Camera;
+use crate::color::to_bytes;
+use crate::compare::Image;
+use crate::plan::Plan;
+use crate::rays::Hit;
+use crate::scene::{Scene, key_light};
+use crate::style::{Lines, Style};
+use glam::{DVec2, DVec3, DVec4};
+use std::ops::Range;
+
+/// What is asked of a frame on the CPU.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CpuOptions {
+    /// Samples per pixel along each axis, at least 1.
+    pub samples: u32,
+    /// Where the samples lie relative to the pixels' centres, px: the reference's own sensitivity is what changes with it.
+    pub shift_px: DVec2,
+    /// At most so many threads; 0 for as many as the machine has.
+    pub threads: usize,
+}
+
+impl Default for CpuOptions {
+    fn default() -> Self {
+        Self { samples: 1, shift_px: DVec2::ZERO, threads: 0 }
+    }
+}
+
+/// A picture in f64, before it is rounded to bytes, and the depth buffer under it.
+#[derive(Clone, Debug)]
+pub struct CpuFrame {
+    /// Px.
+    pub width: u32,
+    /// Px.
+    pub height: u32,
+    /// Per pixel, rows from the top: display-referred RGBA, 0..=1.
+    pub color: Vec<DVec4>,
+    /// Per pixel the depth buffer's value, 0 where there is nothing.
+    pub depth: Vec<f64>,
+}
+
+impl CpuFrame {
+    /// Rounded to bytes.
+    pub fn image(&self) -> Image {
+        let rgba8 = self.color.iter().flat_map(|&c| to_bytes(c)).collect();
+        Image::new(self.width, self.height, rgba8).expect("four bytes a pixel")
+    }
+}
+
+/// Everything that is the same for all pixels of a frame.
+pub struct FrameContext<'a> {
+    /// What is shown.
+    pub scene: &'a Scene,
+    /// How.
+    pub style: &'a Style,
+    /// From where.
+    pub camera: &'a Camera,
+    /// Px, of the grid that is sampled.
+    pub size_px: DVec2,
+    /// Unit vector to the light.
+    pub to_light: DVec3,
+    textures: &'a [crate::texture::MipMapped],
+    shift_px: DVec2,
+    plan: &'a Plan,
+}
+
+/// Renders a frame.
+///
+/// `progress` is called with the share that is done, 0..=1, from any thread.
+pub fn render(
+    scene: &Scene,
+    style: &Style,
+    plan: &Plan,
+    camera: &Camera,
+    (width, height): (u32, u32),
+    options: &CpuOptions,
+    progress: &(dyn Fn(f64) + Sync),
+) -> CpuFrame {
+    let samples = options.samples.max(1);
+    let textures: Vec<_> = if plan.painted || plan.cut_out {
+        scene.model.textures.iter().map(crate::texture::MipMapped::new).collect()
+    } else {
+        Vec::new()
+    };
+    let context = FrameContext {
+        scene,
+        style,
+        camera,
+        size_px: DVec2::new(f64::from(width * samples), f64::from(height * samples)),
+        to_light: key_light(camera),
+        textures: &textures,
+        shift_px: options.shift_px * f64::from(samples),
+        plan,
+    };
+    let mut fine = context.trace(width * samples, height * samples, options.threads, progress);
+    match &style.lines {
+        Some(Lines::Fins(look)) => draw_lines(&context, &mut fine, look, f64::from(samples)),
+        Some(Lines::Printed { width_px, ink }) => {
+            lines::draw_printed(&context, &mut fine, f64::from(*width_px) * f64::from(samples), *ink);
+        }
+        None => {}
+    }
+    if samples == 1 { fine } else { averaged(&fine, width, height, samples) }
+}
+
+impl FrameContext<'_> {
+    /// Paints surfaces; lines are drawn over them afterwards.
+    fn trace(&self, width: u32, height: u32, threads: usize, progress: &(dyn Fn(f64) + Sync)) -> CpuFrame {
+        let pixels = width as usize * height as usize;
+        let mut color = vec![DVec4::ZERO; pixels];
+        let mut depth = vec![0.0; pixels];
+        // Built before the threads ask for it, so that they do not wait for each other.
+        self.scene.rays();
+        let rows = std::sync::atomic::AtomicU32::new(0);
+        let available = std::thread::available_parallelism().map_or(1, usize::from);
+        let threads = if threads == 0 { available } else { threads };
+        // Rows are handed out one by one, since the cost of a row depends on what is in it.
+        let work = std::sync::Mutex::new(
+            color.chunks_mut(width as usize).zip(depth.chunks_mut(width as usize)).enumerate(),
+        );
+        std::thread::scope(|scope| {
+            for _ in 0..threads.min(height as usize).max(1) {
+                scope.spawn(|| {
+                    loop {
+                        let next = work.lock().expect("no thread panics while it holds the lock").next();
+                        let Some((y, (color, depth))) = next else { break };
+                        self.trace_row(y as u32, 0..width, color, depth);
+                        let done = rows.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1;
+                        progress(f64::from(done) / f64::from(height));
+                    }
+                });
+            }
+        });
+        CpuFrame { width, height, color, depth }
+    }
+
+    fn trace_row(&self, y: u32, columns: Range<u32>, color: &mut [DVec4], depth: &mut [f64]) {
+        for x in columns {
+            let (painted, at) = self.trace_pixel(x, y);
+            color[x as usize] = painted;
+            depth[x as usize] = at;
+        }
+    }
+
+    /// The point of the picture that stands for a pixel.
+    pub fn sample_point(&self, x: f64, y: f64) -> DVec2 {
+        DVec2::new(x + 0.5, y + 0.5) + self.shift_px
+    }
+
+    fn trace_pixel(&self, x: u32, y: u32) -> (DVec4, f64) {
+        let (origin, direction) = self.camera.ray(self.sample_point(f64::from(x), f64::from(y)), self.size_px);
+        let range = self.camera.depth_range();
+        let rays = self.scene.rays();
+        let is_solid = |hit: &Hit| self.is_shown(hit) && !self.is_blended(hit) && !self.is_cut_out(hit, x, y);
+        let solid = rays.closest(origin, direction, range, is_solid);
+        let paper = self.style.paper.as_dvec3();
+        let mut color = match &solid {
+            Some(hit) if self.plan.painted => self.paint(hit, x, y).truncate(),
+            _ => paper,
+        };
+        if self.plan.blended {
+            let nearer = (range.0, solid.map_or(range.1, |hit| hit.t));
+            for hit in rays.all(origin, direction, nearer, |hit| self.is_shown(hit) && self.is_blended(hit)).iter().rev() {
+                let over = self.paint(hit, x, y);
+                color = color.lerp(over.truncate(), over.w);
+            }
+        }
+        (color.extend(1.0), solid.map_or(0.0, |hit| self.camera.buffer_depth(hit.t)))
+    }
+}
+
+/// The mean of each pixel's samples, in display space, as coverage is blended there; of the depth, the nearest.
+fn averaged(fine: &CpuFrame, width: u32, height: u32, samples: u32) -> CpuFrame {
+    let mut color = Vec::with_capacity((width * height) as usize);
+    let mut depth = Vec::with_capacity((width * height) as usize);
+    for y in 0..height {
+        for x in 0..width {
+            let (mut sum, mut nearest) = (DVec4::ZERO, 0.0f64);
+            for sub in 0..samples * samples {
+                let at = (y * samples + sub / samples) * fine.width + x * samples + sub % samples;
+                sum += fine.color[at as usize];
+                nearest = nearest.max(fine.depth[at as usize]);
+            }
+            color.push(sum / f64::from(samples * samples));
+            depth.push(nearest);
+        }
+    }
+    CpuFrame { width, height, color, depth }
+}

@@ -1,0 +1,64 @@
+//! Lines on the CPU: the same segments, coverage and visibility as on the device, in f64.
+
+use super::{CpuFrame, FrameContext};
+use glam::{DVec2, DVec3, Vec3};
+use npr_outline::contour::TRAIT_CUT_OUT;
+use npr_outline::line_look::LineLook;
+use npr_outline::segment::{outline_coverage, outline_is_visible, outline_project};
+
+/// Draws the lines of the frame's plan over `frame`. `scale` multiplies their widths.
+pub fn draw_lines(context: &FrameContext<'_>, frame: &mut CpuFrame, look: &LineLook, scale: f64) {
+    let coverage = line_coverage(context, frame, look, scale);
+    let ink = DVec3::new(look.ink[0].into(), look.ink[1].into(), look.ink[2].into());
+    for (color, coverage) in frame.color.iter_mut().zip(coverage) {
+        if coverage > 0.0 {
+            let opacity = f64::from(look.ink[3]) * coverage;
+            *color = color.truncate().lerp(ink, opacity).extend(opacity + color.w * (1.0 - opacity));
+        }
+    }
+}
+
+/// Per pixel how much of it visible lines cover, the greatest of any line.
+fn line_coverage(context: &FrameContext<'_>, frame: &CpuFrame, look: &LineLook, scale: f64) -> Vec<f64> {
+    let mut coverage = vec![0.0f64; frame.color.len()];
+    let Some(contours) = &context.plan.contours else { return coverage };
+    let eye = context.camera.homogeneous_eye();
+    let view = context.camera.line_view(context.size_px);
+    let (lines, _) = context.plan.lines(eye);
+    let local_eye = contours.local_eye(eye);
+    let last = (i64::from(frame.width) - 1, i64::from(frame.height) - 1);
+    let depth_at = |x: i64, y: i64| frame.depth[(y.clamp(0, last.1) * (last.0 + 1) + x.clamp(0, last.0)) as usize];
+    for line in lines {
+        let edge = line as usize;
+        let Some(kind) = contours.kind(edge, local_eye) else { continue };
+        let width_px = f64::from(look.width_px[kind as usize]) * scale;
+        if width_px <= 0.0 {
+            continue;
+        }
+        let ends = contours.ends[edge].map(|v| context.scene.model.positions[v as usize].as_dvec3());
+        let normals = contours.normals(edge).map(|n: Vec3| n.as_dvec3());
+        let Some(mut segment) = outline_project(ends, normals, width_px, &view) else { continue };
+        // The samples are what moves, not the lines.
+        segment.ends_px = segment.ends_px.map(|end| end - context.shift_px);
+        let cut_out = contours.traits[edge] & TRAIT_CUT_OUT != 0;
+        let reach = 0.5 * width_px + 1.0;
+        let [p0, p1] = segment.ends_px;
+        let (low, high) = ((p0.min(p1) - reach).floor(), (p0.max(p1) + reach).ceil());
+        for y in (low.y.max(0.0) as i64)..=(high.y.min(last.1 as f64) as i64) {
+            for x in (low.x.max(0.0) as i64)..=(high.x.min(last.0 as f64) as i64) {
+                let point = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
+                let covered = outline_coverage(&segment, point, width_px);
+                let pixel = &mut coverage[(y * (last.0 + 1) + x) as usize];
+                if covered > *pixel
+                    && outline_is_visible(&segment, segment.nearest(point), &view, cut_out, depth_at)
+                {
+                    *pixel = covered;
+                }
+            }
+        }
+    }
+    coverage
+}
+
+/// Draws the fins of the printed listing over `frame`.
+pub fn draw_printed(_context: &FrameContext<'_>, _frame: &mut CpuFrame, _width_px: f64, _ink: Vec3) {}

@@ -1,0 +1,149 @@
+//! What a ray's hit looks like.
+
+use super::FrameContext;
+use crate::color::encode_rgb;
+use crate::rays::Hit;
+use crate::style::Shade;
+use glam::{DVec2, DVec3, DVec4};
+use npr_mesh::{AlphaMode, Material};
+use npr_toon::{toon_n_dot_h, toon_n_dot_l, toon_shade, toon_width};
+
+/// What is interpolated over a face.
+struct Surface {
+    normal: DVec3,
+    to_eye: DVec3,
+    uv: DVec2,
+}
+
+impl FrameContext<'_> {
+    fn material(&self, hit: &Hit) -> &Material {
+        &self.scene.model.materials[self.scene.model.face_material[hit.face as usize] as usize]
+    }
+
+    pub(super) fn is_shown(&self, hit: &Hit) -> bool {
+        hit.front || self.material(hit).double_sided
+    }
+
+    pub(super) fn is_blended(&self, hit: &Hit) -> bool {
+        self.material(hit).alpha_mode == AlphaMode::Blend
+    }
+
+    pub(super) fn is_cut_out(&self, hit: &Hit, x: u32, y: u32) -> bool {
+        match self.material(hit).alpha_mode {
+            AlphaMode::Mask { cutoff } => self.base_color(hit, x, y).w < f64::from(cutoff),
+            _ => false,
+        }
+    }
+
+    /// The weights of a face's corners where the ray through a point of the picture meets the face's plane. Outside the
+    /// face too: that is what a rasteriser extrapolates to for its derivatives.
+    fn extrapolated(&self, hit: &Hit, point_px: DVec2) -> [f64; 3] {
+        let (origin, direction) = self.camera.ray(point_px, self.size_px);
+        let [a, b, c] = self.scene.model.faces[hit.face as usize].map(|v| self.scene.model.positions[v as usize].as_dvec3());
+        let (ab, ac, from_a) = (b - a, c - a, origin - a);
+        let across = direction.cross(ac);
+        let determinant = ab.dot(across);
+        let v = from_a.dot(across) / determinant;
+        let w = direction.dot(from_a.cross(ab)) / determinant;
+        [1.0 - v - w, v, w]
+    }
+
+    /// The weights at the hit and at the pixels beside and below (or above) it with which a 2×2 block of fragments takes
+    /// its differences, each with the sign that makes it a derivative along x and along y.
+    fn footprint(&self, hit: &Hit, x: u32, y: u32) -> ([f64; 3], ([f64; 3], f64), ([f64; 3], f64)) {
+        let beside = |index: u32| if index % 2 == 0 { 1.0 } else { -1.0 };
+        let (dx, dy) = (beside(x), beside(y));
+        let (px, py) = (f64::from(x), f64::from(y));
+        let along_x = self.extrapolated(hit, self.sample_point(px + dx, py));
+        let along_y = self.extrapolated(hit, self.sample_point(px, py + dy));
+        (hit.barycentric, (along_x, dx), (along_y, dy))
+    }
+
+    fn interpolate_uv(&self, hit: &Hit, weights: [f64; 3]) -> DVec2 {
+        let model = &self.scene.model;
+        if model.uvs.is_empty() {
+            return DVec2::ZERO;
+        }
+        let corners = model.faces[hit.face as usize];
+        (0..3).map(|i| model.uvs[corners[i] as usize].as_dvec2() * weights[i]).sum()
+    }
+
+    fn interpolate(&self, hit: &Hit, weights: [f64; 3]) -> Surface {
+        let model = &self.scene.model;
+        let corners = model.faces[hit.face as usize];
+        let sum = |of: &[glam::Vec3]| -> DVec3 {
+            (0..3).map(|i| of[corners[i] as usize].as_dvec3() * weights[i]).sum()
+        };
+        let normal = sum(&model.normals);
+        let eye = self.camera.homogeneous_eye();
+        Surface {
+            normal: if hit.front { normal } else { -normal },
+            to_eye: eye.truncate() - sum(&model.positions) * eye.w,
+            uv: self.interpolate_uv(hit, weights),
+        }
+    }
+
+    /// Linear colour and alpha: material × texture × vertex colour.
+    fn base_color(&self, hit: &Hit, x: u32, y: u32) -> DVec4 {
+        let model = &self.scene.model;
+        let material = self.material(hit);
+        let mut color = material.base_color.as_dvec4();
+        if !model.colors.is_empty() {
+            let corners = model.faces[hit.face as usize];
+            let factor: DVec4 =
+                (0..3).map(|i| model.colors[corners[i] as usize].as_dvec4() * hit.barycentric[i]).sum();
+            color *= factor;
+        }
+        if let Some(texture) = material.texture {
+            let texture = &self.textures[texture as usize];
+            let (here, (along_x, dx), (along_y, dy)) = self.footprint(hit, x, y);
+            let uv = self.interpolate_uv(hit, here);
+            let uv_dx = (self.interpolate_uv(hit, along_x) - uv) * dx;
+            let uv_dy = (self.interpolate_uv(hit, along_y) - uv) * dy;
+            color *= texture.sample(uv, texture.level(uv_dx, uv_dy));
+        }
+        color
+    }
+
+    /// The display-referred colour of a hit, and its opacity.
+    pub(super) fn paint(&self, hit: &Hit, x: u32, y: u32) -> DVec4 {
+        let material = self.scene.model.face_material[hit.face as usize] as usize;
+        let plain = self.scene.model.colors.is_empty() && self.scene.model.materials[material].texture.is_none();
+        let (base, alpha) = if plain {
+            (self.scene.material_colors[material], f64::from(self.scene.model.materials[material].base_color.w))
+        } else {
+            let linear = self.base_color(hit, x, y);
+            (encode_rgb(linear.truncate()), linear.w)
+        };
+        let lit = match &self.style.shade {
+            Shade::Paper => self.style.paper.as_dvec3(),
+            Shade::Lambert { ambient } => {
+                let here = self.interpolate(hit, hit.barycentric);
+                let ambient = f64::from(*ambient);
+                base * (ambient + (1.0 - ambient) * toon_n_dot_l(here.normal, self.to_light).max(0.0))
+            }
+            Shade::Toon(bands) => {
+                let light = |weights| {
+                    let here = self.interpolate(hit, weights);
+                    let n_dot_h =
+                        if bands.highlight.is_some() { toon_n_dot_h(here.normal, self.to_light, here.to_eye) } else { 0.0 };
+                    DVec2::new(toon_n_dot_l(here.normal, self.to_light), n_dot_h)
+                };
+                let here = light(hit.barycentric);
+                let width = if bands.antialias {
+                    let (_, (along_x, _), (along_y, _)) = self.footprint(hit, x, y);
+                    let (dx, dy) = (light(along_x) - here, light(along_y) - here);
+                    DVec2::new(toon_width(dx.x, dy.x), toon_width(dx.y, dy.y))
+                } else {
+                    DVec2::ZERO
+                };
+                toon_shade(bands, base, here.x, width.x, here.y, width.y)
+            }
+        };
+        let opacity = match self.scene.model.materials[material].alpha_mode {
+            AlphaMode::Blend => alpha.clamp(0.0, 1.0),
+            _ => 1.0,
+        };
+        lit.extend(opacity)
+    }
+}

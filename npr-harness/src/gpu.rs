@@ -1,0 +1,156 @@
+//! The frame on wgpu.
+//!
+//! One geometry pass into colour and depth; blended surfaces after it; then lines, two passes over the lines' own
+//! pixels. Everything that does not change from frame to frame is uploaded once, into a [`GpuScene`].
+
+mod context;
+mod error;
+mod scene;
+mod surface;
+mod targets;
+
+pub use context::GpuContext;
+pub use error::GpuError;
+pub use scene::GpuScene;
+pub use targets::Targets;
+
+use crate::camera::Camera;
+use crate::compare::Image;
+use crate::plan::{LineFinder, Plan};
+use crate::scene::{Scene, key_light};
+use crate::style::{Lines, Shade, Style};
+use glam::DVec2;
+use npr_outline::line_pass::{LineRecord, LineSource, LineTargets, line_records};
+use npr_toon::ToonUniform;
+use surface::{SurfacePass, SurfaceUniform};
+
+/// Renders frames. Pipelines are made when they are first needed, and kept.
+pub struct GpuRenderer<'a> {
+    context: &'a GpuContext,
+    surface: SurfacePass,
+    lines: npr_outline::line_pass::LinePass,
+    scratch: std::cell::RefCell<(Vec<u32>, Vec<LineRecord>)>,
+}
+
+impl<'a> GpuRenderer<'a> {
+    /// Makes what does not depend on scene or style.
+    pub fn new(context: &'a GpuContext) -> Self {
+        Self {
+            context,
+            surface: SurfacePass::new(&context.device),
+            lines: npr_outline::line_pass::LinePass::new(
+                &context.device,
+                targets::COLOR_FORMAT,
+                context.can_find_lines,
+            ),
+            scratch: Default::default(),
+        }
+    }
+
+    /// Uploads what a plan needs of a scene.
+    ///
+    /// # Errors
+    /// [`GpuError::BufferTooLarge`].
+    pub fn upload(&self, scene: &Scene, plan: &Plan, finder: LineFinder) -> Result<GpuScene, GpuError> {
+        let on_device = match finder {
+            LineFinder::Auto => self.context.can_find_lines && !self.context.is_software(),
+            LineFinder::Cpu => false,
+            LineFinder::Device => true,
+        };
+        let mut uploaded = GpuScene::new(self.context, &self.surface, scene, plan)?;
+        if let (true, Some(contours)) = (on_device, &plan.contours) {
+            uploaded.edges =
+                Some(self.lines.upload_edges(&self.context.device, contours, &scene.model.positions)?);
+        }
+        Ok(uploaded)
+    }
+
+    /// Makes targets of a size.
+    ///
+    /// # Errors
+    /// [`GpuError::TooLarge`].
+    pub fn targets(&self, width: u32, height: u32) -> Result<Targets, GpuError> {
+        Targets::new(self.context, width, height)
+    }
+
+    /// Submits a frame. It is done when [`GpuContext::wait`] returns.
+    ///
+    /// # Errors
+    /// What is wrong with the style.
+    pub fn draw(
+        &self,
+        scene: &Scene,
+        uploaded: &GpuScene,
+        style: &Style,
+        plan: &Plan,
+        camera: &Camera,
+        targets: &Targets,
+    ) -> Result<(), GpuError> {
+        let device = &self.context.device;
+        let size_px = DVec2::new(f64::from(targets.width), f64::from(targets.height));
+        let clip_from_world = camera.clip_from_world(size_px.x / size_px.y);
+        let eye = camera.homogeneous_eye();
+        let ambient = if let Shade::Lambert { ambient } = style.shade { ambient } else { 0.0 };
+        let uniform = SurfaceUniform {
+            clip_from_world: clip_from_world.as_mat4().to_cols_array_2d(),
+            eye: eye.as_vec4().to_array(),
+            to_light: key_light(camera).as_vec3().extend(ambient).to_array(),
+        };
+        let toon = match &style.shade {
+            Shade::Toon(bands) => ToonUniform::new(bands)?,
+            _ => bytemuck::Zeroable::zeroed(),
+        };
+        let mut encoder = device.create_command_encoder(&Default::default());
+        self.surface.record(device, &mut encoder, uploaded, scene, style, plan, camera, (&uniform, &toon), targets);
+        if let (Some(Lines::Fins(look)), Some(contours)) = (&style.lines, &plan.contours) {
+            let mut scratch = self.scratch.borrow_mut();
+            let (lines, records) = &mut *scratch;
+            let source = match &uploaded.edges {
+                Some(edges) => LineSource::OnDevice(edges),
+                None => {
+                    contours.scan(eye, lines);
+                    line_records(contours, &scene.model.positions, lines, eye, records);
+                    LineSource::Records(records)
+                }
+            };
+            let line_targets = LineTargets {
+                color: &targets.color_view,
+                depth: &targets.depth_view,
+                coverage: &targets.coverage_view,
+                stencil: &targets.stencil_view,
+            };
+            let view = camera.line_view(size_px);
+            self.lines.record(device, &mut encoder, source, look, &view, eye, &line_targets)?;
+        }
+        self.context.queue.submit([encoder.finish()]);
+        Ok(())
+    }
+
+    /// Waits for a frame and fetches it.
+    ///
+    /// # Errors
+    /// [`GpuError::Device`].
+    pub fn read(&self, targets: &Targets) -> Result<Image, GpuError> {
+        targets.read(self.context)
+    }
+}
+
+/// Renders one picture: upload, draw, fetch.
+///
+/// # Errors
+/// [`GpuError`].
+pub fn render(
+    context: &GpuContext,
+    scene: &Scene,
+    style: &Style,
+    plan: &Plan,
+    camera: &Camera,
+    (width, height): (u32, u32),
+    finder: LineFinder,
+) -> Result<Image, GpuError> {
+    let renderer = GpuRenderer::new(context);
+    let targets = renderer.targets(width, height)?;
+    let uploaded = renderer.upload(scene, plan, finder)?;
+    renderer.draw(scene, &uploaded, style, plan, camera, &targets)?;
+    renderer.read(&targets)
+}

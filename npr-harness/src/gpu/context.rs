@@ -1,0 +1,107 @@
+//! An adapter, a device, and what went wrong on it.
+
+use super::GpuError;
+use std::sync::{Arc, Mutex};
+
+/// A device to render on.
+pub struct GpuContext {
+    /// Makes resources.
+    pub device: wgpu::Device,
+    /// Takes work.
+    pub queue: wgpu::Queue,
+    /// What it is.
+    pub info: wgpu::AdapterInfo,
+    /// Whether lines can be found on the device.
+    pub can_find_lines: bool,
+    faults: Arc<Mutex<Vec<String>>>,
+}
+
+impl GpuContext {
+    /// Takes a hardware adapter, else a software one.
+    ///
+    /// # Errors
+    /// [`GpuError::NoAdapter`] with what was looked at, or why the device could not be had.
+    pub fn new() -> Result<Self, GpuError> {
+        pollster::block_on(Self::request())
+    }
+
+    async fn request() -> Result<Self, GpuError> {
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
+        let mut adapters = instance.enumerate_adapters(wgpu::Backends::all()).await;
+        let seen: Vec<String> = adapters.iter().map(|a| describe(&a.get_info())).collect();
+        adapters.retain(|adapter| is_enough(adapter));
+        // Stable: of equals the one that the system names first.
+        adapters.sort_by_key(|adapter| rank(&adapter.get_info()));
+        let adapter = adapters.first().ok_or(GpuError::NoAdapter { seen })?;
+        let info = adapter.get_info();
+        let wanted = wgpu::Features::TIMESTAMP_QUERY;
+        let flags = adapter.get_downlevel_capabilities().flags;
+        let can_find_lines =
+            flags.contains(wgpu::DownlevelFlags::VERTEX_STORAGE | wgpu::DownlevelFlags::INDIRECT_EXECUTION)
+                && flags.contains(wgpu::DownlevelFlags::COMPUTE_SHADERS);
+        let (device, queue) = adapter
+            .request_device(&wgpu::DeviceDescriptor {
+                label: Some("npr"),
+                required_features: adapter.features() & wanted,
+                required_limits: adapter.limits(),
+                ..Default::default()
+            })
+            .await
+            .map_err(|source| GpuError::NoDevice { adapter: describe(&info), source })?;
+        let faults = Arc::new(Mutex::new(Vec::new()));
+        let sink = Arc::clone(&faults);
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            if let Ok(mut faults) = sink.lock() {
+                faults.push(error.to_string());
+            }
+        }));
+        Ok(Self { device, queue, info, can_find_lines, faults })
+    }
+
+    /// Whether the adapter runs on the CPU.
+    pub fn is_software(&self) -> bool {
+        self.info.device_type == wgpu::DeviceType::Cpu
+    }
+
+    /// What the adapter is, in a line.
+    pub fn describe(&self) -> String {
+        describe(&self.info)
+    }
+
+    /// Waits for all that was submitted.
+    ///
+    /// # Errors
+    /// [`GpuError::Device`] with the first fault that the device reported since the last call.
+    pub fn wait(&self) -> Result<(), GpuError> {
+        let polled = self.device.poll(wgpu::PollType::wait_indefinitely());
+        let mut faults = self.faults.lock().map_err(|_| GpuError::Device { fault: "a fault was lost".into() })?;
+        if let Some(fault) = faults.drain(..).next() {
+            return Err(GpuError::Device { fault });
+        }
+        polled.map(|_| ()).map_err(|error| GpuError::Device { fault: error.to_string() })
+    }
+}
+
+fn describe(info: &wgpu::AdapterInfo) -> String {
+    format!("{} ({:?}, {})", info.name, info.backend, info.driver_info)
+}
+
+/// What every picture needs of an adapter.
+fn is_enough(adapter: &wgpu::Adapter) -> bool {
+    let depth = adapter.get_texture_format_features(wgpu::TextureFormat::Depth32Float).allowed_usages;
+    depth.contains(wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING)
+        && adapter.limits().max_color_attachments > 0
+        && adapter.get_info().backend != wgpu::Backend::Noop
+}
+
+/// Hardware before software, Vulkan, Metal and DirectX before OpenGL.
+fn rank(info: &wgpu::AdapterInfo) -> (u8, u8) {
+    let kind = match info.device_type {
+        wgpu::DeviceType::DiscreteGpu => 0,
+        wgpu::DeviceType::IntegratedGpu => 1,
+        wgpu::DeviceType::VirtualGpu => 2,
+        wgpu::DeviceType::Other => 3,
+        wgpu::DeviceType::Cpu => 4,
+    };
+    (kind, u8::from(info.backend == wgpu::Backend::Gl))
+}

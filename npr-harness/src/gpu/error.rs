@@ -1,0 +1,53 @@
+//! What can go wrong on a device.
+
+/// Why a picture could not be made on a device.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum GpuError {
+    /// No adapter that can do what every picture needs.
+    #[error("no usable graphics adapter (seen: {})", if seen.is_empty() { "none".to_owned() } else { seen.join("; ") })]
+    NoAdapter {
+        /// Those that were found and are not enough.
+        seen: Vec<String>,
+    },
+    /// The adapter gave no device.
+    #[error("{adapter} gave no device: {source}")]
+    NoDevice {
+        /// Which.
+        adapter: String,
+        /// Why.
+        source: wgpu::RequestDeviceError,
+    },
+    /// A picture larger than the device's textures can be.
+    #[error("{width} × {height} px: this device renders at most {limit} × {limit} px (the CPU has no such limit)")]
+    TooLarge {
+        /// Px.
+        width: u32,
+        /// Px.
+        height: u32,
+        /// Px.
+        limit: u32,
+    },
+    /// A buffer larger than the device's can be.
+    #[error("{what} needs {bytes} bytes, this device's buffers hold at most {limit}")]
+    BufferTooLarge {
+        /// What it holds.
+        what: &'static str,
+        /// How much it holds.
+        bytes: u64,
+        /// How much is allowed.
+        limit: u64,
+    },
+    /// The device reported a fault, or was lost.
+    #[error("the graphics device failed: {fault}")]
+    Device {
+        /// In its own words.
+        fault: String,
+    },
+    /// Lines that cannot be drawn.
+    #[error(transparent)]
+    Outline(#[from] npr_outline::OutlineError),
+    /// Bands that cannot be shaded.
+    #[error(transparent)]
+    Toon(#[from] npr_toon::ToonError),
+}

@@ -1,0 +1,194 @@
+//! A scene on the device.
+
+use super::surface::{MaterialUniform, SurfacePass};
+use super::{GpuContext, GpuError};
+use crate::plan::Plan;
+use crate::scene::Scene;
+use crate::texture::MipMapped;
+use glam::Vec4;
+use npr_mesh::{AlphaMode, Texture, Wrap};
+use std::ops::Range;
+use wgpu::util::DeviceExt;
+
+/// Faces of one material, drawn by one call.
+pub(super) struct Batch {
+    pub(super) material: usize,
+    pub(super) indices: Range<u32>,
+}
+
+/// What of a scene stays the same from frame to frame.
+pub struct GpuScene {
+    /// Position and normal, interleaved.
+    pub(super) vertices: wgpu::Buffer,
+    /// Texture coordinate and colour, where any surface looks one up.
+    pub(super) lookups: Option<wgpu::Buffer>,
+    /// Faces that are not blended, by material.
+    pub(super) indices: Option<wgpu::Buffer>,
+    pub(super) batches: Vec<Batch>,
+    /// Faces that are blended; sorted anew for each view.
+    pub(super) blended_faces: Vec<u32>,
+    /// Per material: its bind group.
+    pub(super) materials: Vec<wgpu::BindGroup>,
+    /// Edges, where lines are found on the device.
+    pub(super) edges: Option<npr_outline::line_pass::EdgesOnDevice>,
+}
+
+/// Whether a material's colour differs from pixel to pixel, or its alpha decides.
+pub(super) fn is_looked_up(scene: &Scene, material: usize) -> bool {
+    let m = &scene.model.materials[material];
+    m.texture.is_some() || !scene.model.colors.is_empty() || matches!(m.alpha_mode, AlphaMode::Mask { .. })
+}
+
+impl GpuScene {
+    pub(super) fn new(
+        context: &GpuContext,
+        pass: &SurfacePass,
+        scene: &Scene,
+        plan: &Plan,
+    ) -> Result<Self, GpuError> {
+        let model = &scene.model;
+        let buffer = |what: &'static str, contents: &[u8], usage| {
+            let (bytes, limit) = (contents.len() as u64, context.device.limits().max_buffer_size);
+            if bytes > limit {
+                return Err(GpuError::BufferTooLarge { what, bytes, limit });
+            }
+            let descriptor = wgpu::util::BufferInitDescriptor { label: Some(what), contents, usage };
+            Ok(context.device.create_buffer_init(&descriptor))
+        };
+        let vertices: Vec<[f32; 6]> = model
+            .positions
+            .iter()
+            .zip(&model.normals)
+            .map(|(p, n)| [p.x, p.y, p.z, n.x, n.y, n.z])
+            .collect();
+        let vertices = buffer("vertices", bytemuck::cast_slice(&vertices), wgpu::BufferUsages::VERTEX)?;
+        let lookups = if plan.textured || plan.cut_out {
+            let lookups: Vec<[f32; 6]> = (0..model.positions.len())
+                .map(|i| {
+                    let uv = model.uvs.get(i).copied().unwrap_or_default();
+                    let color = model.colors.get(i).copied().unwrap_or(Vec4::ONE);
+                    [uv.x, uv.y, color.x, color.y, color.z, color.w]
+                })
+                .collect();
+            Some(buffer("texture coordinates and colours", bytemuck::cast_slice(&lookups), wgpu::BufferUsages::VERTEX)?)
+        } else {
+            None
+        };
+        let (indices, batches, blended_faces) = batches(scene);
+        let indices = if indices.is_empty() {
+            None
+        } else {
+            Some(buffer("faces", bytemuck::cast_slice(&indices), wgpu::BufferUsages::INDEX)?)
+        };
+        let materials = materials(context, pass, scene, plan);
+        Ok(Self { vertices, lookups, indices, batches, blended_faces, materials, edges: None })
+    }
+}
+
+fn batches(scene: &Scene) -> (Vec<u32>, Vec<Batch>, Vec<u32>) {
+    let model = &scene.model;
+    let is_blended = |face: u32| {
+        model.materials[model.face_material[face as usize] as usize].alpha_mode == AlphaMode::Blend
+    };
+    let (blended, mut solid): (Vec<u32>, Vec<u32>) = (0..model.faces.len() as u32).partition(|&f| is_blended(f));
+    // Stable, so that the faces of a material keep the order of the file, whose neighbours share vertices.
+    solid.sort_by_key(|&face| model.face_material[face as usize]);
+    let mut batches: Vec<Batch> = Vec::new();
+    let mut indices = Vec::with_capacity(3 * solid.len());
+    for face in solid {
+        let material = model.face_material[face as usize] as usize;
+        let start = indices.len() as u32;
+        indices.extend(model.faces[face as usize]);
+        match batches.last_mut() {
+            Some(batch) if batch.material == material => batch.indices.end += 3,
+            _ => batches.push(Batch { material, indices: start..start + 3 }),
+        }
+    }
+    (indices, batches, blended)
+}
+
+fn materials(context: &GpuContext, pass: &SurfacePass, scene: &Scene, plan: &Plan) -> Vec<wgpu::BindGroup> {
+    let lookups_wanted = plan.textured || plan.cut_out;
+    let textures: Vec<_> = if lookups_wanted {
+        scene.model.textures.iter().map(|texture| upload_texture(context, texture)).collect()
+    } else {
+        Vec::new()
+    };
+    let white = upload_texture(
+        context,
+        &Texture {
+            name: "white".into(),
+            width: 1,
+            height: 1,
+            rgba8: vec![255; 4],
+            wrap: [Wrap::Clamp; 2],
+            smooth: true,
+        },
+    );
+    (0..scene.model.materials.len())
+        .map(|number| {
+            let material = &scene.model.materials[number];
+            let (view, sampler, size, levels) =
+                material.texture.and_then(|t| textures.get(t as usize)).unwrap_or(&white);
+            let cutoff = if let AlphaMode::Mask { cutoff } = material.alpha_mode { cutoff } else { f32::MIN };
+            let base_color = if is_looked_up(scene, number) {
+                material.base_color
+            } else {
+                scene.material_colors[number].as_vec3().extend(material.base_color.w)
+            };
+            let uniform = MaterialUniform {
+                base_color: base_color.to_array(),
+                texture_size: *size,
+                last_level: (*levels - 1) as f32,
+                cutoff,
+            };
+            pass.material_group(&context.device, &uniform, view, sampler)
+        })
+        .collect()
+}
+
+fn upload_texture(
+    context: &GpuContext,
+    texture: &Texture,
+) -> (wgpu::TextureView, wgpu::Sampler, [f32; 2], u32) {
+    let levels = MipMapped::new(texture).levels;
+    let limit = context.device.limits().max_texture_dimension_2d;
+    // Of a texture that the device cannot hold, the levels that it can.
+    let fitting: Vec<_> = levels.iter().skip_while(|(w, h, _)| *w > limit || *h > limit).collect();
+    let (width, height, _) = *fitting[0];
+    let mut bytes = Vec::new();
+    // A texture's levels halve, rounding down, exactly as those of `MipMapped` do.
+    for (_, _, level) in &fitting {
+        bytes.extend_from_slice(level);
+    }
+    let uploaded = context.device.create_texture_with_data(
+        &context.queue,
+        &wgpu::TextureDescriptor {
+            label: Some(&texture.name),
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+            mip_level_count: fitting.len() as u32,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Rgba8UnormSrgb,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        },
+        wgpu::util::TextureDataOrder::LayerMajor,
+        &bytes,
+    );
+    let address = |wrap| match wrap {
+        Wrap::Repeat => wgpu::AddressMode::Repeat,
+        Wrap::Mirror => wgpu::AddressMode::MirrorRepeat,
+        Wrap::Clamp => wgpu::AddressMode::ClampToEdge,
+    };
+    let sampler = context.device.create_sampler(&wgpu::SamplerDescriptor {
+        label: Some(&texture.name),
+        address_mode_u: address(texture.wrap[0]),
+        address_mode_v: address(texture.wrap[1]),
+        mag_filter: if texture.smooth { wgpu::FilterMode::Linear } else { wgpu::FilterMode::Nearest },
+        min_filter: wgpu::FilterMode::Linear,
+        mipmap_filter: wgpu::MipmapFilterMode::Linear,
+        ..Default::default()
+    });
+    (uploaded.create_view(&Default::default()), sampler, [width as f32, height as f32], fitting.len() as u32)
+}

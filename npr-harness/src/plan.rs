@@ -1,0 +1,132 @@
+//! Which passes a picture needs, and no more.
+
+use crate::camera::Camera;
+use crate::scene::Scene;
+use crate::style::{Lines, Shade, Style};
+use glam::DVec4;
+use npr_mesh::AlphaMode;
+use npr_outline::contour::{ContourEdges, ContourOptions, contour_edges};
+use npr_outline::{LineKind, OutlineError};
+use std::fmt;
+
+/// Where the edges that are lines are found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LineFinder {
+    /// On the CPU where the adapter is software, on the device where it is hardware.
+    #[default]
+    Auto,
+    /// A scan on the CPU; the lines alone are sent.
+    Cpu,
+    /// A compute pass and an indirect draw.
+    Device,
+}
+
+/// A pass and why it is there, or why not.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Reason {
+    /// The pass.
+    pub pass: &'static str,
+    /// Why.
+    pub why: String,
+}
+
+/// The passes of a picture, decided once for both executors.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// Whether surfaces are painted at all; otherwise only their depth is needed.
+    pub painted: bool,
+    /// Whether some material looks up a texture or has vertex colours.
+    pub textured: bool,
+    /// Whether some material is cut out by alpha.
+    pub cut_out: bool,
+    /// Whether some material is blended over what is behind it.
+    pub blended: bool,
+    /// Whether faces turned away are left out although their material is double-sided: they cannot be seen.
+    pub cull_back: bool,
+    /// The edges that can be lines, where fins are drawn.
+    pub contours: Option<ContourEdges>,
+    /// Passes, in order.
+    pub passes: Vec<Reason>,
+    /// What was left out.
+    pub left_out: Vec<Reason>,
+}
+
+impl Plan {
+    /// Decides what a style needs for a scene seen by a camera.
+    ///
+    /// # Errors
+    /// What is wrong with the style's lines.
+    pub fn new(scene: &Scene, style: &Style, camera: &Camera) -> Result<Self, OutlineError> {
+        let model = &scene.model;
+        let painted = style.shade != Shade::Paper;
+        let used = |test: &dyn Fn(&npr_mesh::Material) -> bool| model.materials.iter().any(test);
+        let textured = painted && (used(&|m| m.texture.is_some()) || !model.colors.is_empty());
+        let cut_out = used(&|m| matches!(m.alpha_mode, AlphaMode::Mask { .. }));
+        let blended = painted && scene.has_blend();
+        let cull_back = scene.closed && !sees_the_inside(scene, camera);
+        let mut passes = Vec::new();
+        let mut left_out = Vec::new();
+        let mut add = |there: bool, pass, why: &str, why_not: &str| {
+            let (list, why) = if there { (&mut passes, why) } else { (&mut left_out, why_not) };
+            list.push(Reason { pass, why: why.to_owned() });
+        };
+        let outlined = style.lines.is_some();
+        add(painted, "geometry: colour and depth", "surfaces are painted", "the style paints no surface");
+        add(!painted && outlined, "geometry: depth alone", "lines are hidden behind surfaces", "colour is drawn with it");
+        add(textured, "texture and vertex colour lookups", "materials have them", "no material needs them");
+        add(cut_out, "alpha test", "materials have a cutoff", "no material has a cutoff");
+        add(blended, "blended surfaces, back to front", "materials are blended", "no material is blended");
+        add(!cull_back, "faces turned away", "the model is open, or seen from inside", "the model is closed: they are hidden");
+        let fins = matches!(style.lines, Some(Lines::Fins(_)));
+        add(fins, "line coverage and ink", "the style draws lines", "the style draws no such lines");
+        let printed = matches!(style.lines, Some(Lines::Printed { .. }));
+        add(printed, "printed fins, all edges", "the style asks for the printed form", "only edges that are lines are sent");
+        add(false, "second light", "", "there is one light");
+        add(false, "multisampling", "", "lines and band borders carry their own coverage");
+        let contours = match &style.lines {
+            Some(Lines::Fins(look)) => {
+                look.validate()?;
+                let options =
+                    ContourOptions { crease_angle_rad: style.crease_angle_rad, material_borders: false };
+                Some(contour_edges(model, &scene.edges, &options)?)
+            }
+            _ => None,
+        };
+        Ok(Self { painted, textured, cut_out, blended, cull_back, contours, passes, left_out })
+    }
+
+    /// The lines for an eye, and how many there are of each [`LineKind`].
+    pub fn lines(&self, eye: DVec4) -> (Vec<u32>, [usize; 4]) {
+        let mut lines = Vec::new();
+        let mut counts = [0; 4];
+        if let Some(contours) = &self.contours {
+            contours.scan(eye, &mut lines);
+            let eye = contours.local_eye(eye);
+            for kind in lines.iter().filter_map(|&line| contours.kind(line as usize, eye)) {
+                counts[kind as usize] += 1;
+            }
+        }
+        debug_assert_eq!(LineKind::ALL.len(), counts.len());
+        (lines, counts)
+    }
+}
+
+/// Whether the eye, or the near plane, is within the model's box: then the back of a face can be seen.
+fn sees_the_inside(scene: &Scene, camera: &Camera) -> bool {
+    let Some((low, high)) = scene.model.bounds() else { return false };
+    let margin = scene.radius() * 1e-3 + 2.0 * camera.near;
+    let (low, high) = (low.as_dvec3() - margin, high.as_dvec3() + margin);
+    camera.eye.cmpge(low).all() && camera.eye.cmple(high).all()
+}
+
+impl fmt::Display for Plan {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for reason in &self.passes {
+            writeln!(f, "  with    {:<36} {}", reason.pass, reason.why)?;
+        }
+        for reason in &self.left_out {
+            writeln!(f, "  without {:<36} {}", reason.pass, reason.why)?;
+        }
+        Ok(())
+    }
+}

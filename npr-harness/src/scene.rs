@@ -1,0 +1,87 @@
+//! What a picture shows: a model, ready for both executors, and its light.
+
+use crate::camera::Camera;
+use crate::color::encode_rgb;
+use crate::rays::RayCaster;
+use glam::{DVec3, Vec3};
+use npr_mesh::edges::{self, EdgeKind, EdgeOptions, Edges};
+use npr_mesh::{AlphaMode, Model};
+use std::sync::OnceLock;
+
+/// A model with everything that is derived from it once.
+pub struct Scene {
+    /// Its positions are relative to [`Scene::origin`].
+    pub model: Model,
+    /// Where the model's own origin is, if it is far from the model: f32 positions keep their precision only near 0.
+    pub origin: DVec3,
+    /// For drawing: redundant faces left out.
+    pub edges: Edges,
+    /// Per material its colour without texture and vertex colour, display-referred.
+    pub material_colors: Vec<DVec3>,
+    /// Whether every edge has two faces, wound alike, so that no back of a face can be seen from outside.
+    pub closed: bool,
+    rays: OnceLock<RayCaster>,
+}
+
+impl Scene {
+    /// Finds a model's edges and prepares it.
+    pub fn new(mut model: Model) -> Self {
+        let origin = recenter(&mut model);
+        let edges =
+            edges::find(&model.positions, &model.faces, &model.face_polygon, &model.face_material, &EdgeOptions::default());
+        let closed = !edges.edges.is_empty()
+            && edges.skipped.is_empty()
+            && edges.edges.iter().all(|edge| edge.kind() == EdgeKind::TwoFace && !edge.wound_oppositely())
+            && signed_volume(&model) > 0.0;
+        let material_colors =
+            model.materials.iter().map(|m| encode_rgb(m.base_color.truncate().as_dvec3())).collect();
+        Self { model, origin, edges, material_colors, closed, rays: OnceLock::new() }
+    }
+
+    /// The ray caster, built when it is first asked for.
+    pub fn rays(&self) -> &RayCaster {
+        self.rays.get_or_init(|| RayCaster::new(&self.model.positions, &self.model.faces))
+    }
+
+    /// Whether any face is blended over what is behind it.
+    pub fn has_blend(&self) -> bool {
+        self.model.materials.iter().any(|m| m.alpha_mode == AlphaMode::Blend)
+    }
+
+    /// The corners of all faces.
+    pub fn corners(&self) -> impl Iterator<Item = Vec3> + Clone + '_ {
+        self.model.faces.iter().flatten().map(|&v| self.model.positions[v as usize])
+    }
+
+    /// The half of the bounding box's diagonal.
+    pub fn radius(&self) -> f64 {
+        self.model.bounds().map_or(0.0, |(low, high)| f64::from((high - low).length()) / 2.0)
+    }
+}
+
+/// Unit vector to the one light: over the viewer's left shoulder, so that any model is well lit from any side.
+pub fn key_light(camera: &Camera) -> DVec3 {
+    let [right, up, back] = camera.axes();
+    (right * -0.5 + up * 0.7 + back * 0.6).normalize()
+}
+
+/// Moves a model that is far from the origin, measured in its own size, to the origin.
+///
+/// Others stay where they are: a subtraction could round two positions to one. Far away it cannot, since there
+/// the difference of two f32 is exact.
+fn recenter(model: &mut Model) -> DVec3 {
+    let Some((low, high)) = model.bounds() else { return DVec3::ZERO };
+    let center = low.midpoint(high);
+    if center.length() < 4.0 * (high - low).length() {
+        return DVec3::ZERO;
+    }
+    for position in &mut model.positions {
+        *position -= center;
+    }
+    center.as_dvec3()
+}
+
+fn signed_volume(model: &Model) -> f64 {
+    let corner = |v: u32| model.positions[v as usize].as_dvec3();
+    model.faces.iter().map(|&[a, b, c]| corner(a).dot(corner(b).cross(corner(c)))).sum::<f64>() / 6.0
+}

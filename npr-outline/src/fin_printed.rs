@@ -1,0 +1,256 @@
+//! Fins as the 2002 chapter has them: a quadrilateral for every edge, that the vertex shader widens where the edge is a
+//! silhouette (Card & Mitchell 2002, "Rendering Outlines", figure 2 and listing 1).
+//!
+//! Two of a fin's four corners stick to the edge, two are displaced along the smooth normal. Hidden lines fail the
+//! depth test against the scene, which is drawn before. [`crate::segment`] is the form that mends what follows; this
+//! one is kept to be measured against. In f64, the twin of `fin_printed.wgsl`.
+//!
+//! # Where listing, text and what was wanted disagree
+//!
+//! - *Width from clip z.* The listing takes a vertex' depth from the third row of the view-projection matrix, which is
+//!   clip z, z = f / (f − n) · (w − n) in the chapter's Direct3D: lines grow thinner towards the near plane and have
+//!   no width there. [`FinDepth::Printed`] is that, [`FinDepth::Eye`] takes w instead.
+//! - *The text's reversal.* "If the value is less than zero, the vertex offset is set to zero" is the reverse of the
+//!   listing and of step 6e. The listing is followed: below zero, the offset is one.
+//! - *Products of exactly zero*, of a face seen edge-on or one without area, are not drawn; and since the test is made
+//!   for each vertex, quantised or rounded normals let the two ends of one edge disagree, which tears the fin.
+//! - *Creases are never drawn*, though the text counts them among the outline: all but silhouettes and boundaries
+//!   stay without width.
+//! - A fin that points at the viewer is seen edge-on (the chapter says so of boundaries), and the width on the screen
+//!   is as displaced only where the smooth normal is perpendicular to the view.
+
+use crate::normal_format::NormalFormat;
+use glam::{DMat4, DVec2, DVec3, DVec4, Vec3};
+use npr_mesh::Model;
+use npr_mesh::edges::{Edges, NO_FACE};
+
+/// WGSL functions: no bindings, no entry points.
+pub const FIN_PRINTED_WGSL: &str = include_str!("fin_printed.wgsl");
+
+/// One corner of a fin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PrintedFin {
+    /// World space.
+    pub position: Vec3,
+    /// The smooth normal at a displaced corner, unit; zero at one that sticks to the edge.
+    pub smooth: Vec3,
+    /// Of the edge's first face, unit, or zero if that has no area.
+    pub n_face0: Vec3,
+    /// Of the second face; at a boundary the negated first.
+    pub n_face1: Vec3,
+}
+
+/// A vertex buffer of fins.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PrintedFins {
+    /// Four an edge, in the order of the edges: at the first end, at the second, the second displaced, the first
+    /// displaced.
+    pub vertices: Vec<PrintedFin>,
+    /// Six an edge: two triangles.
+    pub indices: Vec<u32>,
+}
+
+/// Makes a fin for every edge of a model.
+///
+/// The smooth normal of an end is the sum of the model's shading normals at its position, normalised. Of an edge with
+/// more than two faces the first two count; where those two are wound oppositely, the second's normal is turned.
+pub fn printed_fins(model: &Model, edges: &Edges) -> PrintedFins {
+    let mut smooth = vec![Vec3::ZERO; model.positions.len()];
+    for (normal, &at) in model.normals.iter().zip(&edges.representative) {
+        smooth[at as usize] += *normal;
+    }
+    let mut fins = PrintedFins::default();
+    fins.vertices.reserve_exact(4 * edges.edges.len());
+    fins.indices.reserve_exact(6 * edges.edges.len());
+    for edge in &edges.edges {
+        let [first, second] = edge.faces;
+        let n_face0 = edges.face_normals[first as usize];
+        let n_face1 = match second {
+            NO_FACE => -n_face0,
+            second if edge.wound_oppositely() => -edges.face_normals[second as usize],
+            second => edges.face_normals[second as usize],
+        };
+        let [a, b] = edge.ends.map(|v| v as usize);
+        let base = fins.vertices.len() as u32;
+        for (end, displaced) in [(a, false), (b, false), (b, true), (a, true)] {
+            let smooth = if displaced { smooth[end].normalize_or_zero() } else { Vec3::ZERO };
+            fins.vertices.push(PrintedFin { position: model.positions[end], smooth, n_face0, n_face1 });
+        }
+        fins.indices.extend([0, 1, 2, 0, 2, 3].map(|corner| base + corner));
+    }
+    fins
+}
+
+impl PrintedFins {
+    /// The fins as a shader sees them whose face normals are stored in a format.
+    pub fn quantised(&self, format: NormalFormat) -> Self {
+        let mut fins = self.clone();
+        for vertex in &mut fins.vertices {
+            vertex.n_face0 = format.quantised(vertex.n_face0);
+            vertex.n_face1 = format.quantised(vertex.n_face1);
+        }
+        fins
+    }
+}
+
+/// What a fin's width grows with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FinDepth {
+    /// Clip z of a Direct3D projection of 2002, 0 at the near plane and w at the far plane, as listing 1 takes it.
+    Printed {
+        /// Distance of the near plane, above 0.
+        near: f64,
+        /// Distance of the far plane, beyond the near one.
+        far: f64,
+    },
+    /// The distance from the eye's plane, w: the same width at any distance.
+    Eye,
+}
+
+/// The view that fins are drawn for. Perspective: in a parallel view w is no distance, and the listing has no eye.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FinView {
+    /// To clip space (x right, y up, z reversed: w at the near plane, towards 0 with distance).
+    pub clip_from_world: DMat4,
+    /// The eye, world space.
+    pub eye: DVec3,
+    /// Displacement over depth, the listing's c10. A width of `n` px across the view is `n` times
+    /// 2 tan(fov/2) / height.
+    pub thickness: f64,
+    /// The depth that [`FinView::thickness`] is multiplied with.
+    pub depth: FinDepth,
+}
+
+/// Whether the listing displaces a vertex: 1 where the product of the two normals' dot products with the view vector,
+/// from the eye to the vertex, is below zero, and 0 elsewhere.
+pub fn fin_printed_flag(position: DVec3, n_face0: DVec3, n_face1: DVec3, eye: DVec3) -> f64 {
+    let view = (position - eye).normalize_or_zero();
+    if view.dot(n_face0) * view.dot(n_face1) < 0.0 { 1.0 } else { 0.0 }
+}
+
+/// The depth at a vertex whose clip-space w is given.
+pub fn fin_printed_depth(w: f64, depth: FinDepth) -> f64 {
+    match depth {
+        FinDepth::Printed { near, far } => far / (far - near) * (w - near),
+        FinDepth::Eye => w,
+    }
+}
+
+/// Listing 1: a vertex in clip space, displaced along its smooth normal where its edge is a silhouette.
+pub fn fin_printed_vertex(vertex: &PrintedFin, view: &FinView) -> DVec4 {
+    let position = vertex.position.as_dvec3();
+    let flag = fin_printed_flag(position, vertex.n_face0.as_dvec3(), vertex.n_face1.as_dvec3(), view.eye);
+    let clip = view.clip_from_world * position.extend(1.0);
+    let thickness = fin_printed_depth(clip.w, view.depth) * view.thickness;
+    view.clip_from_world * (position + vertex.smooth.as_dvec3() * (thickness * flag)).extend(1.0)
+}
+
+/// The triangles, in clip space, of all fins that have any width.
+pub fn fin_printed_triangles(fins: &PrintedFins, view: &FinView) -> Vec<[DVec4; 3]> {
+    let mut triangles = Vec::new();
+    for fin in fins.vertices.chunks_exact(4) {
+        let [a, b, c, d] = std::array::from_fn(|corner| fin_printed_vertex(&fin[corner], view));
+        // Where the two ends disagree, or a smooth normal is zero, a triangle is left of the quadrilateral.
+        for [p, q, r] in [[a, b, c], [a, c, d]] {
+            if p != q && q != r && r != p {
+                triangles.push([p, q, r]);
+            }
+        }
+    }
+    triangles
+}
+
+/// Visits the pixels that triangles cover and the scene does not hide, as a graphics processor would without
+/// antialiasing: each pixel whose centre a triangle covers (centres on a border belong to the triangle on whose
+/// left or top it is) and where the triangle's depth is at least the scene's. Both windings are drawn. A pixel is
+/// visited once for each triangle.
+///
+/// - `triangles`: clip space, z reversed; cut at the near plane, and beyond the far plane nothing is visited.
+/// - `viewport`: width and height in px.
+/// - `depth_at`: the scene's depth-buffer value at a pixel.
+///
+/// Processors round corners to a fraction of a px (1/256 is usual) before they rasterise; this does not.
+pub fn rasterise(
+    triangles: &[[DVec4; 3]],
+    viewport: [u32; 2],
+    depth_at: impl Fn(u32, u32) -> f64,
+    mut visit: impl FnMut(u32, u32),
+) {
+    let viewport_px = DVec2::new(f64::from(viewport[0]), f64::from(viewport[1]));
+    for triangle in triangles {
+        let (corners, count) = clip_near(triangle);
+        // Not before the eye, in a projection without a near plane.
+        if corners[..count].iter().any(|corner| corner.w <= 0.0) {
+            continue;
+        }
+        let screen = corners.map(|corner| {
+            let (point, depth) = crate::segment::outline_screen(corner, viewport_px);
+            point.extend(depth)
+        });
+        for last in 2..count {
+            rasterise_one([screen[0], screen[last - 1], screen[last]], viewport, &depth_at, &mut visit);
+        }
+    }
+}
+
+/// What lies before the near plane: the first so many of the corners, 0 or 3 or 4.
+fn clip_near(triangle: &[DVec4; 3]) -> ([DVec4; 4], usize) {
+    let mut kept = [DVec4::W; 4];
+    let mut count = 0;
+    for (i, &from) in triangle.iter().enumerate() {
+        let to = triangle[(i + 1) % 3];
+        let (inside_from, inside_to) = (from.w - from.z, to.w - to.z);
+        if inside_from >= 0.0 {
+            kept[count] = from;
+            count += 1;
+        }
+        if (inside_from >= 0.0) != (inside_to >= 0.0) {
+            kept[count] = from + (to - from) * (inside_from / (inside_from - inside_to));
+            count += 1;
+        }
+    }
+    (kept, count)
+}
+
+/// `corners`: px, y down, and depth.
+fn rasterise_one(
+    corners: [DVec3; 3],
+    [width, height]: [u32; 2],
+    depth_at: &impl Fn(u32, u32) -> f64,
+    visit: &mut impl FnMut(u32, u32),
+) {
+    let [a, mut b, mut c] = corners;
+    let area = (b - a).truncate().perp_dot((c - a).truncate());
+    if area == 0.0 || !area.is_finite() {
+        return;
+    }
+    if area < 0.0 {
+        std::mem::swap(&mut b, &mut c);
+    }
+    let area = area.abs();
+    let sides = [(b, c), (c, a), (a, b)];
+    // With y down and the inside on the right of each side: left sides go up, top sides to the right.
+    let takes_border = sides.map(|(from, to)| to.y < from.y || (to.y == from.y && to.x > from.x));
+    let low = a.min(b).min(c);
+    let high = a.max(b).max(c);
+    // Casts from f64 saturate, so what lies outside the picture makes an empty range.
+    let first = |v: f64| (v - 0.5).ceil().max(0.0) as u32;
+    let end = |v: f64, size: u32| (((v - 0.5).floor() + 1.0).max(0.0) as u32).min(size);
+    for y in first(low.y)..end(high.y, height) {
+        for x in first(low.x)..end(high.x, width) {
+            let centre = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
+            let inside =
+                sides.map(|(from, to)| (to - from).truncate().perp_dot(centre - from.truncate()));
+            if inside.iter().zip(takes_border).any(|(&e, border)| e < 0.0 || (e == 0.0 && !border)) {
+                continue;
+            }
+            let depth = (inside[0] * a.z + inside[1] * b.z + inside[2] * c.z) / area;
+            if depth >= 0.0 && depth >= depth_at(x, y) {
+                visit(x, y);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

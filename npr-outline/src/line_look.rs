@@ -1,0 +1,35 @@
+//! How lines look.
+
+use crate::{LineKind, OutlineError};
+
+/// How lines look.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LineLook {
+    /// Width in px by [`LineKind`]; 0 draws none of that kind.
+    pub width_px: [f32; 4],
+    /// Display-referred colour and opacity, 0..=1.
+    pub ink: [f32; 4],
+}
+
+impl LineLook {
+    /// Checks the widths.
+    ///
+    /// # Errors
+    /// [`OutlineError::Width`].
+    pub fn validate(&self) -> Result<(), OutlineError> {
+        match self.width_px.iter().find(|w| !(w.is_finite() && **w >= 0.0)) {
+            Some(&width_px) => Err(OutlineError::Width { width_px }),
+            None => Ok(()),
+        }
+    }
+}
+
+/// The kinds' widths in the order of their numbers.
+pub fn widths_px(silhouette: f32, boundary: f32, crease: f32, material_border: f32) -> [f32; 4] {
+    let mut widths = [0.0; 4];
+    widths[LineKind::Silhouette as usize] = silhouette;
+    widths[LineKind::Boundary as usize] = boundary;
+    widths[LineKind::Crease as usize] = crease;
+    widths[LineKind::MaterialBorder as usize] = material_border;
+    widths
+}
