@@ -2,12 +2,17 @@
 #![warn(missing_docs)]
 
 pub mod camera;
+pub mod check;
 pub mod color;
 pub mod compare;
 pub mod cpu;
+pub mod error;
+pub mod executor;
+pub mod gallery;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod inspect;
+pub mod line_truth;
 pub mod plan;
 pub mod rays;
 pub mod scene;

@@ -153,15 +153,15 @@ pub fn find(
     let mut skipped = Vec::new();
     let (mut edges, mut further_faces) = collect(positions.len(), faces, &representative, &skipped);
     if options.skip_redundant {
-        skipped = redundant_faces(&edges, &further_faces, faces, &representative, &face_normals);
+        skipped = redundant_faces(&edges, &further_faces, faces, &representative, &face_normals, face_polygon);
         if !skipped.is_empty() {
             (edges, further_faces) = collect(positions.len(), faces, &representative, &skipped);
         }
     }
-    classify(&mut edges, &further_faces, &face_normals, face_material);
     if !face_polygon.is_empty() {
-        drop_diagonals(&mut edges, &mut further_faces, face_polygon);
+        drop_diagonals(&mut edges, &mut further_faces, faces, &representative, face_polygon);
     }
+    classify(&mut edges, &further_faces, &face_normals, face_material);
     Edges { edges, face_normals, representative, further_faces, skipped }
 }
 
@@ -307,7 +307,16 @@ fn redundant_faces(
     faces: &[[u32; 3]],
     representative: &[u32],
     face_normals: &[Vec3],
+    face_polygon: &[u32],
 ) -> Vec<bool> {
+    // A triangle cut from a larger polygon may coincide with one cut from another without the polygons doing so; such
+    // polygons are left alone.
+    let is_cut = |face: u32| {
+        let face = face as usize;
+        !face_polygon.is_empty()
+            && (face.checked_sub(1).is_some_and(|before| face_polygon[before] == face_polygon[face])
+                || face_polygon.get(face + 1) == Some(&face_polygon[face]))
+    };
     let mut redundant = Vec::new();
     let mut mark = |face: u32| {
         redundant.resize(faces.len(), false);
@@ -322,7 +331,7 @@ fn redundant_faces(
     for (face, normal) in face_normals.iter().enumerate() {
         if *normal == Vec3::ZERO {
             let [a, b, c] = corners(face as u32);
-            if a == b || b == c {
+            if (a == b || b == c) && !is_cut(face as u32) {
                 mark(face as u32);
             }
         }
@@ -331,14 +340,16 @@ fn redundant_faces(
         let [first, second] = edge.faces;
         let cos = face_normals[first as usize].dot(face_normals[second as usize]);
         if (cos.abs() > 0.999 || cos == 0.0) && first != second && corners(first) == corners(second) {
-            mark(first.max(second));
+            if !is_cut(first) && !is_cut(second) {
+                mark(first.max(second));
+            }
         }
     }
     // At a non-manifold edge any two faces can be a pair; all but the first of each set of corners go.
     let mut of_edge: Vec<(u32, u32)> = further_faces.to_vec();
     of_edge.extend(further_faces.iter().flat_map(|&(edge, _)| edges[edge as usize].faces.map(|face| (edge, face))));
     let mut keyed: Vec<(u32, [u32; 3], u32)> =
-        of_edge.into_iter().map(|(edge, face)| (edge, corners(face), face)).collect();
+        of_edge.into_iter().filter(|f| !is_cut(f.1)).map(|(edge, face)| (edge, corners(face), face)).collect();
     keyed.sort_unstable();
     for pair in keyed.windows(2) {
         if pair[0].0 == pair[1].0 && pair[0].1 == pair[1].1 && pair[0].2 != pair[1].2 {
@@ -379,25 +390,65 @@ fn classify(edges: &mut [Edge], further_faces: &[(u32, u32)], face_normals: &[Ve
     }
 }
 
-fn drop_diagonals(edges: &mut Vec<Edge>, further_faces: &mut [(u32, u32)], face_polygon: &[u32]) {
-    let mut kept = 0;
-    let mut new_number = vec![0u32; if further_faces.is_empty() { 0 } else { edges.len() }];
-    let mut old_number = 0;
-    edges.retain(|edge| {
-        let [first, second] = edge.faces;
-        let diagonal = edge.kind() == EdgeKind::TwoFace
-            && face_polygon[first as usize] == face_polygon[second as usize]
-            && first != second;
-        if !new_number.is_empty() {
-            new_number[old_number] = kept;
-        }
+/// Takes pairs of faces of one polygon out of each edge: between those, the edge is a diagonal. Two polygons side by
+/// side can be cut along the same one, which then has four faces and is still no line.
+fn drop_diagonals(
+    edges: &mut Vec<Edge>,
+    further_faces: &mut Vec<(u32, u32)>,
+    faces: &[[u32; 3]],
+    representative: &[u32],
+    face_polygon: &[u32],
+) {
+    let polygon = |face: u32| face_polygon[face as usize];
+    further_faces.sort_by_key(|&(edge, _)| edge);
+    let mut kept_further = Vec::new();
+    let mut further = further_faces.iter().copied().peekable();
+    let (mut old_number, mut new_number) = (0, 0);
+    edges.retain_mut(|edge| {
+        let number = old_number;
         old_number += 1;
-        kept += u32::from(!diagonal);
-        !diagonal
+        let [first, second] = edge.faces;
+        if edge.kind() != EdgeKind::NonManifold {
+            let diagonal = second != NO_FACE && first != second && polygon(first) == polygon(second);
+            new_number += u32::from(!diagonal);
+            return !diagonal;
+        }
+        let mut left = vec![first, second];
+        left.extend(std::iter::from_fn(|| further.next_if(|f| f.0 == number)).map(|(_, face)| face));
+        let before = left.len();
+        while let Some((a, b)) = pair_of_one_polygon(&left, polygon) {
+            left.remove(b);
+            left.remove(a);
+        }
+        if left.is_empty() {
+            return false;
+        }
+        if left.len() < before {
+            edge.faces = [left[0], left.get(1).copied().unwrap_or(NO_FACE)];
+            let ascends = edge.faces.map(|face| face != NO_FACE && runs_upwards(faces, representative, face, edge.ends));
+            edge.flags = if left.len() < 3 { 0 } else { FLAG_NON_MANIFOLD };
+            edge.flags |= if ascends[0] { FLAG_FIRST_ASCENDS } else { 0 };
+            edge.flags |= if left.len() > 1 && ascends[0] == ascends[1] { FLAG_WOUND_OPPOSITELY } else { 0 };
+        }
+        kept_further.extend(left.iter().skip(2).map(|&face| (new_number, face)));
+        new_number += 1;
+        true
     });
-    for (edge, _) in further_faces {
-        *edge = new_number[*edge as usize];
-    }
+    *further_faces = kept_further;
+}
+
+/// Whether the face runs over the edge from its first end to its second.
+fn runs_upwards(faces: &[[u32; 3]], representative: &[u32], face: u32, [low, high]: [u32; 2]) -> bool {
+    let [a, b, c] = faces[face as usize].map(|v| representative[v as usize]);
+    [(a, b), (b, c), (c, a)].contains(&(low, high))
+}
+
+/// The positions of two different faces of one polygon.
+fn pair_of_one_polygon(faces: &[u32], polygon: impl Fn(u32) -> u32) -> Option<(usize, usize)> {
+    (0..faces.len()).find_map(|a| {
+        let b = (a + 1..faces.len()).find(|&b| faces[a] != faces[b] && polygon(faces[a]) == polygon(faces[b]))?;
+        Some((a, b))
+    })
 }
 
 #[cfg(test)]

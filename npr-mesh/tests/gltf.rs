@@ -1,4 +1,5 @@
 //! glTF: small files made here, broken ones, and the shared models where there are some.
+#![allow(clippy::print_stdout)]
 #![cfg(feature = "gltf")]
 
 use glam::{Quat, Vec2, Vec3, Vec4};

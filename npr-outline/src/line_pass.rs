@@ -512,3 +512,6 @@ fn line_pipeline(
         cache: None,
     })
 }
+
+#[cfg(test)]
+mod tests;

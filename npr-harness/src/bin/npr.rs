@@ -1,1 +1,297 @@
-fn main(){}
+//! `npr`: pictures, tables and checks from the command line.
+#![allow(clippy::print_stdout, clippy::print_stderr)]
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use npr_harness::camera::{Camera, Framing};
+use npr_harness::error::HarnessError;
+use npr_harness::executor::{Backend, Executor};
+use npr_harness::plan::Plan;
+use npr_harness::scene::Scene;
+use npr_harness::style::{Style, style, styles};
+use npr_harness::{check, gallery, inspect};
+use serde_json::json;
+use std::io::IsTerminal;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Instant;
+
+/// Non-photorealistic pictures: outlines and cartoon light, on wgpu and on the CPU.
+///
+/// Without a command: the gallery of all styles on the built-in scene, into npr-out/.
+#[derive(Parser)]
+#[command(name = "npr", version)]
+struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// A picture of a model (.obj, .gltf, .glb).
+    Render(Render),
+    /// What a model is made of.
+    Inspect {
+        /// The model.
+        input: PathBuf,
+        /// As JSON.
+        #[arg(long)]
+        json: bool,
+    },
+    /// GPU against CPU reference, lines against exact contours; exit status 1 when a limit is exceeded.
+    Check {
+        /// Models; without any, the built-in scene.
+        inputs: Vec<PathBuf>,
+        /// As JSON.
+        #[arg(long)]
+        json: bool,
+        /// Where expected, actual and difference pictures of failed comparisons go.
+        #[arg(long, default_value = "npr-out/check")]
+        out: PathBuf,
+    },
+    /// The styles there are.
+    Styles,
+}
+
+#[derive(Args)]
+struct Render {
+    /// The model.
+    input: PathBuf,
+    /// The picture, PNG.
+    #[arg(short, long)]
+    output: PathBuf,
+    /// See `npr styles`.
+    #[arg(long, default_value = "cartoon")]
+    style: String,
+    /// Width and height, px.
+    #[arg(long, default_value = "1280x720", value_parser = parse_size)]
+    size: (u32, u32),
+    /// Where the picture is made.
+    #[arg(long, value_enum, default_value = "auto")]
+    backend: BackendName,
+    /// Around the model, degrees to the right from the side of +Z.
+    #[arg(long, default_value_t = 30.0, allow_negative_numbers = true)]
+    yaw: f64,
+    /// Above the horizon, degrees, -90 to 90.
+    #[arg(long, default_value_t = 20.0, allow_negative_numbers = true)]
+    pitch: f64,
+    /// 1 fits the whole model, 2 is twice as far away.
+    #[arg(long, default_value_t = 1.0)]
+    distance: f64,
+    /// Between the upper and the lower border, degrees.
+    #[arg(long, default_value_t = 35.0, conflicts_with = "ortho")]
+    fov: f64,
+    /// A parallel view.
+    #[arg(long)]
+    ortho: bool,
+    /// Samples per pixel along each axis; more than 1 renders on the CPU.
+    #[arg(long, default_value_t = 1)]
+    samples: u32,
+    /// Print what was done as JSON.
+    #[arg(long)]
+    json: bool,
+    /// Print the plan: each pass and why, each that was left out and why.
+    #[arg(long)]
+    plan: bool,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum BackendName {
+    Auto,
+    Gpu,
+    Cpu,
+}
+
+fn parse_size(text: &str) -> Result<(u32, u32), String> {
+    let number = |part: &str| part.parse::<u32>().map_err(|_| format!("{part:?} is not a number of pixels"));
+    let (width, height) = text.split_once(['x', 'X']).ok_or("expected WIDTHxHEIGHT, such as 1280x720")?;
+    Ok((number(width)?, number(height)?))
+}
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    let done = match cli.command {
+        None => run_gallery(),
+        Some(Command::Render(options)) => run_render(&options),
+        Some(Command::Inspect { input, json }) => run_inspect(&input, json),
+        Some(Command::Check { inputs, json, out }) => run_check(&inputs, json, &out),
+        Some(Command::Styles) => {
+            for style in styles() {
+                println!("{:<16}{}", style.name, style.about);
+            }
+            Ok(true)
+        }
+    };
+    match done {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
+        Err(error) => {
+            eprintln!("npr: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// A bar on a terminal, nothing elsewhere.
+fn progress_bar(what: &str) -> indicatif::ProgressBar {
+    if !std::io::stderr().is_terminal() {
+        return indicatif::ProgressBar::hidden();
+    }
+    let bar = indicatif::ProgressBar::new(1000);
+    if let Ok(style) = indicatif::ProgressStyle::with_template("{msg:24} {bar:40} {percent:>3}% {eta}") {
+        bar.set_style(style);
+    }
+    bar.set_message(what.to_owned());
+    bar
+}
+
+fn spinner(what: &str) -> indicatif::ProgressBar {
+    if !std::io::stderr().is_terminal() {
+        return indicatif::ProgressBar::hidden();
+    }
+    let bar = indicatif::ProgressBar::new_spinner();
+    bar.set_message(what.to_owned());
+    bar.enable_steady_tick(std::time::Duration::from_millis(200));
+    bar
+}
+
+fn load(path: &Path) -> Result<npr_mesh::Loaded, HarnessError> {
+    let bar = spinner(&format!("reading {}", path.display()));
+    let loaded = npr_mesh::load(path, &Default::default())?;
+    bar.finish_and_clear();
+    Ok(loaded)
+}
+
+fn announce(executor: &Executor) {
+    if let Executor::Cpu { why: Some(why) } = executor {
+        eprintln!("npr: rendering on the CPU: {why}");
+    }
+}
+
+fn run_gallery() -> Result<bool, HarnessError> {
+    let executor = Executor::choose(Backend::Auto)?;
+    announce(&executor);
+    println!("on {}", executor.describe());
+    let bar = progress_bar("gallery");
+    let rows = gallery::render(&executor, Path::new("npr-out"), &|share| bar.set_position((share * 1000.0) as u64))?;
+    bar.finish_and_clear();
+    print!("{}", gallery::table(&rows));
+    Ok(true)
+}
+
+fn checked(what: &'static str, value: f64, low: f64, high: f64, range: &'static str) -> Result<f64, HarnessError> {
+    if (low..=high).contains(&value) { Ok(value) } else { Err(HarnessError::Range { what, value, range }) }
+}
+
+const LARGEST_SIDE: u32 = 65_536;
+const LARGEST_PICTURE: u64 = 1 << 30;
+
+fn run_render(options: &Render) -> Result<bool, HarnessError> {
+    let start = Instant::now();
+    let (width, height) = options.size;
+    let sides_fit = (1..=LARGEST_SIDE).contains(&width) && (1..=LARGEST_SIDE).contains(&height);
+    let samples = checked("samples", f64::from(options.samples), 1.0, 64.0, "1..=64")? as u32;
+    let pixels = u64::from(width) * u64::from(height) * u64::from(samples * samples);
+    if !sides_fit || pixels > LARGEST_PICTURE {
+        return Err(HarnessError::Size { width, height, limit: LARGEST_SIDE });
+    }
+    let framing = Framing {
+        yaw_rad: checked("yaw", options.yaw, -1e6, 1e6, "-1e6..=1e6 degrees")?.to_radians(),
+        pitch_rad: checked("pitch", options.pitch, -90.0, 90.0, "-90..=90 degrees")?.to_radians(),
+        distance: checked("distance", options.distance, 1e-3, 1e3, "0.001..=1000")?,
+        fov_y_rad: if options.ortho {
+            None
+        } else {
+            Some(checked("field of view", options.fov, 1.0, 170.0, "1..=170 degrees")?.to_radians())
+        },
+    };
+    let style = known_style(&options.style)?;
+    let backend = match (options.backend, samples) {
+        (BackendName::Auto, 1) => Backend::Auto,
+        (BackendName::Gpu, _) => Backend::Gpu,
+        _ => Backend::Cpu,
+    };
+    let executor = Executor::choose(backend)?;
+    announce(&executor);
+    let loaded = load(&options.input)?;
+    let loaded_ms = start.elapsed().as_secs_f64() * 1e3;
+    for warning in &loaded.warnings {
+        eprintln!("npr: {}: warning: {warning}", options.input.display());
+    }
+    let scene = Scene::new(loaded.model);
+    let camera = Camera::framed(scene.corners(), f64::from(width) / f64::from(height), &framing);
+    let plan = Plan::new(&scene, &style, &camera)?;
+    let prepared_ms = start.elapsed().as_secs_f64() * 1e3 - loaded_ms;
+    let drawing = Instant::now();
+    let bar = progress_bar("rendering");
+    let image = executor.render(&scene, &style, &plan, &camera, options.size, samples, &|share| {
+        bar.set_position((share * 1000.0) as u64);
+    })?;
+    bar.finish_and_clear();
+    image.save_png(&options.output)?;
+    let drawn_ms = drawing.elapsed().as_secs_f64() * 1e3;
+    let (_, counts) = plan.lines(camera.homogeneous_eye());
+    if options.json {
+        let passes: Vec<_> = plan.passes.iter().map(|r| json!({"pass": r.pass, "why": r.why})).collect();
+        let left_out: Vec<_> = plan.left_out.iter().map(|r| json!({"pass": r.pass, "why": r.why})).collect();
+        println!(
+            "{}",
+            json!({
+                "input": options.input, "output": options.output, "style": style.name,
+                "width": width, "height": height, "executor": executor.describe(),
+                "faces": scene.model.faces.len(), "edges": scene.edges.edges.len(),
+                "lines": {"silhouette": counts[0], "boundary": counts[1], "crease": counts[2], "material_border": counts[3]},
+                "load_ms": loaded_ms, "prepare_ms": prepared_ms, "render_ms": drawn_ms,
+                "passes": passes, "left_out": left_out, "warnings": loaded.warnings,
+            })
+        );
+    } else {
+        println!(
+            "{}: {width} × {height} px, {} faces, {} lines of {} edges, {:.0} ms to load, {:.0} ms to prepare, {:.0} ms to render, on {}",
+            options.output.display(),
+            scene.model.faces.len(),
+            counts.iter().sum::<usize>(),
+            scene.edges.edges.len(),
+            loaded_ms,
+            prepared_ms,
+            drawn_ms,
+            executor.describe()
+        );
+        if options.plan {
+            print!("{plan}");
+        }
+    }
+    Ok(true)
+}
+
+fn known_style(name: &str) -> Result<Style, HarnessError> {
+    style(name).ok_or_else(|| HarnessError::UnknownStyle {
+        name: name.to_owned(),
+        known: styles().iter().map(|s| s.name).collect::<Vec<_>>().join(", "),
+    })
+}
+
+fn run_inspect(input: &Path, as_json: bool) -> Result<bool, HarnessError> {
+    let loaded = load(input)?;
+    let name = input.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+    let inspection = inspect::inspect(&name, &loaded.model, loaded.warnings);
+    if as_json {
+        println!("{}", serde_json::to_string_pretty(&inspection)?);
+    } else {
+        print!("{inspection}");
+    }
+    Ok(true)
+}
+
+fn run_check(inputs: &[PathBuf], as_json: bool, out: &Path) -> Result<bool, HarnessError> {
+    let executor = Executor::choose(Backend::Auto)?;
+    announce(&executor);
+    let bar = progress_bar("checking");
+    let report = check::run(&executor, inputs, out, &|share| bar.set_position((share * 1000.0) as u64))?;
+    bar.finish_and_clear();
+    if as_json {
+        println!("{}", serde_json::to_string_pretty(&report)?);
+    } else {
+        print!("{report}");
+    }
+    Ok(report.passed())
+}

@@ -12,7 +12,6 @@ use npr_toon::{toon_n_dot_h, toon_n_dot_l, toon_shade, toon_width};
 struct Surface {
     normal: DVec3,
     to_eye: DVec3,
-    uv: DVec2,
 }
 
 impl FrameContext<'_> {
@@ -79,7 +78,6 @@ impl FrameContext<'_> {
         Surface {
             normal: if hit.front { normal } else { -normal },
             to_eye: eye.truncate() - sum(&model.positions) * eye.w,
-            uv: self.interpolate_uv(hit, weights),
         }
     }
 

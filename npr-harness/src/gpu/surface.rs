@@ -45,6 +45,8 @@ struct Variant {
     looked_up: bool,
     cull_back: bool,
     blended: bool,
+    /// How many tones.
+    bands: u32,
 }
 
 /// The pipelines of the geometry pass.
@@ -140,11 +142,11 @@ impl SurfacePass {
         style: &Style,
         plan: &Plan,
         camera: &Camera,
-        (uniform, toon): (&SurfaceUniform, &ToonUniform),
+        (uniform, toon_uniform): (&SurfaceUniform, &ToonUniform),
         targets: &Targets,
     ) {
         let (view, toon) =
-            (uniform_buffer(device, bytemuck::bytes_of(uniform)), uniform_buffer(device, bytemuck::bytes_of(toon)));
+            (uniform_buffer(device, bytemuck::bytes_of(uniform)), uniform_buffer(device, bytemuck::bytes_of(toon_uniform)));
         let view_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("surface view"),
             layout: &self.view_layout,
@@ -195,6 +197,7 @@ impl SurfacePass {
                 looked_up: is_looked_up(scene, batch.material) && (paint != Paint::Depth || plan.cut_out),
                 cull_back: plan.cull_back || !double_sided,
                 blended,
+                bands: toon_uniform.count.max(1),
             };
             let mut pipelines = self.pipelines.borrow_mut();
             let pipeline = pipelines.entry(variant).or_insert_with(|| self.pipeline(device, variant));
@@ -218,7 +221,7 @@ impl SurfacePass {
     }
 
     fn pipeline(&self, device: &wgpu::Device, variant: Variant) -> wgpu::RenderPipeline {
-        let Variant { paint, looked_up, cull_back, blended } = variant;
+        let Variant { paint, looked_up, cull_back, blended, bands } = variant;
         let (vertex, fragment) = match (paint, looked_up) {
             (Paint::Depth, false) => ("vs_depth", None),
             (Paint::Depth, true) => ("vs_textured", Some("fs_cut_out")),
@@ -275,7 +278,11 @@ impl SurfacePass {
                 module: &self.module,
                 // Without colour nothing but depth is written; the attachment is there all the same.
                 entry_point: Some(fragment.unwrap_or("fs_nothing")),
-                compilation_options: Default::default(),
+                compilation_options: wgpu::PipelineCompilationOptions {
+                    // The loop over bands is unrolled for as many as there are.
+                    constants: &[(npr_toon::TOON_BANDS_OVERRIDE, f64::from(bands))],
+                    ..Default::default()
+                },
                 targets: &[Some(target)],
             }),
             multiview_mask: None,

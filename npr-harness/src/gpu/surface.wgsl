@@ -128,3 +128,7 @@ fn fs_cut_out(in: TexturedSurface) {
         discard;
     }
 }
+
+@fragment
+fn fs_nothing() {
+}

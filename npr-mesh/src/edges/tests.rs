@@ -53,6 +53,20 @@ fn a_warped_quad_has_one_normal() {
 }
 
 #[test]
+fn a_diagonal_that_two_polygons_share_is_no_line() {
+    // A roof of two quads over the corners 0 and 2, both cut along 0-2.
+    let positions = [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0), Vec3::Y, Vec3::new(0.0, 1.0, 1.0)];
+    let faces = [[0, 1, 2], [0, 2, 3], [0, 3, 2], [0, 2, 4]];
+    for skip_redundant in [false, true] {
+        let options = EdgeOptions { skip_redundant, ..Default::default() };
+        let edges = find(&positions, &faces, &[0, 0, 1, 1], &[], &options);
+        assert_eq!(edges.edges.iter().filter(|edge| edge.ends == [0, 2]).count(), 0);
+        assert_eq!(count(&edges, EdgeKind::NonManifold), 0);
+        assert_eq!(edges.edges.len(), 6);
+    }
+}
+
+#[test]
 fn split_vertices_make_no_boundary() {
     let (positions, faces) = cube();
     let split: Vec<Vec3> = faces.iter().flatten().map(|&v| positions[v as usize]).collect();

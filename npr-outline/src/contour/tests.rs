@@ -1,1 +1,346 @@
+use super::*;
+use glam::Mat4;
+use npr_mesh::edges::{EdgeOptions, find};
+use npr_mesh::embedded;
+use npr_mesh::{Material, Model};
+use proptest::prelude::*;
+use std::collections::{BTreeSet, HashMap};
 
+fn edges_of(model: &Model) -> Edges {
+    find(&model.positions, &model.faces, &model.face_polygon, &model.face_material, &EdgeOptions::default())
+}
+
+fn contours_of(model: &Model, options: &ContourOptions) -> ContourEdges {
+    contour_edges(model, &edges_of(model), options).unwrap()
+}
+
+fn smooth(crease_angle_rad: f32) -> ContourOptions {
+    ContourOptions { crease_angle_rad, material_borders: false }
+}
+
+/// No crease at all: only silhouettes and boundaries are left.
+const NO_CREASES: ContourOptions =
+    ContourOptions { crease_angle_rad: std::f32::consts::PI, material_borders: false };
+
+fn point(eye: DVec3) -> DVec4 {
+    eye.extend(1.0)
+}
+
+/// The ends, lower first, of all lines of a kind.
+fn lines_of_kind(contours: &ContourEdges, eye: DVec4, kind: LineKind) -> BTreeSet<[u32; 2]> {
+    let mut lines = Vec::new();
+    contours.scan(eye, &mut lines);
+    let local = contours.local_eye(eye);
+    let of_kind = lines.iter().filter(|&&line| contours.kind(line as usize, local) == Some(kind));
+    of_kind.map(|&line| contours.ends[line as usize]).map(|[a, b]| [a.min(b), a.max(b)]).collect()
+}
+
+/// Whether every vertex has an even number of silhouettes.
+fn all_loops_closed(contours: &ContourEdges, eye: DVec4) -> bool {
+    let mut degree = HashMap::<u32, u32>::new();
+    for ends in lines_of_kind(contours, eye, LineKind::Silhouette) {
+        ends.iter().for_each(|&end| *degree.entry(end).or_default() += 1);
+    }
+    degree.values().all(|d| d % 2 == 0)
+}
+
+#[test]
+fn a_cube_seen_from_a_corner_has_six_silhouettes_and_six_creases() {
+    let contours = contours_of(&embedded::cube(), &ContourOptions::default());
+    assert_eq!((contours.ends.len(), contours.always), (12, 12));
+    for eye in [point(DVec3::new(4.0, 5.0, 6.0)), DVec4::new(1.0, 1.0, 1.0, 0.0)] {
+        assert_eq!(lines_of_kind(&contours, eye, LineKind::Silhouette).len(), 6);
+        // Three of them towards the eye, three away from it.
+        assert_eq!(lines_of_kind(&contours, eye, LineKind::Crease).len(), 6);
+    }
+    // Seen straight on, and from within, where nothing is turned away.
+    assert_eq!(lines_of_kind(&contours, point(DVec3::Z * 9.0), LineKind::Silhouette).len(), 4);
+    assert_eq!(lines_of_kind(&contours, point(DVec3::ZERO), LineKind::Silhouette).len(), 0);
+}
+
+#[test]
+fn the_crease_angle_decides() {
+    let model = embedded::cube();
+    assert_eq!(contours_of(&model, &smooth(1.5)).always, 12);
+    assert_eq!(contours_of(&model, &smooth(1.6)).always, 0);
+}
+
+#[test]
+fn silhouettes_of_closed_surfaces_are_closed_loops() {
+    for model in [embedded::sphere(24), embedded::torus(1.0, 0.4, 24, 12), embedded::cylinder(24), embedded::cube()] {
+        let contours = contours_of(&model, &NO_CREASES);
+        for (i, direction) in crate::normal_format::fibonacci_sphere(2000).enumerate() {
+            // From inside to far away.
+            let eye = direction * (0.05 + 0.002 * (i * 7 % 2000) as f64);
+            assert!(all_loops_closed(&contours, point(eye)), "{eye}");
+            assert!(all_loops_closed(&contours, direction.extend(0.0)), "{eye}");
+        }
+        // Exactly at corners, at middles of edges, and in the planes of faces, or within rounding of them.
+        for face in &model.faces {
+            let [a, b, c] = face.map(|v| model.positions[v as usize].as_dvec3());
+            for eye in [a, 0.5 * (a + b), (a + b + c) / 3.0, a + 3.0 * (b - a), a + 5.0 * (b - a) - 2.0 * (c - a)] {
+                assert!(all_loops_closed(&contours, point(eye)), "{eye}");
+                assert!(all_loops_closed(&contours, (b - a).extend(0.0)), "{eye}");
+            }
+        }
+    }
+}
+
+#[test]
+fn an_eye_in_the_plane_of_a_face_loses_no_loop() {
+    let contours = contours_of(&embedded::cube(), &NO_CREASES);
+    // In the top's plane, and in the planes of the top and the right side: both count as turned towards the eye.
+    for (eye, silhouettes) in [(DVec3::new(0.3, 1.0, 7.0), 6), (DVec3::new(1.0, 1.0, 7.0), 6)] {
+        let lines = lines_of_kind(&contours, point(eye), LineKind::Silhouette);
+        assert_eq!(lines.len(), silhouettes, "{eye}");
+        assert!(all_loops_closed(&contours, point(eye)));
+    }
+}
+
+#[test]
+fn a_spheres_contour_converges_to_the_circle() {
+    // From distance d the contour of a unit sphere is a circle of radius sqrt(1 - 1/d²) in the plane at 1/d.
+    let eye = DVec3::new(1.0, 2.0, -1.5);
+    let (direction, distance) = (eye.normalize(), eye.length());
+    let mut previous = f64::INFINITY;
+    for segments in [16, 32, 64, 128, 256] {
+        let model = embedded::sphere(segments);
+        let contours = contours_of(&model, &NO_CREASES);
+        let lines = lines_of_kind(&contours, point(eye), LineKind::Silhouette);
+        // Edges of the contour run along the mesh, so that they stray by the size of a face.
+        let worst = lines
+            .iter()
+            .flatten()
+            .map(|&v| (model.positions[v as usize].as_dvec3().dot(direction) - 1.0 / distance).abs())
+            .fold(0.0, f64::max);
+        let step = std::f64::consts::TAU / f64::from(segments);
+        assert!(worst < 1.2 * step && worst < 0.75 * previous, "{segments}: {worst} of {step}");
+        previous = worst;
+        // On the screen it is a circle to second order. The tangents' angle with the axis:
+        let expected = (1.0 / distance).asin();
+        for &v in lines.iter().flatten() {
+            let angle = (model.positions[v as usize].as_dvec3() - eye).angle_between(-direction);
+            assert!((angle - expected).abs() < step * step, "{segments}: {angle}, {expected}");
+        }
+    }
+}
+
+#[test]
+fn boundaries_are_always_drawn() {
+    let mut model = embedded::sphere(12);
+    model.faces.truncate(30);
+    model.face_material.truncate(30);
+    let edges = edges_of(&model);
+    let boundaries = edges.edges.iter().filter(|edge| edge.kind() == EdgeKind::Boundary).count();
+    let contours = contours_of(&model, &NO_CREASES);
+    assert!(boundaries > 3 && contours.always == boundaries);
+    for direction in crate::normal_format::fibonacci_sphere(200) {
+        for eye in [point(3.0 * direction), direction.extend(0.0)] {
+            assert_eq!(lines_of_kind(&contours, eye, LineKind::Boundary).len(), boundaries);
+        }
+    }
+    assert_eq!(contours.normals(0)[1], Vec3::ZERO);
+    assert!(contours.normals(0)[0].is_normalized());
+}
+
+#[test]
+fn faces_wound_the_other_way_change_nothing() {
+    for model in [embedded::sphere(24), embedded::torus(1.0, 0.4, 32, 16)] {
+        let mut turned = model.clone();
+        turned.faces.iter_mut().step_by(10).for_each(|face| face.swap(1, 2));
+        let (contours, of_turned) = (contours_of(&model, &smooth(0.9)), contours_of(&turned, &smooth(0.9)));
+        assert_eq!(contours.always, of_turned.always);
+        for direction in crate::normal_format::fibonacci_sphere(300) {
+            let eye = point(2.7 * direction);
+            for kind in [LineKind::Silhouette, LineKind::Crease] {
+                let lines = lines_of_kind(&contours, eye, kind);
+                assert_eq!(lines, lines_of_kind(&of_turned, eye, kind));
+            }
+        }
+    }
+}
+
+/// Two triangles in a ridge along x, with a sliver of zero area between them: its middle corner lies on the ridge.
+fn ridge_with_sliver(slope: f32) -> Model {
+    let positions = vec![
+        Vec3::new(-1.0, 0.0, 0.0),
+        Vec3::new(1.0, 0.0, 0.0),
+        Vec3::new(0.0, 0.0, 0.0),
+        Vec3::new(0.0, -slope, 1.0),
+        Vec3::new(0.0, -slope, -1.0),
+    ];
+    // The front uses the ridge as one edge, the back as two.
+    let faces = vec![[0, 3, 1], [0, 1, 2], [0, 2, 4], [2, 1, 4]];
+    Model {
+        normals: vec![Vec3::Y; positions.len()],
+        face_material: vec![0; faces.len()],
+        materials: vec![Material::default()],
+        positions,
+        faces,
+        ..Model::default()
+    }
+}
+
+#[test]
+fn a_sliver_between_two_faces_passes_silhouette_and_crease_on() {
+    let along_ridge = |lines: BTreeSet<[u32; 2]>| {
+        let is_whole = lines.contains(&[0, 1]);
+        let is_halves = lines.contains(&[0, 2]) && lines.contains(&[1, 2]);
+        is_whole || is_halves
+    };
+    let model = ridge_with_sliver(0.5);
+    assert_eq!(edges_of(&model).face_normals[1], Vec3::ZERO);
+    let contours = contours_of(&model, &NO_CREASES);
+    // The front slopes down towards +z: an eye low behind sees the back only.
+    for eye in [DVec3::new(0.1, 0.1, 5.0), DVec3::new(-0.3, 0.4, -5.0)] {
+        assert!(along_ridge(lines_of_kind(&contours, point(eye), LineKind::Silhouette)), "{eye}");
+    }
+    assert!(!along_ridge(lines_of_kind(&contours, point(DVec3::new(0.1, 9.0, 0.2)), LineKind::Silhouette)));
+    // A roof of 2 · 60°, a crease from everywhere.
+    let contours = contours_of(&ridge_with_sliver(1.7), &smooth(1.0));
+    assert!(along_ridge(lines_of_kind(&contours, point(DVec3::Y * 9.0), LineKind::Crease)));
+}
+
+#[test]
+fn a_parallel_view_is_the_limit_of_a_distant_eye() {
+    for model in [embedded::sphere(24), embedded::torus(1.0, 0.4, 32, 16)] {
+        let contours = contours_of(&model, &NO_CREASES);
+        for direction in crate::normal_format::fibonacci_sphere(50) {
+            let parallel = lines_of_kind(&contours, direction.extend(0.0), LineKind::Silhouette);
+            let distant = lines_of_kind(&contours, point(direction * 1e7), LineKind::Silhouette);
+            // A face within rounding of edge-on may differ; it has three edges.
+            assert!(parallel.symmetric_difference(&distant).count() <= 4);
+            let by_normals: BTreeSet<[u32; 2]> = edges_of(&model)
+                .edges
+                .iter()
+                .filter(|edge| {
+                    let [a, b] = edge.faces.map(|face| {
+                        facing_exact(model.faces[face as usize].map(|v| model.positions[v as usize]), direction.extend(0.0))
+                    });
+                    (a >= 0.0) != (b >= 0.0)
+                })
+                .map(|edge| edge.ends)
+                .collect();
+            assert!(parallel.symmetric_difference(&by_normals).count() <= 4);
+        }
+    }
+}
+
+#[test]
+fn an_origin_far_away_keeps_the_classification_right() {
+    // Vertices on a grid that f32 holds exactly at 1e6, so that the moved torus is the same one.
+    let mut near = embedded::torus(1.0, 0.4, 24, 12);
+    near.positions.iter_mut().for_each(|p| *p = (*p * 64.0).round() / 16.0);
+    let offset = Vec3::splat(1e6);
+    let far = embedded::placed(near.clone(), Mat4::from_translation(offset), Material::default());
+    let (of_near, of_far) = (contours_of(&near, &NO_CREASES), contours_of(&far, &NO_CREASES));
+    assert!((of_far.origin - offset).length() < 1.0);
+    for direction in crate::normal_format::fibonacci_sphere(500) {
+        let eye = 11.0 * direction;
+        let lines = lines_of_kind(&of_near, point(eye), LineKind::Silhouette);
+        let far_lines = lines_of_kind(&of_far, point(eye + offset.as_dvec3()), LineKind::Silhouette);
+        assert!(lines.len() > 20 && lines == far_lines, "{eye}");
+    }
+}
+
+#[test]
+fn a_scan_finds_exactly_the_edges_that_have_a_kind() {
+    // 65 and more changing edges fill a block of the scan and begin the next.
+    for model in [embedded::cube(), embedded::teapot(4), embedded::cylinder(23), embedded::scene()] {
+        let contours = contours_of(&model, &ContourOptions::default());
+        for direction in crate::normal_format::fibonacci_sphere(20) {
+            let eye = point(6.0 * direction);
+            let local = contours.local_eye(eye);
+            let mut lines = vec![7];
+            contours.scan(eye, &mut lines);
+            let expected: Vec<u32> =
+                (0..contours.ends.len()).filter(|&e| contours.kind(e, local).is_some()).map(|e| e as u32).collect();
+            assert_eq!(lines, expected);
+        }
+    }
+}
+
+#[test]
+fn planes_are_those_of_the_faces() {
+    let model = embedded::teapot(4);
+    let contours = contours_of(&model, &ContourOptions::default());
+    for edge in 0..contours.ends.len() {
+        let EdgePlanes { plane0, plane1 } = contours.planes[edge];
+        for end in contours.ends[edge].map(|v| model.positions[v as usize] - contours.origin) {
+            for plane in [plane0, plane1] {
+                // Both ends lie in both planes.
+                assert!(outline_facing(plane, end.extend(1.0)).abs() < 1e-6);
+            }
+        }
+        // The first face lies to the left of the edge, seen from its front.
+        let [a, b] = contours.ends[edge];
+        let face = model.faces[contours.first_face[edge] as usize];
+        let at = |v: u32| model.positions[v as usize];
+        let follows = |v: u32, w: u32| (0..3).any(|i| at(face[i]) == at(v) && at(face[(i + 1) % 3]) == at(w));
+        assert!(follows(a, b));
+    }
+}
+
+#[test]
+fn borders_of_materials_and_cut_outs_are_marked() {
+    let mut model = embedded::cube();
+    model.materials.push(Material { alpha_mode: AlphaMode::Mask { cutoff: 0.5 }, ..Material::default() });
+    model.face_material[0] = 1;
+    model.face_material[1] = 1;
+    let contours = contours_of(&model, &ContourOptions { crease_angle_rad: 3.0, material_borders: true });
+    // The four edges around one side; none of them lies between two cut-out faces.
+    assert_eq!(contours.always, 4);
+    assert!(contours.traits[..4].iter().all(|&t| t == LineKind::MaterialBorder as u32 | TRAIT_ALWAYS));
+    model.face_material.fill(1);
+    let contours = contours_of(&model, &ContourOptions::default());
+    assert!(contours.traits.iter().all(|&t| t & TRAIT_CUT_OUT != 0));
+}
+
+#[test]
+fn an_edge_of_three_faces_is_a_line_for_every_eye() {
+    let mut model = ridge_with_sliver(0.5);
+    model.positions.push(Vec3::new(0.0, 1.0, 0.0));
+    model.normals.push(Vec3::Z);
+    model.faces = vec![[0, 3, 1], [1, 4, 0], [0, 1, 5]];
+    model.face_material = vec![0; 3];
+    let contours = contours_of(&model, &NO_CREASES);
+    for direction in crate::normal_format::fibonacci_sphere(50) {
+        let mut lines = Vec::new();
+        contours.scan(point(4.0 * direction), &mut lines);
+        assert!(lines.iter().any(|&line| contours.ends[line as usize].iter().all(|&v| v < 2)));
+        assert_eq!(lines.len(), 7);
+    }
+}
+
+#[test]
+fn angles_that_are_none_are_refused() {
+    let model = embedded::cube();
+    let edges = edges_of(&model);
+    for angle_rad in [-0.1, 3.2, f32::NAN, f32::INFINITY] {
+        let error = contour_edges(&model, &edges, &smooth(angle_rad)).unwrap_err();
+        assert!(matches!(error, OutlineError::CreaseAngle { .. }));
+    }
+    assert!(contour_edges(&model, &edges, &smooth(0.0)).is_ok());
+    let empty = contours_of(&Model::default(), &ContourOptions::default());
+    let mut lines = Vec::new();
+    empty.scan(DVec4::W, &mut lines);
+    assert!(lines.is_empty());
+}
+
+proptest! {
+    #[test]
+    fn the_records_tell_what_the_corners_tell(eye in prop::array::uniform3(-8.0..8.0f64)) {
+        let model = embedded::torus(1.0, 0.4, 20, 10);
+        let edges = edges_of(&model);
+        let contours = contours_of(&model, &NO_CREASES);
+        let eye = point(DVec3::from_array(eye));
+        let lines = lines_of_kind(&contours, eye, LineKind::Silhouette);
+        for edge in &edges.edges {
+            let sides = edge.faces.map(|face| facing_exact(model.faces[face as usize].map(|v| model.positions[v as usize]), eye));
+            // Doubled areas are 0.02 and more: f32 planes err by less than this.
+            if sides.iter().all(|side| side.abs() > 1e-6) {
+                prop_assert_eq!(lines.contains(&edge.ends), (sides[0] > 0.0) != (sides[1] > 0.0));
+            }
+        }
+    }
+}

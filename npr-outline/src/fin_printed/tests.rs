@@ -1,4 +1,6 @@
 use super::*;
+use glam::dcamera::rh::proj::directx as proj;
+use glam::dcamera::rh::view::look_at_mat4;
 use npr_mesh::edges::{Edge, EdgeKind, EdgeOptions, find};
 use npr_mesh::embedded;
 use std::collections::HashSet;
@@ -12,8 +14,8 @@ fn edges_of(model: &Model) -> Edges {
 
 /// Reversed z with a finite far plane, looking from `eye` at the origin.
 fn view(eye: DVec3, depth: FinDepth) -> FinView {
-    let clip_from_view = DMat4::perspective_rh(1.0, 1.0, FAR, NEAR);
-    let clip_from_world = clip_from_view * DMat4::look_at_rh(eye, DVec3::ZERO, DVec3::Y);
+    let clip_from_view = proj::perspective(1.0, 1.0, FAR, NEAR);
+    let clip_from_world = clip_from_view * look_at_mat4(eye, DVec3::ZERO, DVec3::Y);
     FinView { clip_from_world, eye, thickness: 0.01, depth }
 }
 
@@ -92,7 +94,7 @@ fn width_is_as_asked_with_w_and_too_small_as_printed() {
     };
     let height_px = 480.0;
     let mut view = view(DVec3::ZERO, FinDepth::Eye);
-    view.clip_from_world = DMat4::perspective_rh(1.0, 1.0, FAR, NEAR);
+    view.clip_from_world = proj::perspective(1.0, 1.0, FAR, NEAR);
     view.thickness = 3.0 * 2.0 * (0.5f64).tan() / height_px;
     for distance in [0.6, 1.0, 5.0, 50.0] {
         let width_px = |view: &FinView| {
@@ -142,7 +144,7 @@ fn two_triangles_share_their_border_without_gap_or_overlap() {
 
 #[test]
 fn triangles_are_cut_at_the_near_plane_and_by_the_scene() {
-    let clip_from_world = DMat4::perspective_rh(1.0, 1.0, FAR, NEAR);
+    let clip_from_world = proj::perspective(1.0, 1.0, FAR, NEAR);
     // A floor that runs from behind the eye into the distance.
     let at = |x: f64, z: f64| clip_from_world * DVec4::new(x, -0.4, z, 1.0);
     let floor = [[at(-50.0, 5.0), at(50.0, 5.0), at(0.0, -60.0)]];

@@ -1,1 +1,326 @@
+use super::*;
+use glam::dcamera::rh::proj::directx as proj;
+use proptest::prelude::*;
 
+const NEAR: f64 = 0.1;
+const SIZE: DVec2 = DVec2::new(640.0, 480.0);
+
+/// An eye at the origin that looks along -z, with an infinite far plane.
+fn perspective() -> LineView {
+    let fov = 1.0f64;
+    LineView {
+        clip_from_world: proj::perspective_infinite_reverse(fov, SIZE.x / SIZE.y, NEAR),
+        viewport_px: SIZE,
+        depth_per_px: DVec2::new(2.0 * (0.5 * fov).tan() / SIZE.y, 0.0),
+    }
+}
+
+/// 20 units high, from z = 0 to z = -100.
+fn parallel() -> LineView {
+    let (half_width, half_height) = (10.0 * SIZE.x / SIZE.y, 10.0);
+    LineView {
+        clip_from_world: proj::orthographic(-half_width, half_width, -half_height, half_height, 100.0, 0.0),
+        viewport_px: SIZE,
+        depth_per_px: DVec2::new(0.0, 20.0 / SIZE.y / 100.0),
+    }
+}
+
+fn project(ends: [DVec3; 2], normals: [DVec3; 2], view: &LineView) -> ScreenSegment {
+    outline_project(ends, normals, 2.0, view).unwrap()
+}
+
+/// Depth-buffer value of the plane `normal · p = d` at a pixel's centre, 0 where it does not lie before the eye.
+fn plane_depth(normal: DVec3, d: f64, view: &LineView) -> impl Fn(i64, i64) -> f64 {
+    let world_from_clip = view.clip_from_world.inverse();
+    let size = view.viewport_px;
+    let clip_from_world = view.clip_from_world;
+    move |x, y| {
+        let ndc = (DVec2::new(x as f64, y as f64) + 0.5) / size * DVec2::new(2.0, -2.0) + DVec2::new(-1.0, 1.0);
+        let at = |z: f64| world_from_clip * ndc.extend(z).extend(1.0);
+        let [near, far] = [1.0, 1e-3].map(|z| at(z).truncate() / at(z).w);
+        let along = far - near;
+        let t = (d - normal.dot(near)) / normal.dot(along);
+        let clip = clip_from_world * (near + along * t).extend(1.0);
+        let depth = clip.z / clip.w;
+        if t.is_finite() && clip.w > 0.0 && (0.0..=1.0).contains(&depth) { depth } else { 0.0 }
+    }
+}
+
+/// Integral of the coverage across the line, at a fraction of its length.
+fn width_across(segment: &ScreenSegment, fraction: f64, width_px: f64) -> f64 {
+    let (middle, _) = segment.at(fraction);
+    let (direction, _) = segment.direction();
+    let across = DVec2::new(-direction.y, direction.x);
+    let steps = 4000;
+    let reach = 0.5 * width_px + 1.0;
+    (0..steps)
+        .map(|i| {
+            let offset = reach * (2.0 * (f64::from(i) + 0.5) / f64::from(steps) - 1.0);
+            outline_coverage(segment, middle + across * offset, width_px)
+        })
+        .sum::<f64>()
+        * 2.0
+        * reach
+        / f64::from(steps)
+}
+
+#[test]
+fn the_width_is_the_same_all_along_a_receding_segment() {
+    let view = perspective();
+    let segment = project([DVec3::new(-0.1, -0.1, -0.5), DVec3::new(4.0, 3.0, -50.0)], [DVec3::ZERO; 2], &view);
+    assert!(segment.direction().1 > 60.0);
+    for width_px in [0.5, 1.0, 2.0, 4.0, 8.0] {
+        for fraction in [0.1, 0.3, 0.5, 0.7, 0.9] {
+            let width = width_across(&segment, fraction, width_px);
+            assert!((width - width_px).abs() < 2e-3, "{width_px} px at {fraction}: {width}");
+        }
+    }
+}
+
+#[test]
+fn coverage_integrates_to_the_width_per_unit_of_length() {
+    for degrees in [0.0, 7.0, 30.0, 45.0, 63.0, 90.0, 131.0] {
+        let direction = DVec2::from_angle(f64::to_radians(degrees));
+        let middle = DVec2::new(100.3, 100.7);
+        let length = 120.0;
+        let ends_px = [middle - 0.5 * length * direction, middle + 0.5 * length * direction];
+        let segment = ScreenSegment { ends_px, depths: [0.5; 2], slopes: [0.0; 2] };
+        for width_px in [1.0, 2.0, 3.5, 8.0] {
+            // A stretch of 80 px around the middle, with ends between which whole periods of the grid lie as well as
+            // can be: pixels are weighted by a smooth window of known integral.
+            let mut sum = 0.0;
+            for y in 0..200 {
+                for x in 0..200 {
+                    let point = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
+                    let along = (point - middle).dot(direction) / 40.0;
+                    let window = if along.abs() < 1.0 { 0.5 + 0.5 * (std::f64::consts::PI * along).cos() } else { 0.0 };
+                    sum += window * outline_coverage(&segment, point, width_px);
+                }
+            }
+            let width = sum / 40.0;
+            assert!((width / width_px - 1.0).abs() < 0.01, "{width_px} px at {degrees}°: {width}");
+        }
+    }
+}
+
+#[test]
+fn a_segment_through_the_eyes_plane_is_cut_at_the_near_plane() {
+    let view = perspective();
+    let ends = [DVec3::new(0.05, -0.02, -4.0), DVec3::new(-0.01, 0.03, 3.0)];
+    let clip = ends.map(|end| view.clip_from_world * end.extend(1.0));
+    let [a, b] = outline_clip(clip, view.viewport_px, 3.0).unwrap();
+    assert_eq!(a, clip[0]);
+    assert!((b.w - NEAR).abs() < 1e-12 && (b.z - b.w).abs() < 1e-12);
+    let segment = project(ends, [DVec3::X, DVec3::Y], &view);
+    assert!(segment.ends_px.iter().all(|p| p.is_finite()) && (segment.depths[1] - 1.0).abs() < 1e-12);
+    assert!(segment.slopes.iter().all(|s| s.is_finite()));
+    // The other way round it is the same segment.
+    let turned = project([ends[1], ends[0]], [DVec3::X, DVec3::Y], &view);
+    assert!(turned.ends_px[0].distance(segment.ends_px[1]) < 1e-9);
+}
+
+#[test]
+fn what_lies_outside_is_left_out() {
+    let view = perspective();
+    let none = |ends| outline_project(ends, [DVec3::ZERO; 2], 2.0, &view).is_none();
+    assert!(none([DVec3::new(0.0, 0.0, 1.0), DVec3::new(0.5, 0.0, 3.0)]), "behind the eye");
+    assert!(none([DVec3::new(0.0, 0.0, -0.05), DVec3::new(0.01, 0.0, -0.09)]), "before the near plane");
+    assert!(none([DVec3::new(9.0, 0.0, -2.0), DVec3::new(9.0, 1.0, -2.0)]), "right of the picture");
+    // From far left to far right: cut to the widened picture.
+    let segment = project([DVec3::new(-1e6, 0.0, -2.0), DVec3::new(1e6, 0.1, -2.0)], [DVec3::ZERO; 2], &view);
+    assert!((segment.ends_px[0].x + 3.0).abs() < 1e-6 && (segment.ends_px[1].x - 643.0).abs() < 1e-6);
+    // An end exactly on the eye's plane, in a view whose near plane does not cut it.
+    assert!(none([DVec3::ZERO, DVec3::ZERO]));
+}
+
+#[test]
+fn a_segment_that_points_at_the_eye_is_a_dot() {
+    let segment = project([DVec3::new(0.0, 0.0, -2.0), DVec3::new(0.0, 0.0, -4.0)], [DVec3::X, DVec3::Y], &perspective());
+    assert_eq!(segment.direction(), (DVec2::X, 0.0));
+    assert_eq!(segment.nearest(DVec2::new(3.0, 4.0)), 0.0);
+    let centre = 0.5 * SIZE;
+    assert_eq!(outline_coverage(&segment, centre, 4.0), 1.0);
+    assert_eq!(outline_coverage(&segment, centre + DVec2::new(0.0, 2.0), 4.0), 0.5);
+    assert_eq!(outline_coverage(&segment, centre + DVec2::new(3.0, 0.0), 4.0), 0.0);
+}
+
+#[test]
+fn a_slope_is_that_of_the_faces_plane() {
+    for view in [perspective(), parallel()] {
+        // The ridge of a roof seen from the front: one face towards the eye, the other behind it.
+        let ends = [DVec3::new(-1.0, 1.0, -5.0), DVec3::new(1.0, 1.3, -6.0)];
+        let edge = ends[1] - ends[0];
+        for tilt in [0.2, 0.7, 1.1] {
+            // A face below the edge, that falls towards the eye; the edge runs to the right, so the face is on its
+            // right, and it runs over the edge backwards.
+            let inward = DVec3::new(0.0, -f64::cos(tilt), f64::sin(tilt));
+            let normal = edge.cross(inward).normalize();
+            let segment = project(ends, [DVec3::ZERO, normal], &view);
+            let depth_at = plane_depth(normal, normal.dot(ends[0]), &view);
+            for fraction in [0.25, 0.5, 0.75] {
+                let (on_line, depth) = segment.at(fraction);
+                let pixel = (on_line + DVec2::new(0.0, 6.0)).floor();
+                let centre = pixel + 0.5;
+                let nearest = segment.nearest(centre);
+                let there = segment.at(nearest).1;
+                let offset = segment.offset_px(centre);
+                assert!(offset > 0.0 && depth > 0.0);
+                let measured = (depth_at(pixel.x as i64, pixel.y as i64) - there) / offset;
+                // The slope is that at the middle of the line; in perspective it changes along it.
+                let slope = segment.slopes[0];
+                assert!(measured > 0.0 && (measured / slope - 1.0).abs() < 0.35, "{measured} {slope}");
+                if fraction == 0.5 {
+                    assert!((measured / slope - 1.0).abs() < 0.03, "{measured} {slope}");
+                }
+            }
+        }
+    }
+}
+
+fn visible_share(segment: &ScreenSegment, view: &LineView, depth_at: impl Fn(i64, i64) -> f64) -> f64 {
+    let steps = 500;
+    let seen = (0..steps).filter(|i| {
+        outline_is_visible(segment, (f64::from(*i) + 0.5) / f64::from(steps), view, false, &depth_at)
+    });
+    seen.count() as f64 / f64::from(steps)
+}
+
+#[test]
+fn a_line_on_a_plane_is_seen_however_it_slants() {
+    for view in [perspective(), parallel()] {
+        // From head-on to 80°; beyond 83° the bound on slopes hides it by design.
+        for degrees in [0.0, 20.0, 45.0, 60.0, 75.0, 80.0] {
+            for turn in [0.0, 0.3, 1.2, 2.5] {
+                let tilt = f64::to_radians(degrees);
+                let normal = DVec3::new(tilt.sin() * f64::cos(turn), tilt.sin() * f64::sin(turn), tilt.cos());
+                let side = normal.any_orthonormal_vector();
+                for spin in [0.0, 0.4, 1.0, 2.0] {
+                    let along = glam::DQuat::from_axis_angle(normal, spin) * side;
+                    let middle = DVec3::new(0.2, -0.1, -6.0);
+                    let ends = [middle - along, middle + along];
+                    let segment = project(ends, [normal, normal], &view);
+                    let share = visible_share(&segment, &view, plane_depth(normal, normal.dot(middle), &view));
+                    assert_eq!(share, 1.0, "{degrees}° {turn} {spin}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_silhouette_before_the_background_is_seen_and_hidden_behind_a_nearer_plane() {
+    let view = perspective();
+    let ends = [DVec3::new(-1.0, 0.3, -5.0), DVec3::new(1.2, 0.5, -5.5)];
+    let normals = [DVec3::new(0.0, 0.3, 1.0).normalize(), DVec3::new(0.0, 0.3, -1.0).normalize()];
+    let segment = project(ends, normals, &view);
+    let (first, _) = segment.at(0.0);
+    let (direction, _) = segment.direction();
+    // Below the line its own surface, far nearer than its rim; above it nothing.
+    let own = |x: i64, y: i64| {
+        let offset = direction.perp_dot(DVec2::new(x as f64, y as f64) + 0.5 - first);
+        if offset > 0.0 { NEAR / 4.0 } else { 0.0 }
+    };
+    assert_eq!(visible_share(&segment, &view, own), 1.0);
+    assert_eq!(visible_share(&segment, &view, |_, _| 0.0), 1.0);
+    // A wall before all of it, and one before the left half of the picture.
+    assert_eq!(visible_share(&segment, &view, plane_depth(DVec3::Z, -4.9, &view)), 0.0);
+    let half = |x: i64, _| if x < 320 { NEAR / 3.0 } else { 0.0 };
+    let expected = 1.0 - (320.0 - segment.ends_px[0].x) / (segment.ends_px[1].x - segment.ends_px[0].x);
+    assert!((visible_share(&segment, &view, half) - expected).abs() < 0.01);
+    // A wall behind it does not hide it.
+    assert_eq!(visible_share(&segment, &view, plane_depth(DVec3::Z, -7.0, &view)), 1.0);
+}
+
+#[test]
+fn a_concave_corner_is_seen_and_lost_without_its_normals() {
+    let view = perspective();
+    // Floor and wall meet at y = -1, z = -6; both come towards the eye on their side of the line. The eye looks down on
+    // the floor at 10°.
+    let ends = [DVec3::new(-2.0, -1.0, -6.0), DVec3::new(2.0, -1.0, -6.0)];
+    let floor = plane_depth(DVec3::Y, -1.0, &view);
+    let wall = plane_depth(DVec3::Z, -6.0, &view);
+    let corner = |x: i64, y: i64| floor(x, y).max(wall(x, y));
+    // Wall: inwards is up, the edge runs right: the wall lies on its left seen from +z, so the wall is the first face.
+    let segment = project(ends, [DVec3::Z, DVec3::Y], &view);
+    assert_eq!(visible_share(&segment, &view, corner), 1.0);
+    // A slanted corner, with pixels on either side.
+    let turn = glam::DQuat::from_rotation_z(0.3) * glam::DQuat::from_rotation_y(0.2);
+    let ends = ends.map(|end| turn * end);
+    let (n0, n1) = (turn * DVec3::Z, turn * DVec3::Y);
+    let segment = project(ends, [n0, n1], &view);
+    let (floor, wall) = (plane_depth(n1, n1.dot(ends[0]), &view), plane_depth(n0, n0.dot(ends[0]), &view));
+    assert_eq!(visible_share(&segment, &view, |x, y| floor(x, y).max(wall(x, y))), 1.0);
+}
+
+#[test]
+fn a_line_behind_a_grazing_surface_is_hidden() {
+    let view = perspective();
+    let ends = [DVec3::new(-1.0, 0.0, -8.0), DVec3::new(1.0, 0.4, -8.0)];
+    let segment = project(ends, [DVec3::Z, DVec3::Z], &view);
+    // A plane at 80° to the view, some px of depth before the line everywhere along it.
+    let tilt = f64::to_radians(80.0);
+    let normal = DVec3::new(0.0, tilt.sin(), tilt.cos());
+    let per_px = 8.0 * view.depth_per_px.x;
+    let nearest = normal.dot(ends[1]).max(normal.dot(ends[0]));
+    assert_eq!(visible_share(&segment, &view, plane_depth(normal, nearest + 8.0 * per_px, &view)), 0.0);
+    // The bound on slopes: an own face seen at 89° may not pass for a hole in what lies before it.
+    let grazing = DVec3::new(0.0, f64::to_radians(89.0).sin(), f64::to_radians(89.0).cos());
+    let segment = project(ends, [grazing, grazing], &view);
+    let allowed = DEPTH_SLACK_PX + MAX_SLOPE * std::f64::consts::SQRT_2;
+    assert_eq!(visible_share(&segment, &view, plane_depth(DVec3::Z, -8.0 + 1.1 * allowed * per_px, &view)), 0.0);
+}
+
+#[test]
+fn a_cut_out_needs_a_surface_at_its_own_depth() {
+    let view = perspective();
+    let ends = [DVec3::new(-1.0, 0.3, -5.0), DVec3::new(1.2, 0.5, -5.5)];
+    let segment = project(ends, [DVec3::Z, DVec3::ZERO], &view);
+    let seen = |cut_out, depth_at: &dyn Fn(i64, i64) -> f64| outline_is_visible(&segment, 0.4, &view, cut_out, depth_at);
+    let nothing = |_: i64, _: i64| 0.0;
+    assert!(seen(false, &nothing) && !seen(true, &nothing));
+    let (_, depth) = segment.at(0.4);
+    let own = |_: i64, _: i64| depth;
+    assert!(seen(false, &own) && seen(true, &own));
+    let far_behind = |_: i64, _: i64| 0.5 * depth;
+    assert!(seen(false, &far_behind) && !seen(true, &far_behind));
+}
+
+proptest! {
+    #[test]
+    fn whatever_is_projected_is_finite_and_within_the_guard(
+        a in prop::array::uniform3(-30.0..30.0f64),
+        b in prop::array::uniform3(-30.0..30.0f64),
+        normal in prop::array::uniform3(-1.0..1.0f64),
+        width_px in 0.0..20.0f64,
+    ) {
+        let normal = DVec3::from_array(normal).normalize_or_zero();
+        for view in [perspective(), parallel()] {
+            let ends = [DVec3::from_array(a), DVec3::from_array(b)];
+            if let Some(segment) = outline_project(ends, [normal, -normal], width_px, &view) {
+                let margin = 0.5 * width_px + 2.0 + 1e-6;
+                for (p, depth) in segment.ends_px.iter().zip(segment.depths) {
+                    prop_assert!(p.cmpge(DVec2::splat(-margin)).all() && p.cmple(SIZE + margin).all());
+                    prop_assert!(depth <= 1.0 + 1e-12 && depth.is_finite());
+                }
+                prop_assert!(segment.slopes.iter().all(|s| s.is_finite() && *s >= 0.0));
+            }
+        }
+    }
+
+    #[test]
+    fn a_split_line_covers_what_the_whole_does(cut in 0.01..0.99f64, x in -10.0..70.0f64, y in -10.0..50.0f64) {
+        let ends_px = [DVec2::new(3.0, 4.0), DVec2::new(51.0, 30.5)];
+        let whole = ScreenSegment { ends_px, depths: [0.9, 0.1], slopes: [0.0; 2] };
+        let (middle, depth) = whole.at(cut);
+        let parts = [
+            ScreenSegment { ends_px: [ends_px[0], middle], depths: [0.9, depth], slopes: [0.0; 2] },
+            ScreenSegment { ends_px: [middle, ends_px[1]], depths: [depth, 0.1], slopes: [0.0; 2] },
+        ];
+        let point = DVec2::new(x, y);
+        for width_px in [0.3, 1.0, 5.0] {
+            let of_parts = parts.map(|part| outline_coverage(&part, point, width_px));
+            let of_whole = outline_coverage(&whole, point, width_px);
+            prop_assert!((of_parts[0].max(of_parts[1]) - of_whole).abs() < 1e-12);
+        }
+    }
+}

@@ -1,0 +1,291 @@
+//! The device against the reference, and both against what is exactly true.
+//!
+//! All tolerances of the project's pictures are here.
+
+use crate::camera::{Camera, Framing};
+use crate::compare::{Comparison, Image, ReportRow, Tolerance, compare, exempt_mask, html_report, leave_behind};
+use crate::cpu::{self, CpuOptions};
+use crate::error::HarnessError;
+use crate::executor::Executor;
+use crate::gallery::still_life_camera;
+use crate::line_truth::{accuracy, drawn_centreline, true_lines};
+use crate::plan::Plan;
+use crate::scene::Scene;
+use crate::style::{Lines, Shade, Style, style};
+use glam::{DVec2, Vec3};
+use npr_outline::line_look::LineLook;
+use serde::Serialize;
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// Px; what pictures are checked at.
+pub const SIZE: (u32, u32) = (640, 360);
+
+/// Outside the exempt pixels, of 255: what two roundings to bytes (lines blend twice) can add up to.
+pub const SHADING_MAGNITUDE: u8 = 2;
+/// The same where a texture is looked up: samplers interpolate with 8 bits of fraction.
+pub const TEXTURE_MAGNITUDE: u8 = 4;
+/// At most this share of the pixels may be exempt.
+pub const EXEMPT_SHARE: f64 = 0.03;
+/// Over the whole picture, exempt or not: at most [`GROSS_SHARE`] of the pixels may differ by more than this, of 255.
+pub const GROSS_MAGNITUDE: u8 = 16;
+/// See [`GROSS_MAGNITUDE`].
+pub const GROSS_SHARE: f64 = 0.005;
+/// How far the reference's samples are moved to find out where it is sensitive, px.
+pub const SHIFT_PX: f64 = 1.0 / 32.0;
+/// Lines are compared within this distance, px.
+pub const WITHIN_PX: f64 = 1.5;
+/// The least precision and the least recall of lines.
+pub const LINE_ACCURACY: f64 = 0.98;
+
+/// Three views around a model: yaw, pitch in degrees.
+pub const VIEWS: [(f64, f64); 3] = [(30.0, 20.0), (150.0, -10.0), (270.0, 50.0)];
+
+/// A metric of a technique on a model.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Metric {
+    /// The model, or "scene".
+    pub model: String,
+    /// Yaw and pitch in degrees, or the composed view.
+    pub view: String,
+    /// What is checked.
+    pub technique: &'static str,
+    /// What is measured.
+    pub metric: &'static str,
+    /// What was measured.
+    pub value: f64,
+    /// What is allowed, or `None` where the number is only told.
+    pub limit: Option<Limit>,
+    /// Whether it is.
+    pub pass: bool,
+}
+
+/// A bound.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Limit {
+    /// At least.
+    AtLeast(f64),
+    /// At most.
+    AtMost(f64),
+}
+
+impl Limit {
+    fn holds(self, value: f64) -> bool {
+        match self {
+            Self::AtLeast(limit) => value >= limit,
+            Self::AtMost(limit) => value <= limit,
+        }
+    }
+}
+
+/// All metrics.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Report {
+    /// Where the pictures were made.
+    pub executor: String,
+    /// What could not be checked, and why.
+    pub skipped: Vec<String>,
+    /// One after the other.
+    pub metrics: Vec<Metric>,
+    /// The page with the pictures of failed comparisons, and the pictures.
+    pub left_behind: Vec<PathBuf>,
+}
+
+impl Report {
+    /// Whether every limit holds.
+    pub fn passed(&self) -> bool {
+        self.metrics.iter().all(|metric| metric.pass)
+    }
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "on {}", self.executor)?;
+        let widest = self.metrics.iter().map(|m| m.model.len()).max().unwrap_or(0);
+        for m in &self.metrics {
+            let limit = match m.limit {
+                None => String::new(),
+                Some(Limit::AtLeast(limit)) => format!(">= {limit}"),
+                Some(Limit::AtMost(limit)) => format!("<= {limit}"),
+            };
+            let verdict = if m.limit.is_none() { "" } else if m.pass { "pass" } else { "FAIL" };
+            writeln!(
+                f,
+                "{:widest$}  {:12} {:14} {:44} {:>10.5}  {:10} {verdict}",
+                m.model, m.view, m.technique, m.metric, m.value, limit
+            )?;
+        }
+        for skipped in &self.skipped {
+            writeln!(f, "skipped: {skipped}")?;
+        }
+        for path in &self.left_behind {
+            writeln!(f, "see {}", path.display())?;
+        }
+        let failed = self.metrics.iter().filter(|m| !m.pass).count();
+        let limited = self.metrics.iter().filter(|m| m.limit.is_some()).count();
+        writeln!(f, "{} passed, {failed} failed", limited - failed)
+    }
+}
+
+/// Where a check's numbers go.
+struct Checker<'a> {
+    executor: &'a Executor,
+    out: &'a Path,
+    metrics: Vec<Metric>,
+    rows: Vec<ReportRow>,
+}
+
+/// Checks the models, or without any the built-in scene.
+///
+/// # Errors
+/// [`HarnessError`]; an exceeded limit is none.
+pub fn run(
+    executor: &Executor,
+    inputs: &[PathBuf],
+    out: &Path,
+    progress: &(dyn Fn(f64) + Sync),
+) -> Result<Report, HarnessError> {
+    let mut checker = Checker { executor, out, metrics: Vec::new(), rows: Vec::new() };
+    let total = inputs.len().max(1) as f64;
+    if inputs.is_empty() {
+        let scene = Scene::new(npr_mesh::embedded::scene());
+        checker.model("scene", &scene, &[("composed".into(), still_life_camera())], &|s| progress(s))?;
+    }
+    for (number, input) in inputs.iter().enumerate() {
+        let scene = Scene::new(npr_mesh::load(input, &Default::default())?.model);
+        let name = input.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+        let aspect = f64::from(SIZE.0) / f64::from(SIZE.1);
+        let views = VIEWS.map(|(yaw, pitch)| {
+            let framing =
+                Framing { yaw_rad: yaw.to_radians(), pitch_rad: pitch.to_radians(), ..Framing::default() };
+            (format!("{yaw} {pitch}"), Camera::framed(scene.corners(), aspect, &framing))
+        });
+        checker.model(&name, &scene, &views, &|share| progress((number as f64 + share) / total))?;
+    }
+    checker.finish()
+}
+
+impl Checker<'_> {
+    fn model(
+        &mut self,
+        name: &str,
+        scene: &Scene,
+        views: &[(String, Camera)],
+        progress: &dyn Fn(f64),
+    ) -> Result<(), HarnessError> {
+        for (number, (view, camera)) in views.iter().enumerate() {
+            for name_of_style in ["cartoon", "lines"] {
+                let style = style(name_of_style).expect("a style of this crate");
+                self.picture(name, view, scene, camera, &style)?;
+            }
+            self.lines(name, view, scene, camera)?;
+            progress((number + 1) as f64 / views.len() as f64);
+        }
+        Ok(())
+    }
+
+    fn add(&mut self, model: &str, view: &str, technique: &'static str, metric: &'static str, value: f64, limit: Option<Limit>) {
+        let pass = limit.is_none_or(|limit| limit.holds(value));
+        self.metrics.push(Metric { model: model.into(), view: view.into(), technique, metric, value, limit, pass });
+    }
+
+    /// The device's picture against the reference.
+    fn picture(&mut self, model: &str, view: &str, scene: &Scene, camera: &Camera, style: &Style) -> Result<(), HarnessError> {
+        if matches!(self.executor, Executor::Cpu { .. }) {
+            return Ok(());
+        }
+        let plan = Plan::new(scene, style, camera)?;
+        let actual = self.executor.render(scene, style, &plan, camera, SIZE, 1, &|_| {})?;
+        let magnitude = if plan.textured { TEXTURE_MAGNITUDE } else { SHADING_MAGNITUDE };
+        let (expected, exempt) = reference(scene, style, &plan, camera, SIZE, magnitude)?;
+        let comparison = compare(&expected, &actual, &exempt)?;
+        let technique = style.name;
+        let pixels = comparison.pixels as f64;
+        let tolerance = Tolerance { magnitude, count: 0 };
+        let gross = comparison.over_all(GROSS_MAGNITUDE) as f64 / pixels;
+        self.add(model, view, technique, "largest difference of 255, not exempt", f64::from(comparison.worst), Some(Limit::AtMost(f64::from(magnitude))));
+        self.add(model, view, technique, "share of exempt pixels", comparison.exempt_share(), Some(Limit::AtMost(EXEMPT_SHARE)));
+        self.add(model, view, technique, "share of pixels off by over 16 of 255", gross, Some(Limit::AtMost(GROSS_SHARE)));
+        if !comparison.passes(&[tolerance]) || comparison.exempt_share() > EXEMPT_SHARE || gross > GROSS_SHARE {
+            self.leave(&format!("{model}-{view}-{technique}"), &expected, &actual, &exempt, comparison, tolerance)?;
+        }
+        Ok(())
+    }
+
+    fn leave(&mut self, name: &str, expected: &Image, actual: &Image, exempt: &[bool], comparison: Comparison, tolerance: Tolerance) -> Result<(), HarnessError> {
+        let images = leave_behind(self.out, name, expected, actual, exempt)?;
+        self.rows.push(ReportRow { name: name.to_owned(), images, comparison, tolerances: vec![tolerance] });
+        Ok(())
+    }
+
+    /// Lines 1 px wide against the exact visible contours.
+    fn lines(&mut self, model: &str, view: &str, scene: &Scene, camera: &Camera) -> Result<(), HarnessError> {
+        let look = LineLook { width_px: [1.0; 4], ink: [0.0, 0.0, 0.0, 1.0] };
+        let corrected = one_px_style(Lines::Fins(look));
+        let printed = one_px_style(Lines::Printed { width_px: 1.0, ink: Vec3::ZERO });
+        let truth = true_lines(scene, camera, SIZE, f64::from(corrected.crease_angle_rad));
+        for (style, technique, limited) in [(corrected, "lines", true), (printed, "printed fins", false)] {
+            let plan = Plan::new(scene, &style, camera)?;
+            let image = self.executor.render(scene, &style, &plan, camera, SIZE, 1, &|_| {})?;
+            let found = accuracy(&truth, &drawn_centreline(&darkness(&image), SIZE.0, SIZE.1), WITHIN_PX);
+            let limit = limited.then_some(Limit::AtLeast(LINE_ACCURACY));
+            self.add(model, view, technique, "precision within 1.5 px", found.precision, limit);
+            self.add(model, view, technique, "recall within 1.5 px", found.recall, limit);
+        }
+        Ok(())
+    }
+
+    fn finish(self) -> Result<Report, HarnessError> {
+        let mut skipped = Vec::new();
+        if let Executor::Cpu { .. } = self.executor {
+            skipped.push(format!("every comparison of GPU with CPU: {}", self.executor.describe()));
+        }
+        let mut left_behind = Vec::new();
+        if !self.rows.is_empty() {
+            left_behind.push(html_report(self.out, &self.rows)?);
+            left_behind.extend(self.rows.into_iter().flat_map(|row| row.images));
+        }
+        Ok(Report { executor: self.executor.describe(), skipped, metrics: self.metrics, left_behind })
+    }
+}
+
+/// The reference picture, and the pixels in which it changes by more than `magnitude` when its samples move by
+/// [`SHIFT_PX`] in any of four directions.
+///
+/// # Errors
+/// None that can occur with pictures of one size.
+pub fn reference(
+    scene: &Scene,
+    style: &Style,
+    plan: &Plan,
+    camera: &Camera,
+    size: (u32, u32),
+    magnitude: u8,
+) -> Result<(Image, Vec<bool>), HarnessError> {
+    let render = |shift_px| {
+        let options = CpuOptions { shift_px, ..Default::default() };
+        cpu::render(scene, style, plan, camera, size, &options, &|_| {}).image()
+    };
+    let image = render(DVec2::ZERO);
+    let shifted = [DVec2::X, -DVec2::X, DVec2::Y, -DVec2::Y].map(|direction| render(direction * SHIFT_PX));
+    let exempt = exempt_mask(&image, &shifted, magnitude)?;
+    Ok((image, exempt))
+}
+
+/// Lines alone, black on white.
+fn one_px_style(lines: Lines) -> Style {
+    Style {
+        name: "one-px",
+        about: "",
+        paper: Vec3::ONE,
+        shade: Shade::Paper,
+        lines: Some(lines),
+        crease_angle_rad: 45f32.to_radians(),
+    }
+}
+
+/// Per pixel how far from white, 0..=1.
+fn darkness(image: &Image) -> Vec<f64> {
+    image.rgba8.chunks_exact(4).map(|p| 1.0 - f64::from(p[1]) / 255.0).collect()
+}

@@ -1,0 +1,74 @@
+//! What can go wrong on the way to a picture.
+
+/// Why there is no picture.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum HarnessError {
+    /// The model.
+    #[error(transparent)]
+    Load(#[from] npr_mesh::LoadError),
+    /// The lines.
+    #[error(transparent)]
+    Outline(#[from] npr_outline::OutlineError),
+    /// The bands.
+    #[error(transparent)]
+    Toon(#[from] npr_toon::ToonError),
+    /// A picture file.
+    #[error(transparent)]
+    Image(#[from] crate::compare::ImageError),
+    /// Pictures that cannot be compared.
+    #[error(transparent)]
+    Compare(#[from] crate::compare::CompareError),
+    /// The device.
+    #[cfg(feature = "gpu")]
+    #[error(transparent)]
+    Gpu(#[from] crate::gpu::GpuError),
+    /// A style that does not exist.
+    #[error("no style is called {name:?} (there are: {known})")]
+    UnknownStyle {
+        /// What was asked for.
+        name: String,
+        /// Those there are.
+        known: String,
+    },
+    /// A picture without pixels, or with more than can be held.
+    #[error("a picture of {width} × {height} px: width and height must lie in 1..={limit}")]
+    Size {
+        /// Px.
+        width: u32,
+        /// Px.
+        height: u32,
+        /// Px.
+        limit: u32,
+    },
+    /// A number out of its range.
+    #[error("{what} of {value}: it must lie in {range}")]
+    Range {
+        /// What it is.
+        what: &'static str,
+        /// What was asked for.
+        value: f64,
+        /// What is allowed.
+        range: &'static str,
+    },
+    /// The build has no device executor.
+    #[error("this build has no GPU executor (the feature `gpu` is off)")]
+    NoGpuInBuild,
+    /// A device was required and there is none.
+    #[error("NPR_GPU=required, but {0}")]
+    GpuRequired(String),
+    /// An environment variable that says nothing.
+    #[error("NPR_GPU={0:?}: it must be required, auto or off")]
+    Policy(String),
+    /// A file that could not be written.
+    #[error("{}: {source}", path.display())]
+    Write {
+        /// Which.
+        path: std::path::PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// A table that could not be written as JSON.
+    #[error("could not write JSON: {0}")]
+    Json(#[from] serde_json::Error),
+}

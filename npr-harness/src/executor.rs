@@ -1,0 +1,138 @@
+//! Where pictures are made: on a device if there is one, else on the CPU.
+
+use crate::camera::Camera;
+use crate::compare::Image;
+use crate::cpu::{self, CpuOptions};
+use crate::error::HarnessError;
+use crate::plan::{LineFinder, Plan};
+use crate::scene::Scene;
+use crate::style::Style;
+
+#[cfg(feature = "gpu")]
+use crate::gpu::{self, GpuContext};
+
+/// What is asked for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Backend {
+    /// A hardware adapter, else a software one, else the CPU.
+    #[default]
+    Auto,
+    /// An adapter, or an error.
+    Gpu,
+    /// Rays.
+    Cpu,
+}
+
+/// Whether adapters are looked for: the environment variable `NPR_GPU`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum GpuPolicy {
+    /// If there is one.
+    #[default]
+    Auto,
+    /// None is an error.
+    Required,
+    /// As if there were none.
+    Off,
+}
+
+impl GpuPolicy {
+    /// Reads `NPR_GPU`: `required`, `auto` (also when it is not set) or `off`.
+    ///
+    /// # Errors
+    /// [`HarnessError::Policy`] for anything else.
+    pub fn from_env() -> Result<Self, HarnessError> {
+        match std::env::var("NPR_GPU").as_deref() {
+            Err(_) | Ok("" | "auto") => Ok(Self::Auto),
+            Ok("required") => Ok(Self::Required),
+            Ok("off") => Ok(Self::Off),
+            Ok(other) => Err(HarnessError::Policy(other.to_owned())),
+        }
+    }
+}
+
+/// An executor, chosen.
+pub enum Executor {
+    /// On a device.
+    #[cfg(feature = "gpu")]
+    Gpu(Box<GpuContext>),
+    /// With rays.
+    Cpu {
+        /// Why not on a device, if one was looked for.
+        why: Option<String>,
+    },
+}
+
+impl Executor {
+    /// Chooses.
+    ///
+    /// # Errors
+    /// If an adapter is required, by `backend` or by the environment, and there is none.
+    pub fn choose(backend: Backend) -> Result<Self, HarnessError> {
+        let policy = GpuPolicy::from_env()?;
+        if backend == Backend::Cpu {
+            return Ok(Self::Cpu { why: None });
+        }
+        if policy == GpuPolicy::Off {
+            return match backend {
+                Backend::Gpu => Err(HarnessError::GpuRequired("adapters are off: NPR_GPU=off".into())),
+                _ => Ok(Self::Cpu { why: Some("NPR_GPU=off".into()) }),
+            };
+        }
+        Self::on_device(backend, policy)
+    }
+
+    #[cfg(feature = "gpu")]
+    fn on_device(backend: Backend, policy: GpuPolicy) -> Result<Self, HarnessError> {
+        match GpuContext::new() {
+            Ok(context) => Ok(Self::Gpu(Box::new(context))),
+            Err(error) if policy == GpuPolicy::Required => Err(HarnessError::GpuRequired(error.to_string())),
+            Err(error) if backend == Backend::Gpu => Err(error.into()),
+            Err(error) => Ok(Self::Cpu { why: Some(error.to_string()) }),
+        }
+    }
+
+    #[cfg(not(feature = "gpu"))]
+    fn on_device(backend: Backend, policy: GpuPolicy) -> Result<Self, HarnessError> {
+        if backend == Backend::Gpu || policy == GpuPolicy::Required {
+            return Err(HarnessError::NoGpuInBuild);
+        }
+        Ok(Self::Cpu { why: Some("this build has no GPU executor".into()) })
+    }
+
+    /// One line: where pictures are made, and why not elsewhere.
+    pub fn describe(&self) -> String {
+        match self {
+            #[cfg(feature = "gpu")]
+            Self::Gpu(context) => context.describe(),
+            Self::Cpu { why: None } => "CPU, ray casting".into(),
+            Self::Cpu { why: Some(why) } => format!("CPU, ray casting ({why})"),
+        }
+    }
+
+    /// Renders a picture.
+    ///
+    /// `samples` is the CPU executor's; a device takes one sample a pixel.
+    ///
+    /// # Errors
+    /// [`HarnessError`].
+    #[expect(clippy::too_many_arguments, reason = "each is a thing of its own; a struct would only rename them")]
+    pub fn render(
+        &self,
+        scene: &Scene,
+        style: &Style,
+        plan: &Plan,
+        camera: &Camera,
+        size: (u32, u32),
+        samples: u32,
+        progress: &(dyn Fn(f64) + Sync),
+    ) -> Result<Image, HarnessError> {
+        match self {
+            #[cfg(feature = "gpu")]
+            Self::Gpu(context) => Ok(gpu::render(context, scene, style, plan, camera, size, LineFinder::Auto)?),
+            Self::Cpu { .. } => {
+                let options = CpuOptions { samples, ..Default::default() };
+                Ok(cpu::render(scene, style, plan, camera, size, &options, progress).image())
+            }
+        }
+    }
+}

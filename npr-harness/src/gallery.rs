@@ -1,0 +1,76 @@
+//! Every style on the built-in scene.
+
+use crate::camera::{Camera, Projection};
+use crate::error::HarnessError;
+use crate::executor::Executor;
+use crate::plan::Plan;
+use crate::scene::Scene;
+use crate::style::styles;
+use glam::DVec3;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Px.
+pub const SIZE: (u32, u32) = (960, 540);
+
+/// A picture of the gallery.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// Where it is.
+    pub path: PathBuf,
+    /// What it shows.
+    pub about: &'static str,
+    /// Its passes.
+    pub passes: Vec<&'static str>,
+    /// From the plan to the picture in memory.
+    pub time_ms: f64,
+}
+
+/// The view for which the built-in scene is composed.
+pub fn still_life_camera() -> Camera {
+    Camera {
+        eye: DVec3::new(3.0, 6.0, 13.0),
+        target: DVec3::new(0.4, 1.15, 0.5),
+        up: DVec3::Y,
+        projection: Projection::Perspective { fov_y_rad: 30f64.to_radians() },
+        near: 0.1,
+    }
+}
+
+/// Renders all styles into `dir`, which is made if need be.
+///
+/// # Errors
+/// [`HarnessError`].
+pub fn render(executor: &Executor, dir: &Path, progress: &(dyn Fn(f64) + Sync)) -> Result<Vec<Row>, HarnessError> {
+    std::fs::create_dir_all(dir).map_err(|source| HarnessError::Write { path: dir.to_owned(), source })?;
+    let scene = Scene::new(npr_mesh::embedded::scene());
+    let camera = still_life_camera();
+    let styles = styles();
+    let mut rows = Vec::new();
+    for (number, style) in styles.iter().enumerate() {
+        let start = Instant::now();
+        let plan = Plan::new(&scene, style, &camera)?;
+        let share_of = |within: f64| progress((number as f64 + within) / styles.len() as f64);
+        let image = executor.render(&scene, style, &plan, &camera, SIZE, 1, &share_of)?;
+        let time_ms = start.elapsed().as_secs_f64() * 1e3;
+        let path = dir.join(format!("{}.png", style.name));
+        image.save_png(&path)?;
+        let passes = plan.passes.iter().map(|reason| reason.pass).collect();
+        rows.push(Row { path, about: style.about, passes, time_ms });
+    }
+    Ok(rows)
+}
+
+/// The rows as an aligned table.
+pub fn table(rows: &[Row]) -> String {
+    let widest = rows.iter().map(|row| row.path.display().to_string().len()).max().unwrap_or(0);
+    let mut text = String::new();
+    for row in rows {
+        let path = row.path.display().to_string();
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "{path:widest$}  {:>7.1} ms  {}", row.time_ms, row.about);
+        let _ = writeln!(text, "{:widest$}              {}", "", row.passes.join("; "));
+    }
+    text
+}

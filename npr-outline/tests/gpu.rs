@@ -1,0 +1,384 @@
+//! The passes on whatever graphics adapter there is, against the CPU twins.
+//!
+//! `NPR_GPU=required` fails without an adapter, `off` uses none, anything else skips, saying so, where there is none.
+#![cfg(feature = "wgpu")]
+#![allow(clippy::print_stdout)]
+
+#[path = "gpu/device.rs"]
+mod device;
+
+use device::{COLOR_FORMAT, Gpu, Picture, gpu};
+use glam::dcamera::rh::proj::directx as proj;
+use glam::dcamera::rh::view::look_at_mat4;
+use glam::{DMat4, DVec2, DVec3, Vec3};
+use npr_mesh::edges::{EdgeOptions, Edges, find};
+use npr_mesh::{Model, embedded};
+use npr_outline::contour::{ContourOptions, contour_edges, outline_facing};
+use npr_outline::fin_pass::FinPass;
+use npr_outline::fin_printed::{FinDepth, FinView, fin_printed_triangles, printed_fins, rasterise};
+use npr_outline::line_look::LineLook;
+use npr_outline::line_pass::{LinePass, LineRecord, LineSource, line_records};
+use npr_outline::normal_format::{NormalFormat, fibonacci_sphere};
+use npr_outline::segment::{LineView, ScreenSegment, outline_coverage, outline_is_visible, outline_project};
+use std::collections::BTreeSet;
+
+const FOV: f64 = 1.0;
+const NEAR: f64 = 0.1;
+
+fn line_view([width, height]: [u32; 2], view_from_world: DMat4) -> LineView {
+    let viewport_px = DVec2::new(f64::from(width), f64::from(height));
+    LineView {
+        clip_from_world: proj::perspective_infinite_reverse(FOV, viewport_px.x / viewport_px.y, NEAR)
+            * view_from_world,
+        viewport_px,
+        depth_per_px: DVec2::new(2.0 * (0.5 * FOV).tan() / viewport_px.y, 0.0),
+    }
+}
+
+fn black(width_px: f32) -> LineLook {
+    LineLook { width_px: [width_px; 4], ink: [0.0, 0.0, 0.0, 1.0] }
+}
+
+fn record(ends: [DVec3; 2], normals: [DVec3; 2]) -> LineRecord {
+    let [end0, end1] = ends.map(|end| end.as_vec3().to_array());
+    let [normal0, normal1] = normals.map(|normal| normal.as_vec3().to_array());
+    LineRecord { end0, kind_traits: 0, end1, normal0, normal1 }
+}
+
+/// Draws lines and returns their coverage, bytes in rows from the top.
+fn draw(gpu: &Gpu, pass: &LinePass, picture: &Picture, source: LineSource<'_>, width_px: f32, view: &LineView) -> Vec<u8> {
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    let eye = view.clip_from_world.inverse() * glam::DVec4::Z;
+    pass.record(&gpu.device, &mut encoder, source, &black(width_px), view, eye / eye.w, &picture.targets()).unwrap();
+    gpu.queue.submit([encoder.finish()]);
+    gpu.read_texture(&picture.coverage, 1)
+}
+
+fn edges_of(model: &Model) -> Edges {
+    find(&model.positions, &model.faces, &model.face_polygon, &model.face_material, &EdgeOptions::default())
+}
+
+#[test]
+fn lines_found_on_the_device_are_those_of_the_scan() {
+    let Some(gpu) = gpu() else { return };
+    let pass = LinePass::new(&gpu.device, COLOR_FORMAT, true);
+    let size = [160, 120];
+    let (mut borderline, mut lines_in_all) = (0, 0);
+    for model in [embedded::cube(), embedded::torus(1.0, 0.4, 48, 24), embedded::teapot(6)] {
+        let contours = contour_edges(&model, &edges_of(&model), &ContourOptions::default()).unwrap();
+        let edges = pass.upload_edges(&gpu.device, &contours, &model.positions).unwrap();
+        for direction in fibonacci_sphere(20) {
+            let eye = contours.origin.as_dvec3() + 5.0 * direction;
+            let view = line_view(size, look_at_mat4(eye, contours.origin.as_dvec3(), DVec3::Y));
+            let eye = eye.extend(1.0);
+            let picture = gpu.picture(size);
+            let mut scanned = Vec::new();
+            contours.scan(eye, &mut scanned);
+            let from_device = draw(gpu, &pass, &picture, LineSource::OnDevice(&edges), 1.5, &view);
+            let count = bytemuck::pod_collect_to_vec::<u8, u32>(&gpu.read_buffer(edges.arguments()));
+            assert_eq!((count[0], count[2], count[3]), (4, 0, 0));
+            let found = bytemuck::pod_collect_to_vec::<u8, u32>(&gpu.read_buffer(edges.lines()));
+            let found = &found[..count[1] as usize];
+            let (on_device, on_cpu) =
+                (found.iter().copied().collect::<BTreeSet<_>>(), scanned.iter().copied().collect::<BTreeSet<_>>());
+            assert_eq!(on_device.len(), found.len(), "a line twice");
+            // A device may fuse products and sums, which moves an eye that lies in a face's plane to within rounding.
+            let local_eye = contours.local_eye(eye);
+            for &line in on_device.symmetric_difference(&on_cpu) {
+                let planes = contours.planes[line as usize];
+                let margin = [planes.plane0, planes.plane1].map(|plane| outline_facing(plane, local_eye).abs());
+                assert!(margin[0].min(margin[1]) < 1e-5, "line {line} is off by {margin:?}");
+                borderline += 1;
+            }
+            lines_in_all += on_cpu.len();
+            // And the two sources draw the same picture.
+            if on_device == on_cpu {
+                let mut records = Vec::new();
+                line_records(&contours, &model.positions, &scanned, eye, &mut records);
+                let from_records = draw(gpu, &pass, &picture, LineSource::Records(&records), 1.5, &view);
+                assert!(from_records.iter().any(|&c| c > 0));
+                assert_eq!(from_records, from_device);
+            }
+        }
+    }
+    println!("{lines_in_all} lines, {borderline} of them within rounding of another answer");
+    assert!(borderline * 1000 <= lines_in_all);
+}
+
+/// The mean over columns of a line's width, from the sums of its coverage down each column.
+fn width_in_columns(coverage: &[u8], size: [u32; 2], columns: std::ops::Range<u32>, segment: &ScreenSegment) -> f64 {
+    let cos = segment.direction().0.x.abs();
+    let sum: u64 = (0..size[1])
+        .flat_map(|y| columns.clone().map(move |x| (y * size[0] + x) as usize))
+        .map(|at| u64::from(coverage[at]))
+        .sum();
+    sum as f64 / 255.0 / columns.len() as f64 * cos
+}
+
+#[test]
+fn widths_are_as_asked_at_any_distance() {
+    let Some(gpu) = gpu() else { return };
+    let pass = LinePass::new(&gpu.device, COLOR_FORMAT, false);
+    let size = [640, 480];
+    let view = line_view(size, DMat4::IDENTITY);
+    let picture = gpu.picture(size);
+    let widths_px = [1.0f32, 2.0, 4.0, 8.0];
+    let mut worst = 0.0f64;
+    for distance in [0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0] {
+        for rise in [0.0, 0.037, 0.1, 0.23] {
+            let ends = [DVec3::new(-0.3, 0.013 - rise, -1.0), DVec3::new(0.3, 0.013 + rise, -1.0)];
+            let ends = ends.map(|end| distance * end);
+            for width_px in widths_px {
+                let segment = outline_project(ends, [DVec3::ZERO; 2], f64::from(width_px), &view).unwrap();
+                let lines = [record(ends, [DVec3::ZERO; 2])];
+                let coverage = draw(gpu, &pass, &picture, LineSource::Records(&lines), width_px, &view);
+                let columns = segment.ends_px[0].x as u32 + 12..segment.ends_px[1].x as u32 - 12;
+                let width = width_in_columns(&coverage, size, columns, &segment);
+                worst = worst.max((width / f64::from(width_px) - 1.0).abs());
+                assert!((width / f64::from(width_px) - 1.0).abs() < 0.1, "{width_px} px at {distance}: {width}");
+            }
+        }
+    }
+    println!("segments across the view, 0.5 to 50 units away: width off by at most {:.3} %", 100.0 * worst);
+    let ends = [DVec3::new(-0.15, -0.05, -0.5), DVec3::new(20.0, 10.0, -50.0)];
+    let mut worst_along = 0.0f64;
+    for width_px in widths_px {
+        let segment = outline_project(ends, [DVec3::ZERO; 2], f64::from(width_px), &view).unwrap();
+        let lines = [record(ends, [DVec3::ZERO; 2])];
+        let coverage = draw(gpu, &pass, &picture, LineSource::Records(&lines), width_px, &view);
+        let (from, to) = (segment.ends_px[0].x as u32 + 12, segment.ends_px[1].x as u32 - 12);
+        assert!(to - from > 200);
+        for first in (from..to - 20).step_by(20) {
+            let width = width_in_columns(&coverage, size, first..first + 20, &segment);
+            worst_along = worst_along.max((width / f64::from(width_px) - 1.0).abs());
+            assert!((width / f64::from(width_px) - 1.0).abs() < 0.1, "{width_px} px at column {first}: {width}");
+        }
+    }
+    println!("a segment from 0.5 to 50 units away: width off by at most {:.3} % anywhere", 100.0 * worst_along);
+}
+
+#[test]
+fn a_segment_through_the_near_plane_is_cut_there() {
+    let Some(gpu) = gpu() else { return };
+    let pass = LinePass::new(&gpu.device, COLOR_FORMAT, false);
+    let size = [320, 240];
+    let view = line_view(size, DMat4::IDENTITY);
+    let picture = gpu.picture(size);
+    let ends = [DVec3::new(0.05, -0.02, -4.0), DVec3::new(-0.01, 0.03, 3.0)];
+    for ends in [ends, [ends[1], ends[0]]] {
+        let segment = outline_project(ends, [DVec3::ZERO; 2], 4.0, &view).unwrap();
+        let lines = [record(ends, [DVec3::ZERO; 2])];
+        let coverage = draw(gpu, &pass, &picture, LineSource::Records(&lines), 4.0, &view);
+        let (differ, compared) = compare(&coverage, size, |point| outline_coverage(&segment, point, 4.0), |_| true);
+        assert_eq!(differ, 0);
+        assert_eq!(compared, size[0] * size[1]);
+        assert!(coverage.iter().filter(|&&c| c == 255).count() > 20);
+        // The cut end lies within the picture, and nothing is drawn beyond.
+        let inside = |p: DVec2| p.x > 10.0 && p.y > 10.0 && p.x < 310.0 && p.y < 230.0;
+        assert!(segment.ends_px.iter().all(|&p| inside(p)));
+    }
+    let behind = [record([DVec3::new(0.0, 0.0, 1.0), DVec3::new(0.5, 0.2, 3.0)], [DVec3::ZERO; 2])];
+    assert!(draw(gpu, &pass, &picture, LineSource::Records(&behind), 4.0, &view).iter().all(|&c| c == 0));
+    assert!(draw(gpu, &pass, &picture, LineSource::Records(&[]), 4.0, &view).iter().all(|&c| c == 0));
+}
+
+/// Pixels whose coverage is more than 1/255 (and rounding) off, and pixels compared.
+fn compare(
+    coverage: &[u8],
+    size: [u32; 2],
+    expected: impl Fn(DVec2) -> f64,
+    is_compared: impl Fn(DVec2) -> bool,
+) -> (u32, u32) {
+    let (mut differ, mut compared) = (0, 0);
+    for (at, &got) in (0u32..).zip(coverage) {
+        let point = DVec2::new(f64::from(at % size[0]), f64::from(at / size[0])) + 0.5;
+        if is_compared(point) {
+            compared += 1;
+            differ += u32::from((f64::from(got) - 255.0 * expected(point)).abs() > 1.0);
+        }
+    }
+    (differ, compared)
+}
+
+#[test]
+fn overlapping_joints_are_not_counted_twice() {
+    let Some(gpu) = gpu() else { return };
+    let pass = LinePass::new(&gpu.device, COLOR_FORMAT, false);
+    let size = [320, 240];
+    let view = line_view(size, DMat4::IDENTITY);
+    let ends = [DVec3::new(-0.5, -0.31, -1.0), DVec3::new(0.61, 0.4, -1.0)];
+    for width_px in [1.0, 3.0, 6.5] {
+        let whole_picture = gpu.picture(size);
+        let whole = draw(gpu, &pass, &whole_picture, LineSource::Records(&[record(ends, [DVec3::ZERO; 2])]), width_px, &view);
+        let segment = outline_project(ends, [DVec3::ZERO; 2], f64::from(width_px), &view).unwrap();
+        let pieces = segment.direction().1.ceil() as usize;
+        assert!(pieces > 200);
+        let at = |i: usize| ends[0].lerp(ends[1], i as f64 / pieces as f64);
+        let lines: Vec<_> = (0..pieces).map(|i| record([at(i), at(i + 1)], [DVec3::ZERO; 2])).collect();
+        let picture = gpu.picture(size);
+        let in_pieces = draw(gpu, &pass, &picture, LineSource::Records(&lines), width_px, &view);
+        let most = whole.iter().zip(&in_pieces).map(|(a, b)| a.abs_diff(*b)).max();
+        assert!(most <= Some(1), "{width_px} px: {most:?}");
+        // Black ink on white, each pixel once.
+        for (ink, covered) in gpu.read_texture(&picture.color, 4).chunks(4).zip(&in_pieces) {
+            assert!(ink[0].abs_diff(255 - covered) <= 1 && ink[0] == ink[1] && ink[1] == ink[2]);
+        }
+    }
+}
+
+/// Numbers in 0..1 from a seed (SplitMix64).
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.next()
+    }
+
+    fn unit(&mut self) -> DVec3 {
+        let v = DVec3::from_array(std::array::from_fn(|_| self.between(-1.0, 1.0)));
+        if v.length() > 1.0 || v.length() < 0.1 { self.unit() } else { v.normalize() }
+    }
+}
+
+#[test]
+fn coverage_is_that_of_the_twin() {
+    let Some(gpu) = gpu() else { return };
+    let pass = LinePass::new(&gpu.device, COLOR_FORMAT, false);
+    let size = [128, 96];
+    let view = line_view(size, DMat4::IDENTITY);
+    let picture = gpu.picture(size);
+    let mut random = Random(1);
+    let (mut touched, mut exempt, mut differing, mut hidden) = (0u32, 0u32, 0u32, 0u32);
+    for case in 0..300 {
+        let mut point = |far: f64| {
+            let z = random.between(0.05, far);
+            DVec3::new(random.between(-0.8, 0.8) * z, random.between(-0.6, 0.6) * z, -z)
+        };
+        let ends = [point(6.0), point(6.0)].map(|end| end.as_vec3().as_dvec3());
+        let width_px = random.between(0.4, 7.0) as f32;
+        let width = f64::from(width_px);
+        // A face of the edge, and a scene that is that face's plane, or lies near it, or anywhere.
+        let along = ends[1] - ends[0];
+        let normal = along.cross(random.unit()).normalize().as_vec3().as_dvec3();
+        let normals = [normal, if case % 2 == 0 { DVec3::ZERO } else { random.unit().as_vec3().as_dvec3() }];
+        let Some(segment) = outline_project(ends, normals, width, &view) else { continue };
+        gpu.fill_depth(&picture, scene_plane(&segment, &view, case % 3, &mut random));
+        let depths = bytemuck::pod_collect_to_vec::<u8, f32>(&gpu.read_texture(&picture.depth, 4));
+        let depth_at = |x: i64, y: i64| {
+            let (x, y) = (x.clamp(0, i64::from(size[0]) - 1), y.clamp(0, i64::from(size[1]) - 1));
+            f64::from(depths[(y * i64::from(size[0]) + x) as usize])
+        };
+        let coverage = draw(gpu, &pass, &picture, LineSource::Records(&[record(ends, normals)]), width_px, &view);
+        let visible = |segment: &ScreenSegment, point: DVec2| {
+            outline_is_visible(segment, segment.nearest(point), &view, false, depth_at)
+        };
+        let expected = |point| {
+            let covered = outline_coverage(&segment, point, width);
+            if covered > 0.0 && visible(&segment, point) { covered } else { 0.0 }
+        };
+        // Decided alike for segments a thousandth of a px, of depth or of slope beside it: f32 is better than that.
+        let shaken = shaken(&segment, &view);
+        let is_firm = |point: DVec2| {
+            let seen = visible(&segment, point);
+            shaken.iter().all(|other| visible(other, point) == seen)
+        };
+        let near = |point: DVec2| outline_coverage(&segment, point, width) > 0.0;
+        let (differ, compared) = compare(&coverage, size, expected, |p| !near(p) || is_firm(p));
+        let points = (0..size[0] * size[1]).map(|at| DVec2::new(f64::from(at % size[0]), f64::from(at / size[0])) + 0.5);
+        touched += points.clone().filter(|&p| near(p)).count() as u32;
+        hidden += points.filter(|&p| near(p) && !visible(&segment, p)).count() as u32;
+        exempt += size[0] * size[1] - compared;
+        differing += differ;
+        assert_eq!(differ, 0, "case {case}: {segment:?}, {width_px} px");
+    }
+    println!(
+        "{touched} pixels covered, {hidden} of them hidden; {:.2} % exempt, {differing} differ",
+        100.0 * f64::from(exempt) / f64::from(touched)
+    );
+    assert!(touched > 20_000 && hidden * 10 > touched && hidden * 10 < 9 * touched);
+    assert!(exempt * 20 < touched);
+}
+
+/// Per px and at the upper left: a plane of depths through the segment (0), just before or behind it (1), or across it
+/// (2).
+fn scene_plane(segment: &ScreenSegment, view: &LineView, kind: usize, random: &mut Random) -> [f32; 3] {
+    let (direction, length) = segment.direction();
+    let along = (segment.depths[1] - segment.depths[0]) / length.max(1.0);
+    let (middle, depth) = segment.at(0.5);
+    let per_px = depth * view.depth_per_px.x;
+    let across = random.between(-6.0, 6.0) * per_px;
+    let gradient = match kind {
+        2 => direction * along + DVec2::new(random.between(-2.0, 2.0), random.between(-2.0, 2.0)) * per_px,
+        _ => direction * along + direction.perp() * across,
+    };
+    let offset = if kind == 1 { random.between(-3.0, 6.0) * per_px } else { 0.0 };
+    [gradient.x as f32, gradient.y as f32, (depth + offset - gradient.dot(middle)) as f32]
+}
+
+/// The segment moved a little in all that a decision depends on.
+fn shaken(segment: &ScreenSegment, view: &LineView) -> Vec<ScreenSegment> {
+    let px = 1e-3;
+    let mut all = Vec::new();
+    for shift in [DVec2::ZERO, DVec2::X, DVec2::NEG_X, DVec2::Y, DVec2::NEG_Y] {
+        for sign in [-1.0, 1.0] {
+            let mut other = *segment;
+            for end in 0..2 {
+                other.ends_px[end] += shift * px;
+                let per_px = other.depths[end] * view.depth_per_px.x + view.depth_per_px.y;
+                other.depths[end] += sign * px * per_px;
+                other.slopes[end] = (segment.slopes[end] * (1.0 + sign * px) + sign * px * per_px).max(0.0);
+            }
+            all.push(other);
+        }
+    }
+    all
+}
+
+#[test]
+fn printed_fins_are_those_of_the_rasteriser() {
+    let Some(gpu) = gpu() else { return };
+    let size = [320, 240];
+    for (name, model) in [("cube", embedded::cube()), ("teapot", embedded::teapot(6)), ("disc", embedded::ground(2.0))] {
+        let fins = printed_fins(&model, &edges_of(&model));
+        let (low, high) = model.bounds().unwrap();
+        let centre = low.midpoint(high);
+        let eye = (centre + Vec3::new(3.1, 2.3, 4.2)).as_dvec3();
+        let lines = line_view(size, look_at_mat4(eye, centre.as_dvec3(), DVec3::Y));
+        for format in NormalFormat::ALL {
+            let pass = FinPass::new(&gpu.device, COLOR_FORMAT, format);
+            let on_device = pass.upload(&gpu.device, &fins).unwrap();
+            let quantised = fins.quantised(format);
+            for depth in [FinDepth::Eye, FinDepth::Printed { near: NEAR, far: 50.0 }] {
+                let thickness = 3.0 * lines.depth_per_px.x;
+                let view = FinView { clip_from_world: lines.clip_from_world, eye, thickness, depth };
+                let picture = gpu.picture(size);
+                // A wall that hides some of the fins.
+                gpu.fill_depth(&picture, [1e-4, 2e-5, 0.001]);
+                let depths = bytemuck::pod_collect_to_vec::<u8, f32>(&gpu.read_texture(&picture.depth, 4));
+                let at = |x: u32, y: u32| (y * size[0] + x) as usize;
+                let mut expected = vec![false; (size[0] * size[1]) as usize];
+                let triangles = fin_printed_triangles(&quantised, &view);
+                rasterise(&triangles, size, |x, y| f64::from(depths[at(x, y)]), |x, y| expected[at(x, y)] = true);
+                let targets = picture.targets();
+                let mut encoder = gpu.device.create_command_encoder(&Default::default());
+                let ink = [0.0, 0.0, 0.0, 1.0];
+                pass.record(&gpu.device, &mut encoder, &on_device, &view, ink, targets.color, targets.depth);
+                gpu.queue.submit([encoder.finish()]);
+                let got = gpu.read_texture(&picture.color, 4);
+                let inked = expected.iter().filter(|&&inked| inked).count();
+                let differ = got.chunks(4).zip(&expected).filter(|(px, inked)| (px[0] == 0) != **inked).count();
+                // Corners are rounded to a fraction of a px before they are drawn.
+                println!("{name}, {format:?}, {depth:?}: {inked} px of ink, {differ} differ");
+                assert!(inked > 300 && differ * 50 <= inked, "{name}, {format:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,46 @@
+//! All WGSL of the crate parses and validates, alone where it is a library and together as the passes use it.
+
+use naga::valid::{Capabilities, ValidationFlags, Validator};
+
+const LINE: &str = include_str!("../src/line.wgsl");
+const LINE_PASS: &str = include_str!("../src/line_pass.wgsl");
+const LINE_PULLED: &str = include_str!("../src/line_pulled.wgsl");
+const COMPACTION: &str = include_str!("../src/compaction.wgsl");
+const NORMAL_FORMAT: &str = include_str!("../src/normal_format.wgsl");
+const FIN_PRINTED: &str = include_str!("../src/fin_printed.wgsl");
+const FIN_PASS: &str = include_str!("../src/fin_pass.wgsl");
+
+fn validated(parts: &[&str]) -> naga::Module {
+    let source = parts.concat();
+    let module = naga::front::wgsl::parse_str(&source).unwrap_or_else(|e| panic!("{}", e.emit_to_string(&source)));
+    if let Err(error) = Validator::new(ValidationFlags::all(), Capabilities::empty()).validate(&module) {
+        panic!("{}", error.emit_to_string(&source));
+    }
+    module
+}
+
+fn entry_points(parts: &[&str]) -> Vec<String> {
+    validated(parts).entry_points.iter().map(|entry| entry.name.clone()).collect()
+}
+
+#[test]
+fn modules_validate_as_the_passes_use_them() {
+    assert_eq!(entry_points(&[LINE, LINE_PASS]), ["vs_record", "fs_coverage", "fs_ink"]);
+    assert_eq!(entry_points(&[LINE, LINE_PASS, LINE_PULLED]), ["vs_record", "fs_coverage", "fs_ink", "vs_pulled"]);
+    assert_eq!(entry_points(&[LINE, COMPACTION]), ["compact"]);
+    assert_eq!(entry_points(&[NORMAL_FORMAT, FIN_PRINTED, FIN_PASS]), ["vs_fin", "vs_fin_oct", "fs_fin"]);
+}
+
+#[test]
+fn libraries_have_no_bindings_no_entry_points_and_one_prefix_each() {
+    // Together, too: no name stands in two of them.
+    validated(&[LINE, NORMAL_FORMAT, FIN_PRINTED]);
+    for (library, prefix) in [(LINE, "outline_"), (NORMAL_FORMAT, "normal_"), (FIN_PRINTED, "fin_printed_")] {
+        let module = validated(&[library]);
+        assert!(module.entry_points.is_empty() && module.global_variables.is_empty());
+        assert!(!module.functions.is_empty());
+        for (_, function) in module.functions.iter() {
+            assert!(function.name.as_deref().unwrap().starts_with(prefix), "{:?}", function.name);
+        }
+    }
+}
