@@ -24,7 +24,9 @@ use std::ops::Range;
 pub struct CpuOptions {
     /// Samples per pixel along each axis, at least 1.
     pub samples: u32,
-    /// Where the samples lie relative to the pixels' centres, px: the reference's own sensitivity is what changes with it.
+    /// Where surfaces are sampled relative to the pixels' centres, px: what changes with it is where the reference is
+    /// sensitive. Lines stay where they are, since their coverage is no sample; whether they are hidden is decided by
+    /// the moved samples.
     pub shift_px: DVec2,
     /// At most so many threads; 0 for as many as the machine has.
     pub threads: usize,
@@ -125,9 +127,8 @@ impl FrameContext<'_> {
         let available = std::thread::available_parallelism().map_or(1, usize::from);
         let threads = if threads == 0 { available } else { threads };
         // Rows are handed out one by one, since the cost of a row depends on what is in it.
-        let work = std::sync::Mutex::new(
-            color.chunks_mut(width as usize).zip(depth.chunks_mut(width as usize)).enumerate(),
-        );
+        let work =
+            std::sync::Mutex::new(color.chunks_mut(width as usize).zip(depth.chunks_mut(width as usize)).enumerate());
         std::thread::scope(|scope| {
             for _ in 0..threads.min(height as usize).max(1) {
                 scope.spawn(|| {
@@ -170,7 +171,9 @@ impl FrameContext<'_> {
         };
         if self.plan.blended {
             let nearer = (range.0, solid.map_or(range.1, |hit| hit.t));
-            for hit in rays.all(origin, direction, nearer, |hit| self.is_shown(hit) && self.is_blended(hit)).iter().rev() {
+            for hit in
+                rays.all(origin, direction, nearer, |hit| self.is_shown(hit) && self.is_blended(hit)).iter().rev()
+            {
                 let over = self.paint(hit, x, y);
                 color = color.lerp(over.truncate(), over.w);
             }

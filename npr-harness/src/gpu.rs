@@ -59,8 +59,7 @@ impl<'a> GpuRenderer<'a> {
         };
         let mut uploaded = GpuScene::new(self.context, &self.surface, scene, plan)?;
         if let (true, Some(contours)) = (on_device, &plan.contours) {
-            uploaded.edges =
-                Some(self.lines.upload_edges(&self.context.device, contours, &scene.model.positions)?);
+            uploaded.edges = Some(self.lines.upload_edges(&self.context.device, contours, &scene.model.positions)?);
         }
         Ok(uploaded)
     }

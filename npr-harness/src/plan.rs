@@ -72,22 +72,36 @@ impl Plan {
         };
         let outlined = style.lines.is_some();
         add(painted, "geometry: colour and depth", "surfaces are painted", "the style paints no surface");
-        add(!painted && outlined, "geometry: depth alone", "lines are hidden behind surfaces", "colour is drawn with it");
+        add(
+            !painted && outlined,
+            "geometry: depth alone",
+            "lines are hidden behind surfaces",
+            "colour is drawn with it",
+        );
         add(textured, "texture and vertex colour lookups", "materials have them", "no material needs them");
         add(cut_out, "alpha test", "materials have a cutoff", "no material has a cutoff");
         add(blended, "blended surfaces, back to front", "materials are blended", "no material is blended");
-        add(!cull_back, "faces turned away", "the model is open, or seen from inside", "the model is closed: they are hidden");
+        add(
+            !cull_back,
+            "faces turned away",
+            "the model is open, or seen from inside",
+            "the model is closed: they are hidden",
+        );
         let fins = matches!(style.lines, Some(Lines::Fins(_)));
         add(fins, "line coverage and ink", "the style draws lines", "the style draws no such lines");
         let printed = matches!(style.lines, Some(Lines::Printed { .. }));
-        add(printed, "printed fins, all edges", "the style asks for the printed form", "only edges that are lines are sent");
+        add(
+            printed,
+            "printed fins, all edges",
+            "the style asks for the printed form",
+            "only edges that are lines are sent",
+        );
         add(false, "second light", "", "there is one light");
         add(false, "multisampling", "", "lines and band borders carry their own coverage");
         let contours = match &style.lines {
             Some(Lines::Fins(look)) => {
                 look.validate()?;
-                let options =
-                    ContourOptions { crease_angle_rad: style.crease_angle_rad, material_borders: false };
+                let options = ContourOptions { crease_angle_rad: style.crease_angle_rad, material_borders: false };
                 Some(contour_edges(model, &scene.edges, &options)?)
             }
             _ => None,

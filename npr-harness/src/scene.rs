@@ -27,14 +27,18 @@ impl Scene {
     /// Finds a model's edges and prepares it.
     pub fn new(mut model: Model) -> Self {
         let origin = recenter(&mut model);
-        let edges =
-            edges::find(&model.positions, &model.faces, &model.face_polygon, &model.face_material, &EdgeOptions::default());
+        let edges = edges::find(
+            &model.positions,
+            &model.faces,
+            &model.face_polygon,
+            &model.face_material,
+            &EdgeOptions::default(),
+        );
         let closed = !edges.edges.is_empty()
             && edges.skipped.is_empty()
             && edges.edges.iter().all(|edge| edge.kind() == EdgeKind::TwoFace && !edge.wound_oppositely())
             && signed_volume(&model) > 0.0;
-        let material_colors =
-            model.materials.iter().map(|m| encode_rgb(m.base_color.truncate().as_dvec3())).collect();
+        let material_colors = model.materials.iter().map(|m| encode_rgb(m.base_color.truncate().as_dvec3())).collect();
         Self { model, origin, edges, material_colors, closed, rays: OnceLock::new() }
     }
 

@@ -78,7 +78,12 @@ pub fn styles() -> Vec<Style> {
         style("lines", "ink on paper, hidden lines removed", Shade::Paper, ink_lines(1.4, 1.0)),
         style("bold", "two tones and a heavy pen", Shade::Toon(Bands::hard_shading()), ink_lines(4.0, 2.0)),
         style("lambert", "plain diffuse light, no bands, no lines", Shade::Lambert { ambient: 0.25 }, None),
-        style("printed-bands", "the three bands of the 2002 chapter's listing 3, aliased", Shade::Toon(Bands::listing_3()), None),
+        style(
+            "printed-bands",
+            "the three bands of the 2002 chapter's listing 3, aliased",
+            Shade::Toon(Bands::listing_3()),
+            None,
+        ),
         style(
             "printed-fins",
             "the outline of the 2002 chapter's listing 1, as printed",

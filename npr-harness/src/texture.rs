@@ -50,9 +50,8 @@ impl MipMapped {
                 }
             }
             (width, height, linear) = (next_width, next_height, next);
-            let bytes = linear.iter().flat_map(|t| {
-                [encode_srgb(t.x), encode_srgb(t.y), encode_srgb(t.z), t.w].map(to_byte)
-            });
+            let bytes =
+                linear.iter().flat_map(|t| [encode_srgb(t.x), encode_srgb(t.y), encode_srgb(t.z), t.w].map(to_byte));
             levels.push((width, height, bytes.collect()));
         }
         Self { levels, wrap: texture.wrap, smooth: texture.smooth }

@@ -425,7 +425,8 @@ fn drop_diagonals(
         }
         if left.len() < before {
             edge.faces = [left[0], left.get(1).copied().unwrap_or(NO_FACE)];
-            let ascends = edge.faces.map(|face| face != NO_FACE && runs_upwards(faces, representative, face, edge.ends));
+            let ascends =
+                edge.faces.map(|face| face != NO_FACE && runs_upwards(faces, representative, face, edge.ends));
             edge.flags = if left.len() < 3 { 0 } else { FLAG_NON_MANIFOLD };
             edge.flags |= if ascends[0] { FLAG_FIRST_ASCENDS } else { 0 };
             edge.flags |= if left.len() > 1 && ascends[0] == ascends[1] { FLAG_WOUND_OPPOSITELY } else { 0 };

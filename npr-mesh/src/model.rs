@@ -130,10 +130,9 @@ impl Model {
         self.normals.extend_from_slice(&other.normals);
         self.faces.extend(other.faces.iter().map(|f| f.map(|v| v + first_vertex)));
         self.face_material.extend(other.face_material.iter().map(|m| m + first_material));
-        self.materials.extend(other.materials.iter().map(|m| Material {
-            texture: m.texture.map(|t| t + first_texture),
-            ..m.clone()
-        }));
+        self.materials.extend(
+            other.materials.iter().map(|m| Material { texture: m.texture.map(|t| t + first_texture), ..m.clone() }),
+        );
         self.textures.extend_from_slice(&other.textures);
     }
 

@@ -44,8 +44,9 @@ impl LineKind {
 
 /// The planes of an edge's two faces: `n · p + d` with a unit normal `n`, relative to [`ContourEdges::origin`].
 ///
-/// The second is turned so that both would be wound alike; at a boundary it is the negated first, so that the edge
-/// is a silhouette for every eye (the chapter's step 1b).
+/// Faces that are wound oppositely to the first of their part of the surface are turned, so that both are wound alike;
+/// at a boundary the second is the negated first, so that the edge is a silhouette for every eye (the chapter's
+/// step 1b).
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub struct EdgePlanes {
@@ -80,7 +81,7 @@ pub struct ContourEdges {
     pub origin: Vec3,
     /// Per edge its two planes.
     pub planes: Vec<EdgePlanes>,
-    /// Per edge its two vertices, in the order in which the first face runs over them.
+    /// Per edge its two vertices, in the order in which the first face runs over them, turned if its plane is.
     pub ends: Vec<[u32; 2]>,
     /// Per edge [`LineKind`] (as a number, in the lower 8 bits) that it has when it is not a silhouette, and flags.
     pub traits: Vec<u32>,
@@ -104,11 +105,7 @@ pub const TRAIT_CUT_OUT: u32 = 1 << 9;
 ///
 /// # Errors
 /// [`OutlineError::CreaseAngle`].
-pub fn contour_edges(
-    model: &Model,
-    edges: &Edges,
-    options: &ContourOptions,
-) -> Result<ContourEdges, OutlineError> {
+pub fn contour_edges(model: &Model, edges: &Edges, options: &ContourOptions) -> Result<ContourEdges, OutlineError> {
     let angle_rad = options.crease_angle_rad;
     if !(0.0..=std::f32::consts::PI).contains(&angle_rad) {
         return Err(OutlineError::CreaseAngle { angle_rad });
@@ -116,11 +113,13 @@ pub fn contour_edges(
     let origin = model.bounds().map_or(Vec3::ZERO, |(low, high)| low.midpoint(high));
     let cos_crease = angle_rad.cos();
     let lent = borrowed_normals(&model.positions, edges);
-    let cut_out: Vec<bool> =
-        model.materials.iter().map(|m| matches!(m.alpha_mode, AlphaMode::Mask { .. })).collect();
+    let turned = turned_faces(edges, &model.face_polygon);
+    let is_turned = |face: u32| turned.get(face as usize) == Some(&true);
+    let cut_out: Vec<bool> = model.materials.iter().map(|m| matches!(m.alpha_mode, AlphaMode::Mask { .. })).collect();
     let normal_of = |face: u32| {
         let own = edges.face_normals[face as usize];
-        if own == Vec3::ZERO { lent.get(&face).copied().unwrap_or(Vec3::ZERO) } else { own }
+        let normal = if own == Vec3::ZERO { lent.get(&face).copied().unwrap_or(Vec3::ZERO) } else { own };
+        if is_turned(face) { -normal } else { normal }
     };
     let mut contours = ContourEdges { origin, ..Default::default() };
     contours.planes.reserve_exact(edges.edges.len());
@@ -135,7 +134,9 @@ pub fn contour_edges(
                 EdgeKind::Boundary => (Some(LineKind::Boundary), -n0),
                 EdgeKind::NonManifold => (Some(LineKind::Crease), normal_of(second)),
                 EdgeKind::TwoFace => {
-                    let n1 = if edge.wound_oppositely() { -normal_of(second) } else { normal_of(second) };
+                    // Only on a surface with one side are two faces left that do not fit.
+                    let fits = edge.wound_oppositely() == (is_turned(first) != is_turned(second));
+                    let n1 = if fits { normal_of(second) } else { -normal_of(second) };
                     let cos = if edge.cos_dihedral.is_nan() { n0.dot(n1) } else { edge.cos_dihedral };
                     let borrowed_nothing = n0 == Vec3::ZERO || n1 == Vec3::ZERO;
                     let line = if cos < cos_crease && !borrowed_nothing {
@@ -151,8 +152,7 @@ pub fn contour_edges(
             if line.is_some() != want_always {
                 continue;
             }
-            let is_cut_out =
-                |face: u32| face == NO_FACE || cut_out[model.face_material[face as usize] as usize];
+            let is_cut_out = |face: u32| face == NO_FACE || cut_out[model.face_material[face as usize] as usize];
             let mut flags = line.map_or(0, |kind| kind as u32 | TRAIT_ALWAYS);
             if is_cut_out(first) && is_cut_out(second) {
                 flags |= TRAIT_CUT_OUT;
@@ -165,7 +165,7 @@ pub fn contour_edges(
             let plane1 = if second == NO_FACE { plane0.map(|x| -x) } else { plane(n1, second) };
             contours.planes.push(EdgePlanes { plane0, plane1 });
             let [low, high] = edge.ends;
-            contours.ends.push(if edge.first_face_ascends() { [low, high] } else { [high, low] });
+            contours.ends.push(if edge.first_face_ascends() != is_turned(first) { [low, high] } else { [high, low] });
             contours.traits.push(flags);
             contours.first_face.push(first);
         }
@@ -225,6 +225,49 @@ fn borrowed_normals(positions: &[Vec3], edges: &Edges) -> HashMap<u32, Vec3> {
         }
     }
     lent
+}
+
+/// Per face whether it is wound oppositely to the first face of its part of the surface; empty if none is.
+///
+/// A face as a whole is turned, not its plane in this edge or that: an eye exactly in the plane counts as in front of
+/// it, in front of the negated plane too, and a face must be on one side for all of its edges or their loop is open.
+fn turned_faces(edges: &Edges, face_polygon: &[u32]) -> Vec<bool> {
+    let two_face = || edges.edges.iter().filter(|edge| edge.kind() == EdgeKind::TwoFace);
+    if !two_face().any(|edge| edge.wound_oppositely()) {
+        return Vec::new();
+    }
+    // A union-find forest; each face knows a face nearer to the root and whether it is wound oppositely to that.
+    let mut above: Vec<(u32, bool)> = (0..edges.face_normals.len() as u32).map(|face| (face, false)).collect();
+    fn root(above: &mut [(u32, bool)], mut face: u32) -> (u32, bool) {
+        let mut turned = false;
+        loop {
+            let (parent, from_parent) = above[face as usize];
+            if parent == face {
+                return (face, turned);
+            }
+            let (next, from_next) = above[parent as usize];
+            // A root is its own parent, not turned against itself.
+            let step = (next, from_parent != from_next);
+            above[face as usize] = step;
+            (face, turned) = (step.0, turned != step.1);
+        }
+    }
+    let mut join = |faces: [u32; 2], oppositely: bool| {
+        let [(a, a_turned), (b, b_turned)] = faces.map(|face| root(&mut above, face));
+        if a != b {
+            above[a.max(b) as usize] = (a.min(b), (a_turned != b_turned) != oppositely);
+        }
+    };
+    // The diagonals within a polygon are not among the edges.
+    for (face, pair) in (1u32..).zip(face_polygon.windows(2)) {
+        if pair[0] == pair[1] {
+            join([face - 1, face], false);
+        }
+    }
+    for edge in two_face() {
+        join(edge.faces, edge.wound_oppositely());
+    }
+    (0..above.len() as u32).map(|face| root(&mut above, face).1).collect()
 }
 
 /// On which side of a plane a (homogeneous) eye is: positive in front, negative behind, times its distance.

@@ -150,7 +150,7 @@ impl FinPass {
 
     /// Records drawing a frame's fins.
     ///
-    /// - `ink`: display-referred colour and alpha, written as they are.
+    /// - `ink`: display-referred colour and alpha, 0..=1, written as they are.
     /// - `color`: of the format that the pass was made for; kept outside the fins.
     /// - `depth`: the scene's, `Depth32Float`, reversed, renderable, of the same size; only read.
     ///

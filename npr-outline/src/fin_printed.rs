@@ -239,8 +239,7 @@ fn rasterise_one(
     for y in first(low.y)..end(high.y, height) {
         for x in first(low.x)..end(high.x, width) {
             let centre = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
-            let inside =
-                sides.map(|(from, to)| (to - from).truncate().perp_dot(centre - from.truncate()));
+            let inside = sides.map(|(from, to)| (to - from).truncate().perp_dot(centre - from.truncate()));
             if inside.iter().zip(takes_border).any(|(&e, border)| e < 0.0 || (e == 0.0 && !border)) {
                 continue;
             }

@@ -27,6 +27,7 @@ struct OutlineSegment {
 }
 
 const OUTLINE_MAX_SLOPE: f32 = 8.0;
+const OUTLINE_EDGE_ON_SLOPE: f32 = 1024.0;
 const OUTLINE_DEPTH_SLACK_PX: f32 = 0.5;
 const OUTLINE_TRAIT_ALWAYS: u32 = 256u;
 const OUTLINE_TRAIT_CUT_OUT: u32 = 512u;
@@ -131,9 +132,14 @@ fn outline_project(
     let edge = end1 - end0;
     let first = outline_face_slope(cross(normal0, edge), middle, segment, view);
     let second = outline_face_slope(cross(normal1, -edge), middle, segment, view);
+    let edge_on = OUTLINE_EDGE_ON_SLOPE
+        * (0.5 * (segment.depths.x + segment.depths.y) * view.depth_per_px.x + view.depth_per_px.y);
+    // What is edge-on, or no number, has no slope.
+    let slope0 = select(0.0, first.y, first.y < edge_on);
+    let slope1 = select(0.0, second.y, second.y < edge_on);
     segment.slopes = vec2<f32>(
-        max(0.0, max(select(first.y, 0.0, first.x < 0.0), select(second.y, 0.0, second.x < 0.0))),
-        max(0.0, max(select(0.0, first.y, first.x < 0.0), select(0.0, second.y, second.x < 0.0))),
+        max(0.0, max(select(slope0, 0.0, first.x < 0.0), select(slope1, 0.0, second.x < 0.0))),
+        max(0.0, max(select(0.0, slope0, first.x < 0.0), select(0.0, slope1, second.x < 0.0))),
     );
     return segment;
 }

@@ -7,8 +7,8 @@
 //!
 //! Needs: the scene's depth buffer as a texture of the same size, `Depth32Float`, reversed.
 
-use crate::contour::{ContourEdges, TRAIT_ALWAYS, TRAIT_CUT_OUT};
 use crate::OutlineError;
+use crate::contour::{ContourEdges, TRAIT_ALWAYS, TRAIT_CUT_OUT};
 use crate::line_look::LineLook;
 use crate::segment::LineView;
 use glam::{DVec4, Vec3};
@@ -77,13 +77,7 @@ pub fn line_records(
         let [normal0, normal1] = contours.normals(edge);
         let [end0, end1] = contours.ends[edge].map(|v| positions[v as usize].to_array());
         let kind_traits = kind as u32 | (contours.traits[edge] & (TRAIT_ALWAYS | TRAIT_CUT_OUT));
-        Some(LineRecord {
-            end0,
-            kind_traits,
-            end1,
-            normal0: normal0.to_array(),
-            normal1: normal1.to_array(),
-        })
+        Some(LineRecord { end0, kind_traits, end1, normal0: normal0.to_array(), normal1: normal1.to_array() })
     }));
 }
 
@@ -162,8 +156,7 @@ impl LinePass {
         let layout = |label, entries: &[wgpu::BindGroupLayoutEntry]| {
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
         };
-        let all_stages =
-            wgpu::ShaderStages::VERTEX | wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE;
+        let all_stages = wgpu::ShaderStages::VERTEX | wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE;
         let view_layout = layout("outline view", &[buffer_entry(0, all_stages, wgpu::BufferBindingType::Uniform)]);
         let depth_type = wgpu::TextureSampleType::Depth;
         let coverage_layout = layout("outline depth", &[texture_entry(0, depth_type)]);
@@ -311,13 +304,11 @@ impl LinePass {
         let ink_group = group(&self.ink_layout, 1, wgpu::BindingResource::TextureView(targets.coverage));
         let records = match source {
             LineSource::Records([]) => None,
-            LineSource::Records(records) => {
-                Some(device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                    label: Some("outline records"),
-                    contents: bytemuck::cast_slice(records),
-                    usage: wgpu::BufferUsages::VERTEX,
-                }))
-            }
+            LineSource::Records(records) => Some(device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                label: Some("outline records"),
+                contents: bytemuck::cast_slice(records),
+                usage: wgpu::BufferUsages::VERTEX,
+            })),
             LineSource::OnDevice(edges) => {
                 self.record_compaction(encoder, &view_group, edges);
                 None
@@ -482,10 +473,7 @@ fn line_pipeline(
             compilation_options: Default::default(),
             buffers: &[Some(buffer.clone())],
         },
-        primitive: wgpu::PrimitiveState {
-            topology: wgpu::PrimitiveTopology::TriangleStrip,
-            ..Default::default()
-        },
+        primitive: wgpu::PrimitiveState { topology: wgpu::PrimitiveTopology::TriangleStrip, ..Default::default() },
         depth_stencil: (!coverage).then(|| wgpu::DepthStencilState {
             format: STENCIL_FORMAT,
             depth_write_enabled: None,

@@ -166,9 +166,7 @@ fn eyes(model: &Model, views: usize) -> Vec<DVec3> {
 
 /// Per face the side on which the eye is: [`facing_exact`], of a polygon's faces summed over the polygon.
 fn true_sides(model: &Model, eye: DVec3) -> Vec<bool> {
-    let own = model.faces.iter().map(|face| {
-        facing_exact(face.map(|v| model.positions[v as usize]), eye.extend(1.0))
-    });
+    let own = model.faces.iter().map(|face| facing_exact(face.map(|v| model.positions[v as usize]), eye.extend(1.0)));
     if model.face_polygon.is_empty() {
         return own.map(|side| side >= 0.0).collect();
     }

@@ -26,6 +26,9 @@ use glam::{DMat4, DVec2, DVec3, DVec4};
 
 /// Depth that a surface may gain within a px across the line, in px of depth.
 pub const MAX_SLOPE: f64 = 8.0;
+/// A face that gains more depth than this within a px across the line, in px of depth, is seen edge-on: it covers no
+/// pixel, and the side on which it lies is rounding.
+pub const EDGE_ON_SLOPE: f64 = 1024.0;
 /// How far a line may lie behind a surface and still be seen, in px of depth.
 pub const DEPTH_SLACK_PX: f64 = 0.5;
 
@@ -118,12 +121,12 @@ pub fn outline_project(
     let [(p0, z0), (p1, z1)] = clip.map(|end| outline_screen(end, view.viewport_px));
     let mut segment = ScreenSegment { ends_px: [p0, p1], depths: [z0, z1], slopes: [0.0; 2] };
     let middle = 0.5 * (clip[0] + clip[1]);
+    let edge_on = EDGE_ON_SLOPE * (0.5 * (z0 + z1) * view.depth_per_px.x + view.depth_per_px.y);
     let edge = ends[1] - ends[0];
     for inward in [normals[0].cross(edge), normals[1].cross(-edge)] {
         let (across, slope) = outline_face_slope(inward, middle, &segment, view);
         let side = usize::from(across < 0.0);
-        // Not a number or infinite where the face is seen edge-on: it covers no pixel then.
-        if slope.is_finite() && slope > segment.slopes[side] {
+        if slope < edge_on && slope > segment.slopes[side] {
             segment.slopes[side] = slope;
         }
     }

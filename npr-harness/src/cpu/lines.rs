@@ -4,7 +4,7 @@ use super::{CpuFrame, FrameContext};
 use glam::{DVec2, DVec3, Vec3};
 use npr_outline::contour::TRAIT_CUT_OUT;
 use npr_outline::line_look::LineLook;
-use npr_outline::segment::{outline_coverage, outline_is_visible, outline_project};
+use npr_outline::segment::{ScreenSegment, outline_coverage, outline_is_visible, outline_project};
 
 /// Draws the lines of the frame's plan over `frame`. `scale` multiplies their widths.
 pub fn draw_lines(context: &FrameContext<'_>, frame: &mut CpuFrame, look: &LineLook, scale: f64) {
@@ -37,9 +37,9 @@ fn line_coverage(context: &FrameContext<'_>, frame: &CpuFrame, look: &LineLook, 
         }
         let ends = contours.ends[edge].map(|v| context.scene.model.positions[v as usize].as_dvec3());
         let normals = contours.normals(edge).map(|n: Vec3| n.as_dvec3());
-        let Some(mut segment) = outline_project(ends, normals, width_px, &view) else { continue };
-        // The samples are what moves, not the lines.
-        segment.ends_px = segment.ends_px.map(|end| end - context.shift_px);
+        let Some(segment) = outline_project(ends, normals, width_px, &view) else { continue };
+        // The depth samples move, the coverage does not: it is no sample, but a function of where the pixel is.
+        let among_samples = ScreenSegment { ends_px: segment.ends_px.map(|end| end - context.shift_px), ..segment };
         let cut_out = contours.traits[edge] & TRAIT_CUT_OUT != 0;
         let reach = 0.5 * width_px + 1.0;
         let [p0, p1] = segment.ends_px;
@@ -50,7 +50,7 @@ fn line_coverage(context: &FrameContext<'_>, frame: &CpuFrame, look: &LineLook, 
                 let covered = outline_coverage(&segment, point, width_px);
                 let pixel = &mut coverage[(y * (last.0 + 1) + x) as usize];
                 if covered > *pixel
-                    && outline_is_visible(&segment, segment.nearest(point), &view, cut_out, depth_at)
+                    && outline_is_visible(&among_samples, segment.nearest(point), &view, cut_out, depth_at)
                 {
                     *pixel = covered;
                 }

@@ -38,7 +38,8 @@ impl FrameContext<'_> {
     /// face too: that is what a rasteriser extrapolates to for its derivatives.
     fn extrapolated(&self, hit: &Hit, point_px: DVec2) -> [f64; 3] {
         let (origin, direction) = self.camera.ray(point_px, self.size_px);
-        let [a, b, c] = self.scene.model.faces[hit.face as usize].map(|v| self.scene.model.positions[v as usize].as_dvec3());
+        let [a, b, c] =
+            self.scene.model.faces[hit.face as usize].map(|v| self.scene.model.positions[v as usize].as_dvec3());
         let (ab, ac, from_a) = (b - a, c - a, origin - a);
         let across = direction.cross(ac);
         let determinant = ab.dot(across);
@@ -70,9 +71,8 @@ impl FrameContext<'_> {
     fn interpolate(&self, hit: &Hit, weights: [f64; 3]) -> Surface {
         let model = &self.scene.model;
         let corners = model.faces[hit.face as usize];
-        let sum = |of: &[glam::Vec3]| -> DVec3 {
-            (0..3).map(|i| of[corners[i] as usize].as_dvec3() * weights[i]).sum()
-        };
+        let sum =
+            |of: &[glam::Vec3]| -> DVec3 { (0..3).map(|i| of[corners[i] as usize].as_dvec3() * weights[i]).sum() };
         let normal = sum(&model.normals);
         let eye = self.camera.homogeneous_eye();
         Surface {
@@ -88,8 +88,7 @@ impl FrameContext<'_> {
         let mut color = material.base_color.as_dvec4();
         if !model.colors.is_empty() {
             let corners = model.faces[hit.face as usize];
-            let factor: DVec4 =
-                (0..3).map(|i| model.colors[corners[i] as usize].as_dvec4() * hit.barycentric[i]).sum();
+            let factor: DVec4 = (0..3).map(|i| model.colors[corners[i] as usize].as_dvec4() * hit.barycentric[i]).sum();
             color *= factor;
         }
         if let Some(texture) = material.texture {
@@ -123,8 +122,11 @@ impl FrameContext<'_> {
             Shade::Toon(bands) => {
                 let light = |weights| {
                     let here = self.interpolate(hit, weights);
-                    let n_dot_h =
-                        if bands.highlight.is_some() { toon_n_dot_h(here.normal, self.to_light, here.to_eye) } else { 0.0 };
+                    let n_dot_h = if bands.highlight.is_some() {
+                        toon_n_dot_h(here.normal, self.to_light, here.to_eye)
+                    } else {
+                        0.0
+                    };
                     DVec2::new(toon_n_dot_l(here.normal, self.to_light), n_dot_h)
                 };
                 let here = light(hit.barycentric);

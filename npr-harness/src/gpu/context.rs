@@ -36,9 +36,9 @@ impl GpuContext {
         let info = adapter.get_info();
         let wanted = wgpu::Features::TIMESTAMP_QUERY;
         let flags = adapter.get_downlevel_capabilities().flags;
-        let can_find_lines =
-            flags.contains(wgpu::DownlevelFlags::VERTEX_STORAGE | wgpu::DownlevelFlags::INDIRECT_EXECUTION)
-                && flags.contains(wgpu::DownlevelFlags::COMPUTE_SHADERS);
+        let can_find_lines = flags
+            .contains(wgpu::DownlevelFlags::VERTEX_STORAGE | wgpu::DownlevelFlags::INDIRECT_EXECUTION)
+            && flags.contains(wgpu::DownlevelFlags::COMPUTE_SHADERS);
         let (device, queue) = adapter
             .request_device(&wgpu::DeviceDescriptor {
                 label: Some("npr"),

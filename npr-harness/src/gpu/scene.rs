@@ -40,12 +40,7 @@ pub(super) fn is_looked_up(scene: &Scene, material: usize) -> bool {
 }
 
 impl GpuScene {
-    pub(super) fn new(
-        context: &GpuContext,
-        pass: &SurfacePass,
-        scene: &Scene,
-        plan: &Plan,
-    ) -> Result<Self, GpuError> {
+    pub(super) fn new(context: &GpuContext, pass: &SurfacePass, scene: &Scene, plan: &Plan) -> Result<Self, GpuError> {
         let model = &scene.model;
         let buffer = |what: &'static str, contents: &[u8], usage| {
             let (bytes, limit) = (contents.len() as u64, context.device.limits().max_buffer_size);
@@ -55,12 +50,8 @@ impl GpuScene {
             let descriptor = wgpu::util::BufferInitDescriptor { label: Some(what), contents, usage };
             Ok(context.device.create_buffer_init(&descriptor))
         };
-        let vertices: Vec<[f32; 6]> = model
-            .positions
-            .iter()
-            .zip(&model.normals)
-            .map(|(p, n)| [p.x, p.y, p.z, n.x, n.y, n.z])
-            .collect();
+        let vertices: Vec<[f32; 6]> =
+            model.positions.iter().zip(&model.normals).map(|(p, n)| [p.x, p.y, p.z, n.x, n.y, n.z]).collect();
         let vertices = buffer("vertices", bytemuck::cast_slice(&vertices), wgpu::BufferUsages::VERTEX)?;
         let lookups = if plan.textured || plan.cut_out {
             let lookups: Vec<[f32; 6]> = (0..model.positions.len())
@@ -87,9 +78,8 @@ impl GpuScene {
 
 fn batches(scene: &Scene) -> (Vec<u32>, Vec<Batch>, Vec<u32>) {
     let model = &scene.model;
-    let is_blended = |face: u32| {
-        model.materials[model.face_material[face as usize] as usize].alpha_mode == AlphaMode::Blend
-    };
+    let is_blended =
+        |face: u32| model.materials[model.face_material[face as usize] as usize].alpha_mode == AlphaMode::Blend;
     let (blended, mut solid): (Vec<u32>, Vec<u32>) = (0..model.faces.len() as u32).partition(|&f| is_blended(f));
     // Stable, so that the faces of a material keep the order of the file, whose neighbours share vertices.
     solid.sort_by_key(|&face| model.face_material[face as usize]);
@@ -147,10 +137,7 @@ fn materials(context: &GpuContext, pass: &SurfacePass, scene: &Scene, plan: &Pla
         .collect()
 }
 
-fn upload_texture(
-    context: &GpuContext,
-    texture: &Texture,
-) -> (wgpu::TextureView, wgpu::Sampler, [f32; 2], u32) {
+fn upload_texture(context: &GpuContext, texture: &Texture) -> (wgpu::TextureView, wgpu::Sampler, [f32; 2], u32) {
     let levels = MipMapped::new(texture).levels;
     let limit = context.device.limits().max_texture_dimension_2d;
     // Of a texture that the device cannot hold, the levels that it can.

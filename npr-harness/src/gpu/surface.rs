@@ -94,8 +94,7 @@ impl SurfacePass {
         };
         let view_layout = layout("surface view", &[uniform(0), uniform(1)]);
         let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
-        let material_layout =
-            layout("surface material", &[uniform(0), fragment(1, texture), fragment(2, sampler)]);
+        let material_layout = layout("surface material", &[uniform(0), fragment(1, texture), fragment(2, sampler)]);
         Self {
             module: device.create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: Some("surface"),
@@ -145,8 +144,10 @@ impl SurfacePass {
         (uniform, toon_uniform): (&SurfaceUniform, &ToonUniform),
         targets: &Targets,
     ) {
-        let (view, toon) =
-            (uniform_buffer(device, bytemuck::bytes_of(uniform)), uniform_buffer(device, bytemuck::bytes_of(toon_uniform)));
+        let (view, toon) = (
+            uniform_buffer(device, bytemuck::bytes_of(uniform)),
+            uniform_buffer(device, bytemuck::bytes_of(toon_uniform)),
+        );
         let view_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("surface view"),
             layout: &self.view_layout,
@@ -164,7 +165,9 @@ impl SurfacePass {
         let blended_indices = (!blended.is_empty()).then(|| {
             device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
                 label: Some("blended faces"),
-                contents: bytemuck::cast_slice(&blended.iter().map(|f| scene.model.faces[*f as usize]).collect::<Vec<_>>()),
+                contents: bytemuck::cast_slice(
+                    &blended.iter().map(|f| scene.model.faces[*f as usize]).collect::<Vec<_>>(),
+                ),
                 usage: wgpu::BufferUsages::INDEX,
             })
         });
@@ -262,10 +265,7 @@ impl SurfacePass {
                 compilation_options: Default::default(),
                 buffers: &buffers[..if looked_up { 2 } else { 1 }],
             },
-            primitive: wgpu::PrimitiveState {
-                cull_mode: cull_back.then_some(wgpu::Face::Back),
-                ..Default::default()
-            },
+            primitive: wgpu::PrimitiveState { cull_mode: cull_back.then_some(wgpu::Face::Back), ..Default::default() },
             depth_stencil: Some(wgpu::DepthStencilState {
                 format: DEPTH_FORMAT,
                 depth_write_enabled: Some(!blended),

@@ -84,10 +84,7 @@ impl Targets {
         });
         context.wait()?;
         let device_error = |fault: String| GpuError::Device { fault };
-        receiver
-            .recv()
-            .map_err(|e| device_error(e.to_string()))?
-            .map_err(|e| device_error(e.to_string()))?;
+        receiver.recv().map_err(|e| device_error(e.to_string()))?.map_err(|e| device_error(e.to_string()))?;
         let mapped = buffer.get_mapped_range(..).map_err(|e| device_error(e.to_string()))?;
         let mut rgba8 = Vec::with_capacity(row as usize * self.height as usize);
         for padded in mapped.chunks(padded_row as usize) {

@@ -19,8 +19,7 @@ fn smooth(crease_angle_rad: f32) -> ContourOptions {
 }
 
 /// No crease at all: only silhouettes and boundaries are left.
-const NO_CREASES: ContourOptions =
-    ContourOptions { crease_angle_rad: std::f32::consts::PI, material_borders: false };
+const NO_CREASES: ContourOptions = ContourOptions { crease_angle_rad: std::f32::consts::PI, material_borders: false };
 
 fn point(eye: DVec3) -> DVec4 {
     eye.extend(1.0)
@@ -215,7 +214,10 @@ fn a_parallel_view_is_the_limit_of_a_distant_eye() {
                 .iter()
                 .filter(|edge| {
                     let [a, b] = edge.faces.map(|face| {
-                        facing_exact(model.faces[face as usize].map(|v| model.positions[v as usize]), direction.extend(0.0))
+                        facing_exact(
+                            model.faces[face as usize].map(|v| model.positions[v as usize]),
+                            direction.extend(0.0),
+                        )
                     });
                     (a >= 0.0) != (b >= 0.0)
                 })
@@ -313,7 +315,7 @@ fn an_edge_of_three_faces_is_a_line_for_every_eye() {
 }
 
 #[test]
-fn angles_that_are_none_are_refused() {
+fn angles_and_widths_that_are_none_are_refused() {
     let model = embedded::cube();
     let edges = edges_of(&model);
     for angle_rad in [-0.1, 3.2, f32::NAN, f32::INFINITY] {
@@ -321,6 +323,11 @@ fn angles_that_are_none_are_refused() {
         assert!(matches!(error, OutlineError::CreaseAngle { .. }));
     }
     assert!(contour_edges(&model, &edges, &smooth(0.0)).is_ok());
+    let look = |width| crate::line_look::LineLook { width_px: [1.0, 0.0, width, 2.0], ink: [0.0; 4] };
+    for width in [-1.0, f32::NAN, f32::INFINITY] {
+        assert!(matches!(look(width).validate(), Err(OutlineError::Width { .. })));
+    }
+    assert!(look(0.0).validate().is_ok());
     let empty = contours_of(&Model::default(), &ContourOptions::default());
     let mut lines = Vec::new();
     empty.scan(DVec4::W, &mut lines);
@@ -341,6 +348,73 @@ proptest! {
             if sides.iter().all(|side| side.abs() > 1e-6) {
                 prop_assert_eq!(lines.contains(&edge.ends), (sides[0] > 0.0) != (sides[1] > 0.0));
             }
+        }
+    }
+}
+
+#[test]
+fn a_face_wound_the_other_way_and_seen_edge_on_opens_no_loop() {
+    for side in 0..6 {
+        let mut model = embedded::cube();
+        model.faces[2 * side..2 * side + 2].iter_mut().for_each(|face| face.swap(1, 2));
+        let contours = contours_of(&model, &NO_CREASES);
+        for x in [-1.0, 0.3, 1.0] {
+            for y in [-1.0, 0.2, 1.0] {
+                for eye in [DVec3::new(x, y, 7.0), DVec3::new(7.0, x, y), DVec3::new(x, -7.0, y)] {
+                    assert!(all_loops_closed(&contours, point(eye)), "{side} {eye}");
+                    assert!(lines_of_kind(&contours, point(eye), LineKind::Silhouette).len() >= 4);
+                }
+            }
+        }
+    }
+    // All faces of a surface at random, the first among them.
+    let mut model = embedded::torus(1.0, 0.4, 24, 12);
+    model.faces.iter_mut().enumerate().filter(|(i, _)| i * i % 7 < 2).for_each(|(_, face)| face.swap(1, 2));
+    let contours = contours_of(&model, &NO_CREASES);
+    for face in &model.faces {
+        let [a, b, c] = face.map(|v| model.positions[v as usize].as_dvec3());
+        for eye in [a, 0.5 * (a + b), (a + b + c) / 3.0, a + 3.0 * (b - a)] {
+            assert!(all_loops_closed(&contours, point(eye)), "{eye}");
+        }
+    }
+}
+
+#[test]
+fn a_surface_with_one_side_keeps_its_lines() {
+    // A Möbius band: 24 quads, of which the last is joined to the first upside down.
+    let steps = 24u32;
+    let point_at = |i: u32, edge: f32| {
+        let angle = std::f32::consts::TAU * i as f32 / steps as f32;
+        let radius = 1.0 + edge * 0.3 * (0.5 * angle).cos();
+        Vec3::new(radius * angle.cos(), edge * 0.3 * (0.5 * angle).sin(), radius * angle.sin())
+    };
+    let positions: Vec<Vec3> = (0..steps).flat_map(|i| [point_at(i, -1.0), point_at(i, 1.0)]).collect();
+    let mut faces = Vec::new();
+    for i in 0..steps {
+        let [a, b] = [2 * i, 2 * i + 1];
+        let [c, d] = if i + 1 < steps { [a + 2, b + 2] } else { [1, 0] };
+        faces.extend([[a, c, d], [a, d, b]]);
+    }
+    let model = Model {
+        normals: vec![Vec3::Y; positions.len()],
+        face_material: vec![0; faces.len()],
+        materials: vec![Material::default()],
+        positions,
+        faces,
+        ..Model::default()
+    };
+    let edges = edges_of(&model);
+    assert!(edges.edges.iter().any(|edge| edge.wound_oppositely()));
+    let contours = contours_of(&model, &NO_CREASES);
+    for direction in crate::normal_format::fibonacci_sphere(100) {
+        let eye = point(4.0 * direction);
+        let lines = lines_of_kind(&contours, eye, LineKind::Silhouette);
+        for edge in edges.edges.iter().filter(|edge| edge.kind() == EdgeKind::TwoFace) {
+            let sides = edge
+                .faces
+                .map(|face| facing_exact(model.faces[face as usize].map(|v| model.positions[v as usize]), eye) >= 0.0);
+            let expected = (sides[0] != sides[1]) != edge.wound_oppositely();
+            assert_eq!(lines.contains(&edge.ends), expected);
         }
     }
 }

@@ -53,12 +53,14 @@ fn the_listing_draws_silhouettes_and_neither_creases_nor_edges_seen_edge_on() {
     let drawn = |eye| fin_printed_triangles(&fins, &view(eye, FinDepth::Eye)).len();
     // From a corner: six silhouettes of two triangles each; the three creases towards the eye are not drawn.
     assert_eq!(drawn(DVec3::new(5.0, 6.0, 7.0)), 12);
-    // In the planes of two faces, which are then seen edge-on: of the top face's four edges only that to the back
-    // face has a product other than 0 that is above 0, so that nothing is left of the outline but two uprights.
+    // In the planes of two faces, seen edge-on: all products with them are 0, and of the six silhouettes only the two
+    // between the front and the far sides are left.
     let eye = DVec3::new(1.0, 1.0, 6.0);
-    let flags: f64 = fins.vertices.iter().map(|v| {
-        fin_printed_flag(v.position.as_dvec3(), v.n_face0.as_dvec3(), v.n_face1.as_dvec3(), eye)
-    }).sum();
+    let flags: f64 = fins
+        .vertices
+        .iter()
+        .map(|v| fin_printed_flag(v.position.as_dvec3(), v.n_face0.as_dvec3(), v.n_face1.as_dvec3(), eye))
+        .sum();
     let by_hand = |edge: &Edge| {
         let side = |face: u32| {
             let normal = edges.face_normals[face as usize].as_dvec3();
@@ -157,7 +159,12 @@ fn triangles_are_cut_at_the_near_plane_and_by_the_scene() {
         let depth = 0.4 / (ray * 0.5f64.tan());
         let clip = clip_from_world * DVec4::new(0.0, 0.0, -depth, 1.0);
         for (nudge, hits) in [(-1e-9, 1), (1e-9, 0)] {
-            rasterise(&floor, [64, 64], |_, _| clip.z / clip.w + nudge, |x, row| seen += i32::from((x, row) == (32, y)));
+            rasterise(
+                &floor,
+                [64, 64],
+                |_, _| clip.z / clip.w + nudge,
+                |x, row| seen += i32::from((x, row) == (32, y)),
+            );
             assert_eq!(seen, hits, "row {y}");
             seen = 0;
         }

@@ -70,12 +70,11 @@ fn fewer_bits_tell_more_edges_wrongly() {
         ("cylinder", embedded::cylinder(64)),
     ];
     for (name, model) in models {
-        let edges = find(
-            &model.positions, &model.faces, &model.face_polygon, &model.face_material, &EdgeOptions::default(),
-        );
+        let edges =
+            find(&model.positions, &model.faces, &model.face_polygon, &model.face_material, &EdgeOptions::default());
         let shares = NormalFormat::ALL.map(|format| misclassified_share(&model, &edges, format, 200));
         let planes = misclassified_share_of_planes(&model, &edges, 200).unwrap();
-        println!("{name}: planes {planes:.2e}, {:?} {shares:.2e?}", NormalFormat::ALL);
+        println!("{name}: planes {planes:.1e}, {:?} {:?}", NormalFormat::ALL, shares.map(|s| format!("{s:.1e}")));
         let [f32, snorm16, snorm8, oct16, oct8] = shares;
         assert!(planes < 1e-5 && f32 < 1e-5, "{name}");
         assert!(snorm16 < 1e-3 && oct16 < 1e-3, "{name}");

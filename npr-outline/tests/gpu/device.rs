@@ -40,7 +40,6 @@ fn open(required: bool) -> Option<Gpu> {
 
 /// The targets of one picture.
 pub struct Picture {
-    pub size: [u32; 2],
     pub color: wgpu::Texture,
     pub depth: wgpu::Texture,
     pub coverage: wgpu::Texture,
@@ -64,8 +63,7 @@ impl Gpu {
                 view_formats: &[],
             })
         };
-        let [color, depth, coverage] =
-            [COLOR_FORMAT, wgpu::TextureFormat::Depth32Float, COVERAGE_FORMAT].map(texture);
+        let [color, depth, coverage] = [COLOR_FORMAT, wgpu::TextureFormat::Depth32Float, COVERAGE_FORMAT].map(texture);
         let stencil = self.device.create_texture(&wgpu::TextureDescriptor {
             label: None,
             size: color.size(),
@@ -77,7 +75,7 @@ impl Gpu {
             view_formats: &[],
         });
         let views = [&color, &depth, &coverage, &stencil].map(|t| t.create_view(&Default::default()));
-        let picture = Picture { size: [width, height], color, depth, coverage, views };
+        let picture = Picture { color, depth, coverage, views };
         self.clear(&picture);
         picture
     }
