@@ -1,6 +1,7 @@
 //! Where a picture is taken from.
 
 use glam::{DMat4, DVec2, DVec3, DVec4, Vec3};
+use npr_outline::fin_printed::{FinDepth, FinView};
 use npr_outline::segment::LineView;
 
 /// How depth turns into size.
@@ -202,6 +203,30 @@ impl Camera {
         };
         LineView { clip_from_world: self.clip_from_world(size_px.x / size_px.y), viewport_px: size_px, depth_per_px }
     }
+
+    /// What the printed fins need to know: `width_px` wide where the depth is w, and `bounds` is the model's box.
+    ///
+    /// The printed depth has a far plane, which this camera has not: it is put 1 % behind the farthest corner of the
+    /// box, as one would have done to spare a depth buffer of 2002. In a parallel view, for which the listing has no
+    /// eye, the eye is put so far away that all lines of sight are parallel to within a millionth, and the depth is
+    /// w = 1: fins are `width_px` wide everywhere.
+    pub fn fin_view(&self, size_px: DVec2, width_px: f64, bounds: (Vec3, Vec3)) -> FinView {
+        let aspect = size_px.x / size_px.y;
+        let back = self.axes()[2];
+        // The corner of the box that lies farthest against the direction to the viewer.
+        let farthest = DVec3::select(back.cmpgt(DVec3::ZERO), bounds.0.as_dvec3(), bounds.1.as_dvec3());
+        let far = (1.01 * (self.eye - farthest).dot(back)).max(2.0 * self.near);
+        let (eye, depth) = match self.projection {
+            Projection::Perspective { .. } => (self.eye, FinDepth::Printed { near: self.near, far }),
+            Projection::Orthographic { far, .. } => (self.eye + back * (far * 1e6), FinDepth::Eye),
+        };
+        FinView {
+            clip_from_world: self.clip_from_world(aspect),
+            eye,
+            thickness: width_px * 2.0 * self.half_extent(aspect).y / size_px.y,
+            depth,
+        }
+    }
 }
 
 #[cfg(test)]
@@ -225,7 +250,7 @@ mod tests {
             let depth = 3.7;
             let clip = camera.clip_from_world(1.5) * (origin + direction * depth).extend(1.0);
             let (on_screen, buffer) = npr_outline::segment::outline_screen(clip, size);
-            assert_relative_eq!(on_screen, pixel, epsilon = 1e-9);
+            assert!(on_screen.distance(pixel) < 1e-9, "{on_screen} is not {pixel}");
             assert_relative_eq!(buffer, camera.buffer_depth(depth), epsilon = 1e-12);
         }
     }
@@ -251,6 +276,33 @@ mod tests {
             let slope = camera.buffer_depth(depth) - camera.buffer_depth(depth + px);
             let buffer = camera.buffer_depth(depth);
             assert_relative_eq!(slope, buffer * view.depth_per_px.x + view.depth_per_px.y, max_relative = 0.01);
+        }
+    }
+
+    #[test]
+    fn a_printed_fin_is_as_wide_as_asked() {
+        let size = DVec2::new(300.0, 200.0);
+        let box_ = (Vec3::ZERO, Vec3::ONE);
+        for camera in cameras() {
+            let view = camera.fin_view(size, 3.0, box_);
+            let depth = 2.5;
+            let (origin, direction) = camera.ray(size / 2.0, size);
+            let right = camera.axes()[0];
+            let w = (view.clip_from_world * (origin + direction * depth).extend(1.0)).w;
+            let displaced = right * (view.thickness * npr_outline::fin_printed::fin_printed_depth(w, FinDepth::Eye));
+            let [from, to] = [DVec3::ZERO, displaced].map(|aside| {
+                let clip = view.clip_from_world * (origin + direction * depth + aside).extend(1.0);
+                npr_outline::segment::outline_screen(clip, size).0
+            });
+            assert_relative_eq!(from.distance(to), 3.0, epsilon = 1e-9);
+            if let FinDepth::Printed { near, far } = view.depth {
+                let farthest = (0..8u8)
+                    .map(|i| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)))
+                    .map(|corner| (camera.eye - corner).dot(camera.axes()[2]))
+                    .fold(0.0, f64::max);
+                assert_relative_eq!(far, 1.01 * farthest, epsilon = 1e-9);
+                assert_eq!(near, camera.near);
+            }
         }
     }
 

@@ -2,6 +2,8 @@
 //!
 //! All tolerances of the project's pictures are here.
 
+mod lines;
+
 use crate::camera::{Camera, Framing};
 use crate::compare::{Comparison, Image, ReportRow, Tolerance, compare, exempt_mask, html_report, leave_behind};
 use crate::cpu::{self, CpuFrame, CpuOptions};
@@ -38,6 +40,15 @@ pub const SHIFT_PX: f64 = 1.0 / 32.0;
 pub const WITHIN_PX: f64 = 1.5;
 /// The least precision and the least recall of lines.
 pub const LINE_ACCURACY: f64 = 0.98;
+
+/// At most this share of (edge, view) pairs may be told wrongly by the plane records.
+pub const PLANES_MISCLASSIFIED: f64 = 1e-6;
+/// How many views around a model the formats are measured over.
+pub const FORMAT_VIEWS: usize = 32;
+/// Formats are not measured on models with more edges, for the time it takes.
+pub const LARGEST_FORMAT_EDGES: usize = 200_000;
+/// How far the width of a line may be off, in widths.
+pub const WIDTH_ERROR: f64 = 0.10;
 
 /// Three views around a model: yaw, pitch in degrees.
 pub const VIEWS: [(f64, f64); 3] = [(30.0, 20.0), (150.0, -10.0), (270.0, 50.0)];
@@ -139,6 +150,7 @@ impl fmt::Display for Report {
 struct Checker<'a> {
     executor: &'a Executor,
     out: &'a Path,
+    skipped: Vec<String>,
     metrics: Vec<Metric>,
     rows: Vec<ReportRow>,
 }
@@ -153,7 +165,8 @@ pub fn run(
     out: &Path,
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<Report, HarnessError> {
-    let mut checker = Checker { executor, out, metrics: Vec::new(), rows: Vec::new() };
+    let mut checker = Checker { executor, out, skipped: Vec::new(), metrics: Vec::new(), rows: Vec::new() };
+    checker.widths()?;
     let total = inputs.len().max(1) as f64;
     if inputs.is_empty() {
         let scene = Scene::new(npr_mesh::embedded::scene());
@@ -172,6 +185,38 @@ pub fn run(
     checker.finish()
 }
 
+/// Checks one scene from some views, named, without [`run`]'s check of the width.
+///
+/// # Errors
+/// [`HarnessError`]; an exceeded limit is none.
+pub fn scene(
+    executor: &Executor,
+    name: &str,
+    scene: &Scene,
+    views: &[(String, Camera)],
+    out: &Path,
+) -> Result<Report, HarnessError> {
+    let mut checker = Checker { executor, out, skipped: Vec::new(), metrics: Vec::new(), rows: Vec::new() };
+    checker.model(name, scene, views, &|_| {})?;
+    checker.finish()
+}
+
+/// The largest difference, of 255, that is allowed outside the exempt pixels.
+pub fn magnitude(plan: &Plan) -> u8 {
+    if plan.textured { TEXTURE_MAGNITUDE } else { SHADING_MAGNITUDE }
+}
+
+/// Whether a picture agrees with its reference.
+pub fn agrees(comparison: &Comparison, magnitude: u8) -> bool {
+    comparison.passes(&[Tolerance { magnitude, count: 0 }])
+        && comparison.exempt_share() <= EXEMPT_SHARE
+        && gross_share(comparison) <= GROSS_SHARE
+}
+
+fn gross_share(comparison: &Comparison) -> f64 {
+    comparison.over_all(GROSS_MAGNITUDE) as f64 / comparison.pixels.max(1) as f64
+}
+
 impl Checker<'_> {
     fn model(
         &mut self,
@@ -181,14 +226,16 @@ impl Checker<'_> {
         progress: &dyn Fn(f64),
     ) -> Result<(), HarnessError> {
         for (number, (view, camera)) in views.iter().enumerate() {
-            for name_of_style in ["cartoon", "lines"] {
+            for name_of_style in ["cartoon", "lines", "printed-fins"] {
                 let style = style(name_of_style).expect("a style of this crate");
                 self.picture(name, view, scene, camera, &style)?;
             }
             self.lines(name, view, scene, camera)?;
+            #[cfg(feature = "gpu")]
+            self.line_finder(name, view, scene, camera)?;
             progress((number + 1) as f64 / views.len() as f64);
         }
-        Ok(())
+        self.formats(name, scene)
     }
 
     fn add(
@@ -218,13 +265,12 @@ impl Checker<'_> {
         }
         let plan = Plan::new(scene, style, camera)?;
         let actual = self.executor.render(scene, style, &plan, camera, SIZE, 1, &|_| {})?;
-        let magnitude = if plan.textured { TEXTURE_MAGNITUDE } else { SHADING_MAGNITUDE };
+        let magnitude = magnitude(&plan);
         let (expected, exempt) = reference(scene, style, &plan, camera, SIZE, magnitude)?;
         let comparison = compare(&expected, &actual, &exempt)?;
         let technique = style.name;
-        let pixels = comparison.pixels as f64;
         let tolerance = Tolerance { magnitude, count: 0 };
-        let gross = comparison.over_all(GROSS_MAGNITUDE) as f64 / pixels;
+        let gross = gross_share(&comparison);
         self.add(
             model,
             view,
@@ -249,7 +295,7 @@ impl Checker<'_> {
             gross,
             Some(Limit::AtMost(GROSS_SHARE)),
         );
-        if !comparison.passes(&[tolerance]) || comparison.exempt_share() > EXEMPT_SHARE || gross > GROSS_SHARE {
+        if !agrees(&comparison, magnitude) {
             self.leave(&format!("{model}-{view}-{technique}"), &expected, &actual, &exempt, comparison, tolerance)?;
         }
         Ok(())
@@ -287,9 +333,10 @@ impl Checker<'_> {
     }
 
     fn finish(self) -> Result<Report, HarnessError> {
-        let mut skipped = Vec::new();
+        let mut skipped = self.skipped;
         if let Executor::Cpu { .. } = self.executor {
-            skipped.push(format!("every comparison of GPU with CPU: {}", self.executor.describe()));
+            skipped
+                .push(format!("every comparison of GPU with CPU, and the line finder: {}", self.executor.describe()));
         }
         let mut left_behind = Vec::new();
         if !self.rows.is_empty() {

@@ -26,7 +26,7 @@ pub struct CpuOptions {
     pub samples: u32,
     /// Where surfaces are sampled relative to the pixels' centres, px: what changes with it is where the reference is
     /// sensitive. Lines stay where they are, since their coverage is no sample; whether they are hidden is decided by
-    /// the moved samples.
+    /// the moved samples. The printed fins, which have no coverage, are sampled like surfaces.
     pub shift_px: DVec2,
     /// At most so many threads; 0 for as many as the machine has.
     pub threads: usize,

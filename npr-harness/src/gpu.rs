@@ -20,8 +20,11 @@ use crate::plan::{LineFinder, Plan};
 use crate::scene::{Scene, key_light};
 use crate::style::{Lines, Shade, Style};
 use glam::DVec2;
+use npr_outline::fin_pass::FinPass;
 use npr_outline::line_pass::{LineRecord, LineSource, LineTargets, line_records};
+use npr_outline::normal_format::NormalFormat;
 use npr_toon::ToonUniform;
+use std::cell::{OnceCell, RefCell};
 use surface::{SurfacePass, SurfaceUniform};
 
 /// Renders frames. Pipelines are made when they are first needed, and kept.
@@ -29,7 +32,8 @@ pub struct GpuRenderer<'a> {
     context: &'a GpuContext,
     surface: SurfacePass,
     lines: npr_outline::line_pass::LinePass,
-    scratch: std::cell::RefCell<(Vec<u32>, Vec<LineRecord>)>,
+    printed: OnceCell<FinPass>,
+    scratch: RefCell<(Vec<u32>, Vec<LineRecord>)>,
 }
 
 impl<'a> GpuRenderer<'a> {
@@ -43,6 +47,7 @@ impl<'a> GpuRenderer<'a> {
                 targets::COLOR_FORMAT,
                 context.can_find_lines,
             ),
+            printed: OnceCell::new(),
             scratch: Default::default(),
         }
     }
@@ -61,7 +66,14 @@ impl<'a> GpuRenderer<'a> {
         if let (true, Some(contours)) = (on_device, &plan.contours) {
             uploaded.edges = Some(self.lines.upload_edges(&self.context.device, contours, &scene.model.positions)?);
         }
+        if let Some(fins) = &plan.printed_fins {
+            uploaded.fins = Some(self.printed().upload(&self.context.device, fins)?);
+        }
         Ok(uploaded)
+    }
+
+    fn printed(&self) -> &FinPass {
+        self.printed.get_or_init(|| FinPass::new(&self.context.device, targets::COLOR_FORMAT, NormalFormat::F32))
     }
 
     /// Makes targets of a size.
@@ -90,15 +102,22 @@ impl<'a> GpuRenderer<'a> {
         let clip_from_world = camera.clip_from_world(size_px.x / size_px.y);
         let eye = camera.homogeneous_eye();
         let ambient = if let Shade::Lambert { ambient } = style.shade { ambient } else { 0.0 };
+        // To the eye from what a pixel shows, which is against its ray: a linear function of the pixel.
+        let against = |x, y| -camera.ray(DVec2::new(x, y), size_px).1;
+        let to_eye = against(0.0, 0.0);
+        let column = |vector: glam::DVec3| vector.as_vec3().extend(0.0).to_array();
         let uniform = SurfaceUniform {
             clip_from_world: clip_from_world.as_mat4().to_cols_array_2d(),
-            eye: eye.as_vec4().to_array(),
+            to_eye: column(to_eye),
+            to_eye_dx: column(against(1.0, 0.0) - to_eye),
+            to_eye_dy: column(against(0.0, 1.0) - to_eye),
             to_light: key_light(camera).as_vec3().extend(ambient).to_array(),
         };
         let toon = match &style.shade {
             Shade::Toon(bands) => ToonUniform::new(bands)?,
             _ => bytemuck::Zeroable::zeroed(),
         };
+        targets.begin();
         let mut encoder = device.create_command_encoder(&Default::default());
         self.surface.record(device, &mut encoder, uploaded, scene, style, plan, camera, (&uniform, &toon), targets);
         if let (Some(Lines::Fins(look)), Some(contours)) = (&style.lines, &plan.contours) {
@@ -113,16 +132,38 @@ impl<'a> GpuRenderer<'a> {
                 }
             };
             let line_targets = LineTargets {
-                color: &targets.color_view,
+                painted: &targets.color_view,
                 depth: &targets.depth_view,
-                coverage: &targets.coverage_view,
-                stencil: &targets.stencil_view,
+                inked: &targets.inked_view,
+                winner: &targets.winner_view,
             };
             let view = camera.line_view(size_px);
+            targets.begin_ink(&mut encoder);
             self.lines.record(device, &mut encoder, source, look, &view, eye, &line_targets)?;
+        }
+        if let (Some(Lines::Printed { width_px, ink }), Some(fins), Some(bounds)) =
+            (&style.lines, &uploaded.fins, scene.model.bounds())
+        {
+            let view = camera.fin_view(size_px, f64::from(*width_px), bounds);
+            let ink = ink.extend(1.0).to_array();
+            self.printed().record(device, &mut encoder, fins, &view, ink, &targets.color_view, &targets.depth_view);
         }
         self.context.queue.submit([encoder.finish()]);
         Ok(())
+    }
+
+    /// The lines, in no order, that the device found for the last frame of this upload, or `None` if it was not asked
+    /// to ([`LineFinder`]).
+    ///
+    /// # Errors
+    /// [`GpuError::Device`].
+    pub fn found_lines(&self, uploaded: &GpuScene) -> Result<Option<Vec<u32>>, GpuError> {
+        let Some(edges) = &uploaded.edges else { return Ok(None) };
+        let arguments: Vec<u32> = bytemuck::pod_collect_to_vec(&self.context.read_buffer(edges.arguments())?);
+        let mut lines: Vec<u32> = bytemuck::pod_collect_to_vec(&self.context.read_buffer(edges.lines())?);
+        // The second argument of the draw call is how many instances it has.
+        lines.truncate(arguments[1] as usize);
+        Ok(Some(lines))
     }
 
     /// Waits for a frame and fetches it.

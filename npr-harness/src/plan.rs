@@ -6,6 +6,7 @@ use crate::style::{Lines, Shade, Style};
 use glam::DVec4;
 use npr_mesh::AlphaMode;
 use npr_outline::contour::{ContourEdges, ContourOptions, contour_edges};
+use npr_outline::fin_printed::{PrintedFins, printed_fins};
 use npr_outline::{LineKind, OutlineError};
 use std::fmt;
 
@@ -45,6 +46,8 @@ pub struct Plan {
     pub cull_back: bool,
     /// The edges that can be lines, where fins are drawn.
     pub contours: Option<ContourEdges>,
+    /// A fin for every edge, where the printed form is drawn.
+    pub printed_fins: Option<PrintedFins>,
     /// Passes, in order.
     pub passes: Vec<Reason>,
     /// What was left out.
@@ -106,7 +109,8 @@ impl Plan {
             }
             _ => None,
         };
-        Ok(Self { painted, textured, cut_out, blended, cull_back, contours, passes, left_out })
+        let printed_fins = printed.then(|| printed_fins(model, &scene.edges));
+        Ok(Self { painted, textured, cut_out, blended, cull_back, contours, printed_fins, passes, left_out })
     }
 
     /// The lines for an eye, and how many there are of each [`LineKind`].

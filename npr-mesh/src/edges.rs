@@ -16,12 +16,10 @@
 //!
 //! # How
 //!
-//! One pass over the faces. Each vertex heads a chain of the edges of which it is the home; a face's edge is
-//! looked up there and appended if new. The home is the lower-numbered end; where a vertex is the home of so many
-//! edges that the chains grow long, the search is begun anew with the end that has fewer faces as the home, which
-//! bounds the work by twice the graph's arboricity times the edges (Chiba & Nishizeki 1985, "Arboricity and
-//! Subgraph Listing Algorithms", lemma 2): linear for anything like a surface. Nothing is allocated besides the
-//! result, 4 bytes a vertex and the weld's table. Edges come in the order in which the faces first show them.
+//! A face's edges are put into the bucket of their lower-numbered vertex by a counting sort: two passes over the faces.
+//! A bucket of a usual mesh holds six entries; equal ones are found by looking at all pairs, in a large bucket by
+//! sorting, so that the hub of a fan costs n log n and not n². Edges come by their lower vertex, and there in the order
+//! in which faces show them; an edge's faces come in the order of the faces.
 
 use crate::weld;
 use glam::{DVec3, Vec3};
@@ -135,7 +133,8 @@ pub struct Edges {
 /// - `face_polygon`: as [`crate::Model::face_polygon`], empty or per face.
 /// - `face_material`: per face, or empty where materials do not matter.
 ///
-/// Memory: 24 bytes an edge, 12 a face, 8 a vertex and the weld's table of at most 12 bytes a vertex. At most `3 * faces.len()` edges.
+/// Memory: 24 bytes an edge, 12 a face and 4 a vertex for what is returned; on the way 24 bytes a face, 4 a vertex, and
+/// the weld's table of at most 12 bytes a vertex. At most `3 * faces.len()` edges.
 ///
 /// # Panics
 /// If a face names a vertex that is not there, or a per-face array has another length than stated.
@@ -151,11 +150,12 @@ pub fn find(
     let representative = weld::weld_within(positions, options.weld_tolerance);
     let face_normals = face_normals(positions, faces, face_polygon);
     let mut skipped = Vec::new();
-    let (mut edges, mut further_faces) = collect(positions.len(), faces, &representative, &skipped);
+    let Collected { mut edges, mut further_faces, redundant } =
+        collect(positions.len(), faces, &representative, &skipped);
     if options.skip_redundant {
-        skipped = redundant_faces(&edges, &further_faces, faces, &representative, &face_normals, face_polygon);
+        skipped = skippable(&redundant, faces.len(), face_polygon);
         if !skipped.is_empty() {
-            (edges, further_faces) = collect(positions.len(), faces, &representative, &skipped);
+            Collected { edges, further_faces, .. } = collect(positions.len(), faces, &representative, &skipped);
         }
     }
     if !face_polygon.is_empty() {
@@ -212,151 +212,180 @@ pub fn has_zero_area(positions: &[Vec3], face: &[u32; 3]) -> bool {
     area_vector(positions, face) == DVec3::ZERO
 }
 
-/// An [`Edge`] while edges are being collected: the same bytes, with the chain's link where the cosine will stand.
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(C)]
-struct LinkedEdge {
-    ends: [u32; 2],
-    faces: [u32; 2],
-    /// The next edge of the same home.
-    link: u32,
-    flags: u32,
+/// What one pass over the faces finds.
+struct Collected {
+    /// `cos_dihedral` is not yet set.
+    edges: Vec<Edge>,
+    further_faces: Vec<(u32, u32)>,
+    /// Faces that lie on an earlier one or have two corners at one place.
+    redundant: Vec<u32>,
 }
 
-type Collected = (Vec<Edge>, Vec<(u32, u32)>);
+/// A face's side of an edge, in the bucket of the edge's lower end.
+#[derive(Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
+struct Side {
+    /// The edge's higher end.
+    high: u32,
+    /// Twice the face's number, and 1 where it runs upwards.
+    face_up: u32,
+}
 
-/// All edges with their faces; `cos_dihedral` is not yet set.
+/// More faces than this cannot be numbered beside a flag.
+const MOST_FACES: usize = 1 << 31;
+/// Buckets up to this size are searched in pairs.
+const SMALL_BUCKET: usize = 24;
+
 fn collect(vertices: usize, faces: &[[u32; 3]], representative: &[u32], skipped: &[bool]) -> Collected {
-    // Chains of a usual mesh are three edges long; a budget of 16 steps for each edge of a face finds out the others.
-    let budget = 48 * faces.len() as u64 + 1024;
-    let by_number = |a: u32, b: u32| a.min(b);
-    collect_by_home(vertices, faces, representative, skipped, by_number, budget).unwrap_or_else(|| {
-        let mut valence = vec![0u32; vertices];
-        for &vertex in faces.iter().flatten() {
-            valence[representative[vertex as usize] as usize] += 1;
-        }
-        let by_valence = |a: u32, b: u32| if (valence[a as usize], a) <= (valence[b as usize], b) { a } else { b };
-        collect_by_home(vertices, faces, representative, skipped, by_valence, u64::MAX)
-            .expect("an unlimited budget is not exceeded")
-    })
-}
-
-/// `None` if more than `budget` steps along chains were needed.
-#[inline(always)]
-fn collect_by_home(
-    vertices: usize,
-    faces: &[[u32; 3]],
-    representative: &[u32],
-    skipped: &[bool],
-    home_of: impl Fn(u32, u32) -> u32,
-    mut budget: u64,
-) -> Option<Collected> {
-    const END: u32 = u32::MAX;
-    let mut first_edge = vec![END; vertices];
-    let mut edges: Vec<LinkedEdge> = Vec::with_capacity(faces.len() + faces.len() / 2 + faces.len() / 16 + 16);
-    let mut further_faces = Vec::new();
-    for (face_number, face) in faces.iter().enumerate() {
-        if !skipped.is_empty() && skipped[face_number] {
+    assert!(faces.len() < MOST_FACES, "{} faces, of which at most {MOST_FACES} can be numbered", faces.len());
+    let welded = |face: u32| faces[face as usize].map(|v| representative[v as usize]);
+    let is_skipped = |face: usize| !skipped.is_empty() && skipped[face];
+    let mut redundant = Vec::new();
+    // Where each vertex's bucket ends, once filled; one more than there are vertices.
+    let mut bucket_end = vec![0u32; vertices + 1];
+    for (number, face) in faces.iter().enumerate() {
+        if is_skipped(number) {
             continue;
         }
-        let face_number = face_number as u32;
+        let [a, b, c] = face.map(|v| representative[v as usize]);
+        if a == b || b == c || c == a {
+            redundant.push(number as u32);
+        }
+        for (from, to) in [(a, b), (b, c), (c, a)] {
+            bucket_end[from.min(to) as usize + 1] += u32::from(from != to);
+        }
+    }
+    let mut total = 0;
+    for end in &mut bucket_end {
+        total += *end;
+        *end = total;
+    }
+    let mut sides = vec![Side::default(); total as usize];
+    for (number, face) in faces.iter().enumerate() {
+        if is_skipped(number) {
+            continue;
+        }
         let [a, b, c] = face.map(|v| representative[v as usize]);
         for (from, to) in [(a, b), (b, c), (c, a)] {
-            if from == to {
-                continue;
-            }
-            let ends = [from.min(to), from.max(to)];
-            let home = home_of(from, to) as usize;
-            let mut cursor = first_edge[home];
-            loop {
-                if cursor == END {
-                    let link = first_edge[home];
-                    first_edge[home] = edges.len() as u32;
-                    let flags = if from < to { FLAG_FIRST_ASCENDS } else { 0 };
-                    edges.push(LinkedEdge { ends, faces: [face_number, NO_FACE], link, flags });
-                    break;
-                }
-                let edge = &mut edges[cursor as usize];
-                if edge.ends == ends {
-                    if edge.faces[1] == NO_FACE {
-                        edge.faces[1] = face_number;
-                        if (from < to) == (edge.flags & FLAG_FIRST_ASCENDS != 0) {
-                            edge.flags |= FLAG_WOUND_OPPOSITELY;
-                        }
-                    } else {
-                        edge.flags |= FLAG_NON_MANIFOLD;
-                        further_faces.push((cursor, face_number));
-                    }
-                    break;
-                }
-                cursor = edge.link;
-                budget = budget.checked_sub(1)?;
+            if from != to {
+                let slot = &mut bucket_end[from.min(to) as usize];
+                let face_up = (number as u32) << 1 | u32::from(from < to);
+                sides[*slot as usize] = Side { high: from.max(to), face_up };
+                *slot += 1;
             }
         }
     }
-    Some((bytemuck::cast_vec(edges), further_faces))
+    let mut edges: Vec<Edge> = Vec::with_capacity(sides.len() / 2 + sides.len() / 32 + 16);
+    let mut further_faces = Vec::new();
+    let mut start = 0;
+    for low in 0..vertices {
+        let end = bucket_end[low] as usize;
+        let bucket = &mut sides[start..end];
+        start = end;
+        if bucket.len() > SMALL_BUCKET {
+            // By the higher end, then by face.
+            bucket.sort_unstable();
+        }
+        let first_of_bucket = edges.len();
+        for i in 0..bucket.len() {
+            let Side { high, face_up: first } = bucket[i];
+            if high == TAKEN {
+                continue;
+            }
+            let number = edges.len() as u32;
+            let mut edge = Edge {
+                ends: [low as u32, high],
+                faces: [first >> 1, NO_FACE],
+                cos_dihedral: f32::NAN,
+                flags: if first & 1 != 0 { FLAG_FIRST_ASCENDS } else { 0 },
+            };
+            for j in i + 1..bucket.len() {
+                let Side { high: other, face_up: next } = bucket[j];
+                if other != high {
+                    if bucket.len() > SMALL_BUCKET {
+                        break;
+                    }
+                    continue;
+                }
+                bucket[j].high = TAKEN;
+                if edge.faces[1] == NO_FACE {
+                    edge.faces[1] = next >> 1;
+                    if (first ^ next) & 1 == 0 {
+                        edge.flags |= FLAG_WOUND_OPPOSITELY;
+                    }
+                } else {
+                    edge.flags |= FLAG_NON_MANIFOLD;
+                    further_faces.push((number, next >> 1));
+                }
+            }
+            edges.push(edge);
+        }
+        twins_of_bucket(&edges[first_of_bucket..], &mut redundant);
+    }
+    twins_at_crowded_edges(&edges, &further_faces, welded, &mut redundant);
+    Collected { edges, further_faces, redundant }
 }
 
-/// Faces that lie on an earlier face or have two corners at one place; empty if there is none.
+/// Stands for the higher end of a side that has its edge. No vertex has this number: there would have to be 2³² of them.
+const TAKEN: u32 = u32::MAX;
+
+/// Which faces to leave out; empty if none.
 ///
-/// Such a face is a neighbour, over some edge, of the one that it lies on, and their normals are parallel: only
-/// those pairs are looked at.
-fn redundant_faces(
-    edges: &[Edge],
-    further_faces: &[(u32, u32)],
-    faces: &[[u32; 3]],
-    representative: &[u32],
-    face_normals: &[Vec3],
-    face_polygon: &[u32],
-) -> Vec<bool> {
-    // A triangle cut from a larger polygon may coincide with one cut from another without the polygons doing so; such
-    // polygons are left alone.
-    let is_cut = |face: u32| {
-        let face = face as usize;
+/// A triangle cut from a larger polygon may coincide with one cut from another without the polygons doing so; such
+/// polygons are left alone.
+fn skippable(redundant: &[u32], faces: usize, face_polygon: &[u32]) -> Vec<bool> {
+    let is_cut = |face: usize| {
         !face_polygon.is_empty()
             && (face.checked_sub(1).is_some_and(|before| face_polygon[before] == face_polygon[face])
                 || face_polygon.get(face + 1) == Some(&face_polygon[face]))
     };
-    let mut redundant = Vec::new();
-    let mut mark = |face: u32| {
-        redundant.resize(faces.len(), false);
-        redundant[face as usize] = true;
-    };
-    let corners = |face: u32| {
-        let mut corners = faces[face as usize].map(|v| representative[v as usize]);
+    let mut skipped = Vec::new();
+    for &face in redundant.iter().filter(|&&face| !is_cut(face as usize)) {
+        skipped.resize(faces, false);
+        skipped[face as usize] = true;
+    }
+    skipped
+}
+
+/// A face on an earlier one shares all its edges with it. Two of these are in the bucket of the lowest of the three
+/// corners, so two edges of a bucket with the same two faces tell of it.
+fn twins_of_bucket(bucket: &[Edge], redundant: &mut Vec<u32>) {
+    let is_twin = |a: &Edge, b: &Edge| a.faces == b.faces && a.faces[1] != NO_FACE && a.faces[0] != a.faces[1];
+    if bucket.len() <= SMALL_BUCKET {
+        for (i, edge) in bucket.iter().enumerate() {
+            if bucket[i + 1..].iter().any(|other| is_twin(edge, other)) {
+                redundant.push(edge.faces[1]);
+            }
+        }
+        return;
+    }
+    let mut sorted = bucket.to_vec();
+    sorted.sort_unstable_by_key(|edge| edge.faces);
+    redundant.extend(sorted.windows(2).filter(|pair| is_twin(&pair[0], &pair[1])).map(|pair| pair[1].faces[1]));
+}
+
+/// At an edge with three faces and more any two can be twins; of each set of corners all but the first are redundant.
+fn twins_at_crowded_edges(
+    edges: &[Edge],
+    further_faces: &[(u32, u32)],
+    welded: impl Fn(u32) -> [u32; 3],
+    redundant: &mut Vec<u32>,
+) {
+    let keyed = |edge: u32, face: u32| {
+        let mut corners = welded(face);
         corners.sort_unstable();
-        corners
+        (edge, corners, face)
     };
-    // A collapsed face has no normal, and neither has a thin one: only those need a look at their corners.
-    for (face, normal) in face_normals.iter().enumerate() {
-        if *normal == Vec3::ZERO {
-            let [a, b, c] = corners(face as u32);
-            if (a == b || b == c) && !is_cut(face as u32) {
-                mark(face as u32);
-            }
-        }
-    }
-    for edge in edges.iter().filter(|edge| edge.faces[1] != NO_FACE) {
-        let [first, second] = edge.faces;
-        let cos = face_normals[first as usize].dot(face_normals[second as usize]);
-        if (cos.abs() > 0.999 || cos == 0.0) && first != second && corners(first) == corners(second) {
-            if !is_cut(first) && !is_cut(second) {
-                mark(first.max(second));
-            }
-        }
-    }
-    // At a non-manifold edge any two faces can be a pair; all but the first of each set of corners go.
-    let mut of_edge: Vec<(u32, u32)> = further_faces.to_vec();
-    of_edge.extend(further_faces.iter().flat_map(|&(edge, _)| edges[edge as usize].faces.map(|face| (edge, face))));
-    let mut keyed: Vec<(u32, [u32; 3], u32)> =
-        of_edge.into_iter().filter(|f| !is_cut(f.1)).map(|(edge, face)| (edge, corners(face), face)).collect();
-    keyed.sort_unstable();
-    for pair in keyed.windows(2) {
-        if pair[0].0 == pair[1].0 && pair[0].1 == pair[1].1 && pair[0].2 != pair[1].2 {
-            mark(pair[1].2);
-        }
-    }
-    redundant
+    let mut of_edge: Vec<(u32, [u32; 3], u32)> = further_faces
+        .iter()
+        .flat_map(|&(edge, face)| {
+            let [first, second] = edges[edge as usize].faces;
+            [first, second, face].map(|face| keyed(edge, face))
+        })
+        .collect();
+    of_edge.sort_unstable();
+    of_edge.dedup();
+    let twins = of_edge.windows(2).filter(|pair| pair[0].0 == pair[1].0 && pair[0].1 == pair[1].1);
+    redundant.extend(twins.map(|pair| pair[1].2));
 }
 
 fn classify(edges: &mut [Edge], further_faces: &[(u32, u32)], face_normals: &[Vec3], face_material: &[u32]) {

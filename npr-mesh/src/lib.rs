@@ -1,4 +1,41 @@
 //! Model files in; clean triangles, normals and edges out.
+//!
+//! ```
+//! use npr_mesh::{edges, embedded};
+//!
+//! let model = embedded::cube(); // or, from a file: npr_mesh::load(path, &Default::default())?.model
+//! let found =
+//!     edges::find(&model.positions, &model.faces, &model.face_polygon, &model.face_material, &Default::default());
+//! let creases = found.edges.iter().filter(|edge| edge.dihedral_rad() > Some(30f32.to_radians()));
+//! assert_eq!(creases.count(), 12); // no diagonals: the cube's faces are squares
+//! ```
+//!
+//! [`Model`] is plain arrays: positions, normals, texture coordinates, triangles. `load` fills them from `.obj`
+//! (feature `obj`), `.gltf` and `.glb` (feature `gltf`); [`embedded`] from nothing. Both features are on by default.
+//!
+//! # Rules
+//!
+//! - A face is the triple of its corners as loaded. Vertices at exactly equal positions are one vertex for edges, so
+//!   that texture and normal seams are no boundaries, and stay apart for shading.
+//! - A polygon of n corners becomes n − 2 triangles ([`triangulate`]). The diagonals are no edges, and all triangles of
+//!   a polygon have its Newell normal.
+//! - What a file has no normals for gets them ([`normals`]): weighted by angle, split at creases.
+//! - Non-manifold edges, opposite windings, faces without area and doubled faces each have a rule, see [`edges`]. None
+//!   of them makes a line disappear that should be seen.
+//! - A file is never trusted: indices, lengths and numbers are checked before use, sizes against [`Limits`], and what
+//!   is wrong is a [`LoadError`] that names the file and the fault. What could be repaired is a warning beside the
+//!   model.
+//!
+//! # Colours
+//!
+//! A material's colour and the vertex colours are linear, textures are sRGB-encoded bytes. Their product is taken in
+//! linear light and encoded once.
+//!
+//! # Sources
+//!
+//! - D. Card, J. L. Mitchell: *Non-Photorealistic Rendering with Pixel and Vertex Shaders*, in *Direct3D ShaderX*,
+//!   2002, "Rendering Outlines": unique edges with the normals of their two faces, the negated normal at a boundary.
+//! - M. Newell's teapot: [`embedded::teapot`]. Those of the algorithms are named where they are used.
 #![warn(missing_docs)]
 
 pub mod edges;

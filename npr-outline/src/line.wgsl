@@ -154,8 +154,27 @@ fn outline_nearest(ends_px: vec4<f32>, point_px: vec2<f32>) -> f32 {
     return 0.0;
 }
 
-fn outline_coverage(on_line: vec2<f32>, point_px: vec2<f32>, width_px: f32) -> f32 {
-    return clamp(0.5 * width_px + 0.5 - distance(on_line, point_px), 0.0, min(width_px, 1.0));
+// The share of a unit square around the origin on the near side of a straight border.
+fn outline_half_plane(distance: f32, normal: vec2<f32>) -> f32 {
+    let a = max(abs(normal.x), abs(normal.y));
+    let b = min(abs(normal.x), abs(normal.y));
+    let from_border = abs(distance);
+    let left = max(0.5 * (a + b) - from_border, 0.0);
+    let corner = 1.0 - 0.5 * left * left / max(a * b, 1e-20);
+    let near = select(corner, 0.5 + from_border / a, from_border <= 0.5 * (a - b));
+    return select(near, 1.0 - near, distance < 0.0);
+}
+
+fn outline_coverage(on_line: vec2<f32>, direction: vec2<f32>, point_px: vec2<f32>, width_px: f32) -> f32 {
+    let to_point = point_px - on_line;
+    let distance = length(to_point);
+    var normal = vec2<f32>(-direction.y, direction.x);
+    if distance > 1e-3 {
+        normal = to_point / distance;
+    }
+    let half_width = 0.5 * width_px;
+    let covered = outline_half_plane(half_width - distance, normal) + outline_half_plane(half_width + distance, normal) - 1.0;
+    return clamp(covered, 0.0, 1.0);
 }
 
 // (seen, surface) votes of one of the four pixels around a point of the centreline.

@@ -1,11 +1,12 @@
-//! Lines on wgpu: coverage by maximum, then ink.
+//! Lines on wgpu, in one small pass over the lines' rectangles.
 //!
-//! Two small passes over the lines' rectangles. The first writes into an `R8Unorm` target how much of each pixel
-//! lines cover, blended by maximum: where segments of a polyline overlap at their joints, no pixel is counted twice, and the
-//! order of the lines does not matter. The second lays ink over the colour target with that coverage, each pixel
-//! once (a stencil sees to that). Neither touches a pixel that has no line near it.
+//! Where segments of a polyline overlap at their joints, no pixel may be inked twice: the pixel's ink is that of the
+//! line that covers most of it. So each fragment computes the final colour, from the picture without lines, and puts its
+//! coverage out as depth; a depth test keeps the greatest. The order of the lines does not matter, and no pixel is touched
+//! that has no line near it.
 //!
-//! Needs: the scene's depth buffer as a texture of the same size, `Depth32Float`, reversed.
+//! Needs the scene's depth buffer as a texture of the same size, `Depth32Float`, reversed, and the picture twice: as a
+//! texture to read, and as a target that starts as its copy.
 
 use crate::OutlineError;
 use crate::contour::{ContourEdges, TRAIT_ALWAYS, TRAIT_CUT_OUT};
@@ -20,10 +21,8 @@ const PASS_WGSL: &str = include_str!("line_pass.wgsl");
 const PULLED_WGSL: &str = include_str!("line_pulled.wgsl");
 const COMPACTION_WGSL: &str = include_str!("compaction.wgsl");
 
-/// The coverage target's format.
-pub const COVERAGE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
-/// The stencil that keeps ink to once a pixel.
-pub const STENCIL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Stencil8;
+/// Of the target that keeps the greatest coverage.
+pub const WINNER_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth16Unorm;
 
 /// `OutlineView` of `line.wgsl`.
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -102,26 +101,25 @@ pub enum LineSource<'a> {
     OnDevice(&'a EdgesOnDevice),
 }
 
-/// What a frame draws into.
+/// What a frame reads and draws into, all of one size.
 #[derive(Clone, Copy, Debug)]
 pub struct LineTargets<'a> {
-    /// Colour, of the format that the pass was made for; kept outside the lines.
-    pub color: &'a wgpu::TextureView,
-    /// The scene's depth, reversed, readable as a texture.
+    /// The picture without lines, readable.
+    pub painted: &'a wgpu::TextureView,
+    /// The scene's depth, reversed, readable.
     pub depth: &'a wgpu::TextureView,
-    /// [`COVERAGE_FORMAT`], renderable and readable; overwritten. Holds the lines' coverage afterwards.
-    pub coverage: &'a wgpu::TextureView,
-    /// [`STENCIL_FORMAT`]; overwritten.
-    pub stencil: &'a wgpu::TextureView,
+    /// Of the format that the pass was made for, renderable; holds a copy of `painted` and gets the lines.
+    pub inked: &'a wgpu::TextureView,
+    /// [`WINNER_FORMAT`], renderable; overwritten.
+    pub winner: &'a wgpu::TextureView,
 }
 
 /// The pipelines that draw lines.
 #[derive(Debug)]
 pub struct LinePass {
     view_layout: wgpu::BindGroupLayout,
-    coverage_layout: wgpu::BindGroupLayout,
-    ink_layout: wgpu::BindGroupLayout,
-    record_pipelines: [wgpu::RenderPipeline; 2],
+    picture_layout: wgpu::BindGroupLayout,
+    record_pipeline: wgpu::RenderPipeline,
     on_device: Option<OnDevicePipelines>,
 }
 
@@ -130,7 +128,7 @@ struct OnDevicePipelines {
     pulled_layout: wgpu::BindGroupLayout,
     compaction_layout: wgpu::BindGroupLayout,
     compaction: wgpu::ComputePipeline,
-    pulled_pipelines: [wgpu::RenderPipeline; 2],
+    pulled_pipeline: wgpu::RenderPipeline,
 }
 
 const RECORD_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
@@ -158,20 +156,17 @@ impl LinePass {
         };
         let all_stages = wgpu::ShaderStages::VERTEX | wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE;
         let view_layout = layout("outline view", &[buffer_entry(0, all_stages, wgpu::BufferBindingType::Uniform)]);
-        let depth_type = wgpu::TextureSampleType::Depth;
-        let coverage_layout = layout("outline depth", &[texture_entry(0, depth_type)]);
         let unfilterable = wgpu::TextureSampleType::Float { filterable: false };
-        let ink_layout = layout("outline coverage", &[texture_entry(1, unfilterable)]);
-        let pipelines = |module: &wgpu::ShaderModule, vertex: (&str, &wgpu::VertexBufferLayout<'_>), pulled: &[_]| {
-            [(true, &coverage_layout, COVERAGE_FORMAT), (false, &ink_layout, color_format)].map(
-                |(coverage, group1, format)| {
-                    let groups = [&[Some(&view_layout), Some(group1)], pulled].concat();
-                    line_pipeline(device, module, vertex, &groups, format, coverage)
-                },
-            )
+        let picture_layout = layout(
+            "outline picture",
+            &[texture_entry(0, wgpu::TextureSampleType::Depth), texture_entry(1, unfilterable)],
+        );
+        let pipeline = |module: &wgpu::ShaderModule, vertex: (&str, &wgpu::VertexBufferLayout<'_>), pulled: &[_]| {
+            let groups = [&[Some(&view_layout), Some(&picture_layout)], pulled].concat();
+            line_pipeline(device, module, vertex, &groups, color_format)
         };
         let module = shader(device, "outline lines", &[WGSL, PASS_WGSL]);
-        let record_pipelines = pipelines(&module, ("vs_record", &RECORD_LAYOUT), &[]);
+        let record_pipeline = pipeline(&module, ("vs_record", &RECORD_LAYOUT), &[]);
         let read = wgpu::BufferBindingType::Storage { read_only: true };
         let vertex = wgpu::ShaderStages::VERTEX;
         let pulled_layout = layout(
@@ -186,7 +181,7 @@ impl LinePass {
                 &[buffer_entry(0, compute, read), buffer_entry(1, compute, write), buffer_entry(2, compute, write)],
             );
             let module = shader(device, "outline pulled lines", &[WGSL, PASS_WGSL, PULLED_WGSL]);
-            let pulled_pipelines = pipelines(&module, ("vs_pulled", &EDGE_NUMBER_LAYOUT), &[Some(&pulled_layout)]);
+            let pulled_pipeline = pipeline(&module, ("vs_pulled", &EDGE_NUMBER_LAYOUT), &[Some(&pulled_layout)]);
             let compaction = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
                 label: Some("outline compaction"),
                 layout: Some(&device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -199,9 +194,9 @@ impl LinePass {
                 compilation_options: Default::default(),
                 cache: None,
             });
-            OnDevicePipelines { pulled_layout: pulled_layout.clone(), compaction_layout, compaction, pulled_pipelines }
+            OnDevicePipelines { pulled_layout: pulled_layout.clone(), compaction_layout, compaction, pulled_pipeline }
         });
-        Self { view_layout, coverage_layout, ink_layout, record_pipelines, on_device }
+        Self { view_layout, picture_layout, record_pipeline, on_device }
     }
 
     /// Sends a model's edges to the device: 52 bytes an edge and 12 a position.
@@ -292,16 +287,16 @@ impl LinePass {
             contents: bytemuck::bytes_of(&uniform),
             usage: wgpu::BufferUsages::UNIFORM,
         });
-        let group = |layout, binding, resource| {
-            device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some("outline"),
-                layout,
-                entries: &[wgpu::BindGroupEntry { binding, resource }],
-            })
+        let group = |layout, resources: &[wgpu::BindingResource<'_>]| {
+            let entries: Vec<_> = (0u32..)
+                .zip(resources)
+                .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource: resource.clone() })
+                .collect();
+            device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("outline"), layout, entries: &entries })
         };
-        let view_group = group(&self.view_layout, 0, uniform.as_entire_binding());
-        let coverage_group = group(&self.coverage_layout, 0, wgpu::BindingResource::TextureView(targets.depth));
-        let ink_group = group(&self.ink_layout, 1, wgpu::BindingResource::TextureView(targets.coverage));
+        let view_group = group(&self.view_layout, &[uniform.as_entire_binding()]);
+        let picture = [targets.depth, targets.painted].map(wgpu::BindingResource::TextureView);
+        let picture_group = group(&self.picture_layout, &picture);
         let records = match source {
             LineSource::Records([]) => None,
             LineSource::Records(records) => Some(device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
@@ -314,43 +309,39 @@ impl LinePass {
                 None
             }
         };
-        for (step, group1) in [&coverage_group, &ink_group].into_iter().enumerate() {
-            let covering = step == 0;
-            let load = if covering { wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) } else { wgpu::LoadOp::Load };
-            let stencil = wgpu::RenderPassDepthStencilAttachment {
-                view: targets.stencil,
-                depth_ops: None,
-                stencil_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0), store: wgpu::StoreOp::Discard }),
-            };
-            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some(if covering { "line coverage" } else { "line ink" }),
-                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                    view: if covering { targets.coverage } else { targets.color },
-                    depth_slice: None,
-                    resolve_target: None,
-                    ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
-                })],
-                depth_stencil_attachment: (!covering).then_some(stencil),
-                ..Default::default()
-            });
-            pass.set_bind_group(0, &view_group, &[]);
-            pass.set_bind_group(1, group1, &[]);
-            match (source, &records) {
-                (LineSource::Records(lines), Some(buffer)) => {
-                    pass.set_pipeline(&self.record_pipelines[step]);
-                    pass.set_vertex_buffer(0, buffer.slice(..));
-                    pass.draw(0..4, 0..lines.len() as u32);
-                }
-                (LineSource::OnDevice(edges), _) => {
-                    let pipelines = self.on_device.as_ref().expect("the edges were uploaded by this pass");
-                    pass.set_pipeline(&pipelines.pulled_pipelines[step]);
-                    pass.set_bind_group(2, &edges.pulled_group, &[]);
-                    pass.set_vertex_buffer(0, edges.lines.slice(..));
-                    pass.draw_indirect(&edges.arguments, 0);
-                }
-                (LineSource::Records(_), None) => {}
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("lines"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: targets.inked,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
+            })],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: targets.winner,
+                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard }),
+                stencil_ops: None,
+            }),
+            ..Default::default()
+        });
+        pass.set_bind_group(0, &view_group, &[]);
+        pass.set_bind_group(1, &picture_group, &[]);
+        match (source, &records) {
+            (LineSource::Records(lines), Some(buffer)) => {
+                pass.set_pipeline(&self.record_pipeline);
+                pass.set_vertex_buffer(0, buffer.slice(..));
+                pass.draw(0..4, 0..lines.len() as u32);
             }
+            (LineSource::OnDevice(edges), _) => {
+                let pipelines = self.on_device.as_ref().expect("the edges were uploaded by this pass");
+                pass.set_pipeline(&pipelines.pulled_pipeline);
+                pass.set_bind_group(2, &edges.pulled_group, &[]);
+                pass.set_vertex_buffer(0, edges.lines.slice(..));
+                pass.draw_indirect(&edges.arguments, 0);
+            }
+            (LineSource::Records(_), None) => {}
         }
+        drop(pass);
         Ok(())
     }
 
@@ -447,21 +438,9 @@ fn line_pipeline(
     (entry, buffer): (&str, &wgpu::VertexBufferLayout<'_>),
     groups: &[Option<&wgpu::BindGroupLayout>],
     format: wgpu::TextureFormat,
-    coverage: bool,
 ) -> wgpu::RenderPipeline {
-    let maximum = wgpu::BlendComponent {
-        src_factor: wgpu::BlendFactor::One,
-        dst_factor: wgpu::BlendFactor::One,
-        operation: wgpu::BlendOperation::Max,
-    };
-    let once = wgpu::StencilFaceState {
-        compare: wgpu::CompareFunction::Equal,
-        fail_op: wgpu::StencilOperation::Keep,
-        depth_fail_op: wgpu::StencilOperation::Keep,
-        pass_op: wgpu::StencilOperation::IncrementClamp,
-    };
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some(if coverage { "line coverage" } else { "line ink" }),
+        label: Some("lines"),
         layout: Some(&device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("outline"),
             bind_group_layouts: groups,
@@ -474,27 +453,19 @@ fn line_pipeline(
             buffers: &[Some(buffer.clone())],
         },
         primitive: wgpu::PrimitiveState { topology: wgpu::PrimitiveTopology::TriangleStrip, ..Default::default() },
-        depth_stencil: (!coverage).then(|| wgpu::DepthStencilState {
-            format: STENCIL_FORMAT,
-            depth_write_enabled: None,
-            depth_compare: None,
-            stencil: wgpu::StencilState { front: once, back: once, read_mask: !0, write_mask: !0 },
+        depth_stencil: Some(wgpu::DepthStencilState {
+            format: WINNER_FORMAT,
+            depth_write_enabled: Some(true),
+            depth_compare: Some(wgpu::CompareFunction::Greater),
+            stencil: Default::default(),
             bias: Default::default(),
         }),
         multisample: Default::default(),
         fragment: Some(wgpu::FragmentState {
             module,
-            entry_point: Some(if coverage { "fs_coverage" } else { "fs_ink" }),
+            entry_point: Some("fs_ink"),
             compilation_options: Default::default(),
-            targets: &[Some(wgpu::ColorTargetState {
-                format,
-                blend: Some(if coverage {
-                    wgpu::BlendState { color: maximum, alpha: maximum }
-                } else {
-                    wgpu::BlendState::ALPHA_BLENDING
-                }),
-                write_mask: wgpu::ColorWrites::ALL,
-            })],
+            targets: &[Some(format.into())],
         }),
         multiview_mask: None,
         cache: None,

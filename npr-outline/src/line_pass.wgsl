@@ -2,8 +2,9 @@
 
 @group(0) @binding(0) var<uniform> view: OutlineView;
 
-// Coverage: what of each pixel the lines cover, hidden parts left out. Blended by maximum.
 @group(1) @binding(0) var scene_depth: texture_depth_2d;
+// The picture without lines.
+@group(1) @binding(1) var painted: texture_2d<f32>;
 
 struct LineVertex {
     @builtin(position) position: vec4<f32>,
@@ -54,17 +55,23 @@ fn vs_record(
     return line_vertex(corner, end0, end1, normal0, normal1, kind_traits & 3u, kind_traits);
 }
 
+struct Inked {
+    @location(0) color: vec4<f32>,
+    // Coverage as depth: of the lines over a pixel the one that covers most of it is kept, whatever their order.
+    @builtin(frag_depth) coverage: f32,
+}
+
 @fragment
-fn fs_coverage(in: LineVertex) -> @location(0) vec4<f32> {
+fn fs_ink(in: LineVertex) -> Inked {
     let fraction = outline_nearest(in.ends_px, in.position.xy);
     let on_line = mix(in.ends_px.xy, in.ends_px.zw, fraction);
-    let coverage = outline_coverage(on_line, in.position.xy, in.width_px);
+    let direction = outline_direction(in.ends_px);
+    let coverage = outline_coverage(on_line, direction, in.position.xy, in.width_px);
     if coverage <= 0.0 {
         discard;
     }
     let depth = mix(in.depths_slopes.x, in.depths_slopes.y, fraction);
     let per_px = depth * view.depth_per_px.x + view.depth_per_px.y;
-    let direction = outline_direction(in.ends_px);
     let corner = floor(on_line - 0.5);
     let last = vec2<i32>(view.viewport_px) - 1;
     var votes = vec2<bool>(false);
@@ -77,17 +84,7 @@ fn fs_coverage(in: LineVertex) -> @location(0) vec4<f32> {
     if !votes.x || (!votes.y && (in.traits & OUTLINE_TRAIT_CUT_OUT) != 0u) {
         discard;
     }
-    return vec4<f32>(coverage);
-}
-
-// Ink: the same shapes again, each pixel once (the stencil sees to that), with the greatest coverage of any line.
-@group(1) @binding(1) var coverage_map: texture_2d<f32>;
-
-@fragment
-fn fs_ink(in: LineVertex) -> @location(0) vec4<f32> {
-    let coverage = textureLoad(coverage_map, vec2<i32>(in.position.xy), 0).r;
-    if coverage <= 0.0 {
-        discard;
-    }
-    return vec4<f32>(view.ink.rgb, view.ink.a * coverage);
+    let below = textureLoad(painted, vec2<i32>(in.position.xy), 0);
+    let opacity = view.ink.a * coverage;
+    return Inked(vec4<f32>(mix(below.rgb, view.ink.rgb, opacity), opacity + below.a * (1.0 - opacity)), coverage);
 }

@@ -5,9 +5,9 @@
 //! # Width
 //!
 //! A line is the set of points within half its width of the segment, so its ends are round and lines that meet
-//! close their joint. The coverage of a pixel is that of the disc's border at the pixel's centre: `half width +
-//! ½ − distance`, in 0..=1, and at most the width itself, so that hair lines fade instead of breaking. Being
-//! measured on the screen, the width is the same at any distance; the chapter's listing 1 scales by clip z instead of
+//! close their joint. The coverage of a pixel is the area of the pixel's square between the line's two borders, exact for
+//! straight ones: summed across a line it gives the width at any angle and any place, and hair lines fade instead of
+//! breaking. Being measured on the screen, the width is the same at any distance; the chapter's listing 1 scales by clip z instead of
 //! w, which thins lines towards the near plane.
 //!
 //! # Visibility
@@ -63,9 +63,8 @@ pub struct ScreenSegment {
 /// Everything that follows divides by w, and f32 loses the centreline's place when an end is a thousand screens away.
 pub fn outline_clip(ends: [DVec4; 2], viewport_px: DVec2, margin_px: f64) -> Option<[DVec4; 2]> {
     let guard = DVec2::ONE + 2.0 * margin_px / viewport_px;
-    let inside = |p: DVec4| {
-        [p.w - p.z, guard.x * p.w - p.x, guard.x * p.w + p.x, guard.y * p.w - p.y, guard.y * p.w + p.y]
-    };
+    let inside =
+        |p: DVec4| [p.w - p.z, guard.x * p.w - p.x, guard.x * p.w + p.x, guard.y * p.w - p.y, guard.y * p.w + p.y];
     let (a, b) = (inside(ends[0]), inside(ends[1]));
     let (mut from, mut to) = (0.0f64, 1.0f64);
     for (a, b) in a.into_iter().zip(b) {
@@ -110,12 +109,7 @@ fn outline_face_slope(inward: DVec3, middle: DVec4, segment: &ScreenSegment, vie
 /// - `ends`: world space, in the order in which the first face runs over the edge.
 /// - `normals`: unit normals of the two faces, wound alike; zero where there is none.
 /// - `width_px`: of the line.
-pub fn outline_project(
-    ends: [DVec3; 2],
-    normals: [DVec3; 2],
-    width_px: f64,
-    view: &LineView,
-) -> Option<ScreenSegment> {
+pub fn outline_project(ends: [DVec3; 2], normals: [DVec3; 2], width_px: f64, view: &LineView) -> Option<ScreenSegment> {
     let clip = ends.map(|end| view.clip_from_world * end.extend(1.0));
     let clip = outline_clip(clip, view.viewport_px, 0.5 * width_px + 2.0)?;
     let [(p0, z0), (p1, z1)] = clip.map(|end| outline_screen(end, view.viewport_px));
@@ -161,10 +155,34 @@ impl ScreenSegment {
     }
 }
 
-/// How much of the pixel around `point_px` a line of `width_px` covers, 0..=1.
+/// The share of a unit square around the origin on the near side of a straight border at `distance` along the unit
+/// vector `normal`: the distribution of a sum of two uniform variables, a trapezoid's integral.
+pub fn outline_half_plane(distance: f64, normal: DVec2) -> f64 {
+    let (a, b) = (normal.x.abs().max(normal.y.abs()), normal.x.abs().min(normal.y.abs()));
+    let reach = 0.5 * (a + b);
+    let inner = 0.5 * (a - b);
+    let from_border = distance.abs();
+    let near = if from_border <= inner {
+        0.5 + from_border / a
+    } else {
+        // Past the middle strip the square is cut by a corner; the corner left over is a triangle.
+        let left = (reach - from_border).max(0.0);
+        1.0 - 0.5 * left * left / (a * b).max(f64::MIN_POSITIVE)
+    };
+    if distance < 0.0 { 1.0 - near } else { near }
+}
+
+/// How much of the pixel around `point_px` a line of `width_px` covers, 0..=1: exact beside the line, and at its
+/// round ends as if their border were straight.
 pub fn outline_coverage(segment: &ScreenSegment, point_px: DVec2, width_px: f64) -> f64 {
-    let distance = segment.at(segment.nearest(point_px)).0.distance(point_px);
-    (0.5 * width_px + 0.5 - distance).clamp(0.0, width_px.min(1.0))
+    let to_point = point_px - segment.at(segment.nearest(point_px)).0;
+    let distance = to_point.length();
+    let direction = segment.direction().0;
+    let normal = if distance > 1e-3 { to_point / distance } else { DVec2::new(-direction.y, direction.x) };
+    let half_width = 0.5 * width_px;
+    let covered =
+        outline_half_plane(half_width - distance, normal) + outline_half_plane(half_width + distance, normal) - 1.0;
+    covered.clamp(0.0, 1.0)
 }
 
 /// Whether the centreline is seen at a fraction of its length.

@@ -54,10 +54,12 @@ fn draw(
     view: &LineView,
 ) -> Vec<u8> {
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    encoder.copy_texture_to_texture(picture.color.as_image_copy(), picture.inked.as_image_copy(), picture.color.size());
     let eye = view.clip_from_world.inverse() * glam::DVec4::Z;
     pass.record(&gpu.device, &mut encoder, source, &black(width_px), view, eye / eye.w, &picture.targets()).unwrap();
     gpu.queue.submit([encoder.finish()]);
-    gpu.read_texture(&picture.coverage, 1)
+    // Black ink on white.
+    gpu.read_texture(&picture.inked, 4).chunks(4).map(|pixel| 255 - pixel[0]).collect()
 }
 
 fn edges_of(model: &Model) -> Edges {
@@ -379,7 +381,7 @@ fn printed_fins_are_those_of_the_rasteriser() {
                 let targets = picture.targets();
                 let mut encoder = gpu.device.create_command_encoder(&Default::default());
                 let ink = [0.0, 0.0, 0.0, 1.0];
-                pass.record(&gpu.device, &mut encoder, &on_device, &view, ink, targets.color, targets.depth);
+                pass.record(&gpu.device, &mut encoder, &on_device, &view, ink, targets.painted, targets.depth);
                 gpu.queue.submit([encoder.finish()]);
                 let got = gpu.read_texture(&picture.color, 4);
                 let mut unhidden = 0;

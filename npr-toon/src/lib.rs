@@ -50,7 +50,7 @@ mod uniform;
 pub use bands::{Bands, Highlight, ToonError};
 pub use light::{
     MIN_WIDTH, toon_band_hard, toon_band_smooth, toon_coverage, toon_half, toon_highlight, toon_n_dot_h,
-    toon_n_dot_h_interpolated, toon_n_dot_l, toon_n_dot_l_interpolated, toon_shade, toon_width,
+    toon_n_dot_h_interpolated, toon_n_dot_h_of, toon_n_dot_l, toon_n_dot_l_interpolated, toon_shade, toon_width,
 };
 pub use uniform::{MAX_BANDS, ToonUniform};
 

@@ -36,6 +36,12 @@ pub fn toon_n_dot_h_interpolated(normal: DVec3, half: DVec3) -> f64 {
     normal.dot(half)
 }
 
+/// N·H of unit vectors from their dot products, without making H, since |L + E|² is 2 + 2 L·E. 0 where L is opposite E.
+pub fn toon_n_dot_h_of(n_dot_l: f64, n_dot_e: f64, l_dot_e: f64) -> f64 {
+    let squared = 2.0 + 2.0 * l_dot_e;
+    if squared > 0.0 { (n_dot_l + n_dot_e) / squared.sqrt() } else { 0.0 }
+}
+
 /// How much a quantity changes across one pixel, from its derivatives along x and y (per pixel).
 pub fn toon_width(along_x: f64, along_y: f64) -> f64 {
     DVec2::new(along_x, along_y).length()

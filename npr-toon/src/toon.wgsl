@@ -44,6 +44,11 @@ fn toon_n_dot_h(normal: vec3<f32>, to_light: vec3<f32>, to_eye: vec3<f32>) -> f3
     return dot(toon_unit(normal), toon_half(to_light, to_eye));
 }
 
+// N.H of unit vectors, without making H: |L + E| is sqrt(2 + 2 L.E).
+fn toon_n_dot_h_of(n_dot_l: f32, n_dot_e: f32, l_dot_e: f32) -> f32 {
+    return (n_dot_l + n_dot_e) * inverseSqrt(max(2.0 + 2.0 * l_dot_e, 1e-30));
+}
+
 fn toon_n_dot_h_interpolated(normal: vec3<f32>, half_vector: vec3<f32>) -> f32 {
     return dot(normal, half_vector);
 }

@@ -1,8 +1,9 @@
 //! Lines on the CPU: the same segments, coverage and visibility as on the device, in f64.
 
 use super::{CpuFrame, FrameContext};
-use glam::{DVec2, DVec3, Vec3};
+use glam::{DVec2, DVec3, DVec4, Vec3};
 use npr_outline::contour::TRAIT_CUT_OUT;
+use npr_outline::fin_printed::{fin_printed_triangles, rasterise};
 use npr_outline::line_look::LineLook;
 use npr_outline::segment::{ScreenSegment, outline_coverage, outline_is_visible, outline_project};
 
@@ -60,5 +61,19 @@ fn line_coverage(context: &FrameContext<'_>, frame: &CpuFrame, look: &LineLook, 
     coverage
 }
 
-/// Draws the fins of the printed listing over `frame`.
-pub fn draw_printed(_context: &FrameContext<'_>, _frame: &mut CpuFrame, _width_px: f64, _ink: Vec3) {}
+/// Draws the fins of the printed listing over `frame`. They are sampled where the surfaces are, so that a moved sample
+/// shows where their aliased borders are sensitive.
+pub fn draw_printed(context: &FrameContext<'_>, frame: &mut CpuFrame, width_px: f64, ink: Vec3) {
+    let (Some(fins), Some(bounds)) = (&context.plan.printed_fins, context.scene.model.bounds()) else { return };
+    let view = context.camera.fin_view(context.size_px, width_px, bounds);
+    // Clip space is 2 w wide and high, and its y points up.
+    let moved = DVec2::new(-2.0, 2.0) * context.shift_px / context.size_px;
+    let mut triangles = fin_printed_triangles(fins, &view);
+    for corner in triangles.iter_mut().flatten() {
+        *corner += DVec4::new(moved.x, moved.y, 0.0, 0.0) * corner.w;
+    }
+    let CpuFrame { width, height, color, depth } = frame;
+    let at = |x: u32, y: u32| y as usize * *width as usize + x as usize;
+    let ink = ink.as_dvec3().extend(1.0);
+    rasterise(&triangles, [*width, *height], |x, y| depth[at(x, y)], |x, y| color[at(x, y)] = ink);
+}

@@ -82,6 +82,36 @@ impl GpuContext {
     }
 }
 
+impl GpuContext {
+    /// Waits for a buffer with `MAP_READ` and all that was submitted before, and returns its bytes.
+    pub(super) fn map(&self, buffer: &wgpu::Buffer) -> Result<Vec<u8>, GpuError> {
+        let (sender, receiver) = std::sync::mpsc::channel();
+        buffer.map_async(wgpu::MapMode::Read, .., move |result| {
+            // The receiver is gone only if waiting failed, and then that is the error.
+            let _ = sender.send(result);
+        });
+        self.wait()?;
+        let device_error = |fault: String| GpuError::Device { fault };
+        receiver.recv().map_err(|e| device_error(e.to_string()))?.map_err(|e| device_error(e.to_string()))?;
+        let mapped = buffer.get_mapped_range(..).map_err(|e| device_error(e.to_string()))?;
+        Ok(mapped.to_vec())
+    }
+
+    /// The bytes of a buffer with `COPY_SRC`.
+    pub(super) fn read_buffer(&self, buffer: &wgpu::Buffer) -> Result<Vec<u8>, GpuError> {
+        let copy = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("copy"),
+            size: buffer.size(),
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        encoder.copy_buffer_to_buffer(buffer, 0, &copy, 0, buffer.size());
+        self.queue.submit([encoder.finish()]);
+        self.map(&copy)
+    }
+}
+
 fn describe(info: &wgpu::AdapterInfo) -> String {
     format!("{} ({:?}, {})", info.name, info.backend, info.driver_info)
 }

@@ -31,6 +31,8 @@ pub struct GpuScene {
     pub(super) materials: Vec<wgpu::BindGroup>,
     /// Edges, where lines are found on the device.
     pub(super) edges: Option<npr_outline::line_pass::EdgesOnDevice>,
+    /// Fins for all edges, where the printed form is drawn.
+    pub(super) fins: Option<npr_outline::fin_pass::FinsOnDevice>,
 }
 
 /// Whether a material's colour differs from pixel to pixel, or its alpha decides.
@@ -72,7 +74,7 @@ impl GpuScene {
             Some(buffer("faces", bytemuck::cast_slice(&indices), wgpu::BufferUsages::INDEX)?)
         };
         let materials = materials(context, pass, scene, plan);
-        Ok(Self { vertices, lookups, indices, batches, blended_faces, materials, edges: None })
+        Ok(Self { vertices, lookups, indices, batches, blended_faces, materials, edges: None, fins: None })
     }
 }
 

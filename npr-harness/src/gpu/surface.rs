@@ -16,7 +16,9 @@ use wgpu::util::DeviceExt;
 #[repr(C)]
 pub(super) struct SurfaceUniform {
     pub(super) clip_from_world: [[f32; 4]; 4],
-    pub(super) eye: [f32; 4],
+    pub(super) to_eye: [f32; 4],
+    pub(super) to_eye_dx: [f32; 4],
+    pub(super) to_eye_dy: [f32; 4],
     pub(super) to_light: [f32; 4],
 }
 
@@ -310,4 +312,41 @@ fn uniform_buffer(device: &wgpu::Device, contents: &[u8]) -> wgpu::Buffer {
         contents,
         usage: wgpu::BufferUsages::UNIFORM,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use naga::TypeInner;
+    use std::mem::offset_of;
+
+    #[test]
+    fn the_uniforms_lie_as_the_shader_has_them() {
+        let module = naga::front::wgsl::parse_str(&wgsl()).expect("the shader parses");
+        let layout = |name: &str| {
+            let (_, ty) = module.types.iter().find(|(_, t)| t.name.as_deref() == Some(name)).expect("it is there");
+            let TypeInner::Struct { members, span } = &ty.inner else { panic!("{name} is no struct") };
+            let members: Vec<_> =
+                members.iter().map(|m| (m.name.clone().expect("a name"), m.offset as usize)).collect();
+            (members, *span as usize)
+        };
+        let ours = |members: &[(&str, usize)], size: usize| {
+            (members.iter().map(|&(name, at)| (name.to_owned(), at)).collect::<Vec<_>>(), size)
+        };
+        let view = [
+            ("clip_from_world", offset_of!(SurfaceUniform, clip_from_world)),
+            ("to_eye", offset_of!(SurfaceUniform, to_eye)),
+            ("to_eye_dx", offset_of!(SurfaceUniform, to_eye_dx)),
+            ("to_eye_dy", offset_of!(SurfaceUniform, to_eye_dy)),
+            ("to_light", offset_of!(SurfaceUniform, to_light)),
+        ];
+        assert_eq!(layout("SurfaceView"), ours(&view, size_of::<SurfaceUniform>()));
+        let material = [
+            ("base_color", offset_of!(MaterialUniform, base_color)),
+            ("texture_size", offset_of!(MaterialUniform, texture_size)),
+            ("last_level", offset_of!(MaterialUniform, last_level)),
+            ("cutoff", offset_of!(MaterialUniform, cutoff)),
+        ];
+        assert_eq!(layout("SurfaceMaterial"), ours(&material, size_of::<MaterialUniform>()));
+    }
 }

@@ -2,8 +2,11 @@
 
 struct SurfaceView {
     clip_from_world: mat4x4<f32>,
-    // A point with w = 1, or the direction to the viewer with w = 0.
-    eye: vec4<f32>,
+    // xyz: from what the picture's corner shows towards the eye, and how that changes along x and y, per px. Of any
+    // length.
+    to_eye: vec4<f32>,
+    to_eye_dx: vec4<f32>,
+    to_eye_dy: vec4<f32>,
     // xyz: unit vector to the light; w: what Lambert leaves where no light falls.
     to_light: vec4<f32>,
 }
@@ -26,19 +29,17 @@ struct SurfaceMaterial {
 struct Surface {
     @builtin(position) position: vec4<f32>,
     @location(0) normal: vec3<f32>,
-    @location(1) to_eye: vec3<f32>,
 }
 
 struct TexturedSurface {
     @builtin(position) position: vec4<f32>,
     @location(0) normal: vec3<f32>,
-    @location(1) to_eye: vec3<f32>,
-    @location(2) uv: vec2<f32>,
-    @location(3) color: vec4<f32>,
+    @location(1) uv: vec2<f32>,
+    @location(2) color: vec4<f32>,
 }
 
-fn to_eye(position: vec3<f32>) -> vec3<f32> {
-    return view.eye.xyz - position * view.eye.w;
+fn to_eye(position_px: vec2<f32>) -> vec3<f32> {
+    return view.to_eye.xyz + view.to_eye_dx.xyz * position_px.x + view.to_eye_dy.xyz * position_px.y;
 }
 
 @vertex
@@ -48,7 +49,7 @@ fn vs_depth(@location(0) position: vec3<f32>) -> @builtin(position) vec4<f32> {
 
 @vertex
 fn vs_plain(@location(0) position: vec3<f32>, @location(1) normal: vec3<f32>) -> Surface {
-    return Surface(view.clip_from_world * vec4<f32>(position, 1.0), normal, to_eye(position));
+    return Surface(view.clip_from_world * vec4<f32>(position, 1.0), normal);
 }
 
 @vertex
@@ -56,7 +57,7 @@ fn vs_textured(
     @location(0) position: vec3<f32>, @location(1) normal: vec3<f32>, @location(2) uv: vec2<f32>,
     @location(3) color: vec4<f32>,
 ) -> TexturedSurface {
-    return TexturedSurface(view.clip_from_world * vec4<f32>(position, 1.0), normal, to_eye(position), uv, color);
+    return TexturedSurface(view.clip_from_world * vec4<f32>(position, 1.0), normal, uv, color);
 }
 
 fn encode_srgb(linear: vec3<f32>) -> vec3<f32> {
@@ -75,17 +76,19 @@ fn base_color(uv: vec2<f32>, color: vec4<f32>) -> vec4<f32> {
 
 fn lambert(base: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
     let ambient = view.to_light.w;
-    return base * (ambient + (1.0 - ambient) * max(toon_n_dot_l(normal, view.to_light.xyz), 0.0));
+    return base * (ambient + (1.0 - ambient) * max(dot(toon_unit(normal), view.to_light.xyz), 0.0));
 }
 
 // In uniform control flow.
 fn banded(base: vec3<f32>, normal: vec3<f32>, eye: vec3<f32>) -> vec3<f32> {
-    let n_dot_l = toon_n_dot_l(normal, view.to_light.xyz);
+    let n = toon_unit(normal);
+    let n_dot_l = dot(n, view.to_light.xyz);
     let nl_width = toon_pixel_width(n_dot_l);
     if toon.highlight_strength == 0.0 {
         return toon_shade(toon, base, n_dot_l, nl_width, -2.0, 0.0);
     }
-    let n_dot_h = toon_n_dot_h(normal, view.to_light.xyz, eye);
+    let e = toon_unit(eye);
+    let n_dot_h = toon_n_dot_h_of(n_dot_l, dot(n, e), dot(view.to_light.xyz, e));
     return toon_shade(toon, base, n_dot_l, nl_width, n_dot_h, toon_pixel_width(n_dot_h));
 }
 
@@ -100,7 +103,7 @@ fn fs_lambert(in: Surface, @builtin(front_facing) front: bool) -> @location(0) v
 
 @fragment
 fn fs_toon(in: Surface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
-    return vec4<f32>(banded(material.base_color.rgb, facing(in.normal, front), in.to_eye), material.base_color.a);
+    return vec4<f32>(banded(material.base_color.rgb, facing(in.normal, front), to_eye(in.position.xy)), material.base_color.a);
 }
 
 @fragment
@@ -115,7 +118,7 @@ fn fs_lambert_textured(in: TexturedSurface, @builtin(front_facing) front: bool) 
 @fragment
 fn fs_toon_textured(in: TexturedSurface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
     let base = base_color(in.uv, in.color);
-    let shaded = banded(encode_srgb(base.rgb), facing(in.normal, front), in.to_eye);
+    let shaded = banded(encode_srgb(base.rgb), facing(in.normal, front), to_eye(in.position.xy));
     if base.a < material.cutoff {
         discard;
     }

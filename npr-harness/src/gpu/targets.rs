@@ -2,7 +2,8 @@
 
 use super::{GpuContext, GpuError};
 use crate::compare::Image;
-use npr_outline::line_pass::{COVERAGE_FORMAT, STENCIL_FORMAT};
+use npr_outline::line_pass::WINNER_FORMAT;
+use std::cell::Cell;
 
 /// Display-referred values, so no encoding on store.
 pub(super) const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
@@ -18,8 +19,12 @@ pub struct Targets {
     color: wgpu::Texture,
     pub(super) color_view: wgpu::TextureView,
     pub(super) depth_view: wgpu::TextureView,
-    pub(super) coverage_view: wgpu::TextureView,
-    pub(super) stencil_view: wgpu::TextureView,
+    /// The picture with lines on it.
+    inked: wgpu::Texture,
+    pub(super) inked_view: wgpu::TextureView,
+    pub(super) winner_view: wgpu::TextureView,
+    /// Which of the two the last frame ended in.
+    is_inked: Cell<bool>,
 }
 
 impl Targets {
@@ -42,16 +47,31 @@ impl Targets {
         };
         let view = |texture: &wgpu::Texture| texture.create_view(&Default::default());
         let read = wgpu::TextureUsages::TEXTURE_BINDING;
-        let color = texture("colour", COLOR_FORMAT, wgpu::TextureUsages::COPY_SRC);
+        let color = texture("colour", COLOR_FORMAT, read | wgpu::TextureUsages::COPY_SRC);
+        let copied = wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::COPY_DST;
+        let inked = texture("colour and lines", COLOR_FORMAT, copied);
         Ok(Self {
             width,
             height,
             color_view: view(&color),
             color,
             depth_view: view(&texture("depth", DEPTH_FORMAT, read)),
-            coverage_view: view(&texture("line coverage", COVERAGE_FORMAT, read)),
-            stencil_view: view(&texture("ink stencil", STENCIL_FORMAT, wgpu::TextureUsages::empty())),
+            inked_view: view(&inked),
+            inked,
+            winner_view: view(&texture("greatest coverage", WINNER_FORMAT, wgpu::TextureUsages::empty())),
+            is_inked: Cell::new(false),
         })
+    }
+
+    /// Says that the frame ends in the painted picture.
+    pub(super) fn begin(&self) {
+        self.is_inked.set(false);
+    }
+
+    /// Copies the painted picture to where lines are drawn on it, and says that the frame ends there.
+    pub(super) fn begin_ink(&self, encoder: &mut wgpu::CommandEncoder) {
+        encoder.copy_texture_to_texture(self.color.as_image_copy(), self.inked.as_image_copy(), self.color.size());
+        self.is_inked.set(true);
     }
 
     pub(super) fn read(&self, context: &GpuContext) -> Result<Image, GpuError> {
@@ -65,7 +85,7 @@ impl Targets {
         });
         let mut encoder = context.device.create_command_encoder(&Default::default());
         encoder.copy_texture_to_buffer(
-            self.color.as_image_copy(),
+            if self.is_inked.get() { &self.inked } else { &self.color }.as_image_copy(),
             wgpu::TexelCopyBufferInfo {
                 buffer: &buffer,
                 layout: wgpu::TexelCopyBufferLayout {
@@ -77,15 +97,7 @@ impl Targets {
             wgpu::Extent3d { width: self.width, height: self.height, depth_or_array_layers: 1 },
         );
         context.queue.submit([encoder.finish()]);
-        let (sender, receiver) = std::sync::mpsc::channel();
-        buffer.map_async(wgpu::MapMode::Read, .., move |result| {
-            // The receiver is gone only if waiting failed, and then that is the error.
-            let _ = sender.send(result);
-        });
-        context.wait()?;
-        let device_error = |fault: String| GpuError::Device { fault };
-        receiver.recv().map_err(|e| device_error(e.to_string()))?.map_err(|e| device_error(e.to_string()))?;
-        let mapped = buffer.get_mapped_range(..).map_err(|e| device_error(e.to_string()))?;
+        let mapped = context.map(&buffer)?;
         let mut rgba8 = Vec::with_capacity(row as usize * self.height as usize);
         for padded in mapped.chunks(padded_row as usize) {
             rgba8.extend_from_slice(&padded[..row as usize]);

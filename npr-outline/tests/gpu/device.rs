@@ -1,6 +1,6 @@
 //! A device, pictures on it, and reading them back.
 
-use npr_outline::line_pass::{COVERAGE_FORMAT, LineTargets, STENCIL_FORMAT};
+use npr_outline::line_pass::{LineTargets, WINNER_FORMAT};
 use std::sync::OnceLock;
 
 /// Of the colour target.
@@ -40,9 +40,11 @@ fn open(required: bool) -> Option<Gpu> {
 
 /// The targets of one picture.
 pub struct Picture {
+    /// White, with nothing on it.
     pub color: wgpu::Texture,
     pub depth: wgpu::Texture,
-    pub coverage: wgpu::Texture,
+    /// Where lines are drawn; starts white.
+    pub inked: wgpu::Texture,
     views: [wgpu::TextureView; 4],
 }
 
@@ -59,23 +61,24 @@ impl Gpu {
                 format,
                 usage: wgpu::TextureUsages::RENDER_ATTACHMENT
                     | wgpu::TextureUsages::TEXTURE_BINDING
-                    | wgpu::TextureUsages::COPY_SRC,
+                    | wgpu::TextureUsages::COPY_SRC
+                    | wgpu::TextureUsages::COPY_DST,
                 view_formats: &[],
             })
         };
-        let [color, depth, coverage] = [COLOR_FORMAT, wgpu::TextureFormat::Depth32Float, COVERAGE_FORMAT].map(texture);
-        let stencil = self.device.create_texture(&wgpu::TextureDescriptor {
+        let [color, depth, inked] = [COLOR_FORMAT, wgpu::TextureFormat::Depth32Float, COLOR_FORMAT].map(texture);
+        let winner = self.device.create_texture(&wgpu::TextureDescriptor {
             label: None,
             size: color.size(),
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
-            format: STENCIL_FORMAT,
+            format: WINNER_FORMAT,
             usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
             view_formats: &[],
         });
-        let views = [&color, &depth, &coverage, &stencil].map(|t| t.create_view(&Default::default()));
-        let picture = Picture { color, depth, coverage, views };
+        let views = [&color, &depth, &inked, &winner].map(|t| t.create_view(&Default::default()));
+        let picture = Picture { color, depth, inked, views };
         self.clear(&picture);
         picture
     }
@@ -211,7 +214,7 @@ fn clearing<'a>(encoder: &'a mut wgpu::CommandEncoder, picture: &Picture) -> wgp
 impl Picture {
     /// As the line pass takes them.
     pub fn targets(&self) -> LineTargets<'_> {
-        let [color, depth, coverage, stencil] = &self.views;
-        LineTargets { color, depth, coverage, stencil }
+        let [painted, depth, inked, winner] = &self.views;
+        LineTargets { painted, depth, inked, winner }
     }
 }

@@ -1,0 +1,171 @@
+//! Which edges are lines, and how wide lines are.
+
+use super::{
+    Checker, FORMAT_VIEWS, LARGEST_FORMAT_EDGES, Limit, PLANES_MISCLASSIFIED, SIZE, WIDTH_ERROR, one_px_style,
+};
+use crate::camera::{Camera, Projection};
+use crate::cpu::{self, CpuOptions};
+use crate::error::HarnessError;
+use crate::executor::Executor;
+use crate::plan::Plan;
+use crate::scene::Scene;
+use crate::style::Lines;
+use glam::{DVec2, DVec3, Vec3};
+use npr_mesh::Model;
+use npr_outline::line_look::LineLook;
+use npr_outline::normal_format::{NormalFormat, misclassified_share, misclassified_share_of_planes};
+
+/// Units: how far away the segments lie whose width is measured.
+pub const WIDTH_DISTANCES: [f64; 7] = [0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0];
+/// Px: the widths that are asked for.
+pub const WIDTHS_PX: [f32; 4] = [1.0, 2.0, 4.0, 8.0];
+/// How much the segments rise over half of their length, in half lengths: level, nearly level, and steep.
+const RISES: [f64; 3] = [0.0, 0.07, 0.6];
+
+impl Checker<'_> {
+    /// How often silhouettes are told wrongly, by the format of the face normals, and by the plane records.
+    pub(super) fn formats(&mut self, model: &str, scene: &Scene) -> Result<(), HarnessError> {
+        let edges = scene.edges.edges.len();
+        if edges > LARGEST_FORMAT_EDGES {
+            self.skipped.push(format!("formats of {model}: {edges} edges are more than {LARGEST_FORMAT_EDGES}"));
+            return Ok(());
+        }
+        let view = format!("{FORMAT_VIEWS} around");
+        for format in NormalFormat::ALL {
+            let share = misclassified_share(&scene.model, &scene.edges, format, FORMAT_VIEWS);
+            let metric = match format {
+                NormalFormat::F32 => "misclassified share, f32",
+                NormalFormat::Snorm16 => "misclassified share, snorm16",
+                NormalFormat::Snorm8 => "misclassified share, snorm8",
+                NormalFormat::Oct16 => "misclassified share, oct16",
+                NormalFormat::Oct8 => "misclassified share, oct8",
+            };
+            self.add(model, &view, "formats", metric, share, None);
+        }
+        let share = misclassified_share_of_planes(&scene.model, &scene.edges, FORMAT_VIEWS)?;
+        let limit = Some(Limit::AtMost(PLANES_MISCLASSIFIED));
+        self.add(model, &view, "formats", "misclassified share, planes", share, limit);
+        Ok(())
+    }
+
+    /// The lines that the compute pass finds against those of the scan.
+    #[cfg(feature = "gpu")]
+    pub(super) fn line_finder(
+        &mut self,
+        model: &str,
+        view: &str,
+        scene: &Scene,
+        camera: &Camera,
+    ) -> Result<(), HarnessError> {
+        use crate::gpu::GpuRenderer;
+        use crate::plan::LineFinder;
+        use std::collections::BTreeSet;
+        let Executor::Gpu(context) = self.executor else { return Ok(()) };
+        if !context.can_find_lines {
+            self.skipped.push(format!("line finder of {model}, {view}: {} cannot run it", context.describe()));
+            return Ok(());
+        }
+        let style = one_px_style(Lines::Fins(black(1.0)));
+        let plan = Plan::new(scene, &style, camera)?;
+        let renderer = GpuRenderer::new(context);
+        let targets = renderer.targets(SIZE.0, SIZE.1)?;
+        let uploaded = renderer.upload(scene, &plan, LineFinder::Device)?;
+        renderer.draw(scene, &uploaded, &style, &plan, camera, &targets)?;
+        let found = renderer.found_lines(&uploaded)?.unwrap_or_default();
+        let on_device: BTreeSet<u32> = found.iter().copied().collect();
+        let scanned: BTreeSet<u32> = plan.lines(camera.homogeneous_eye()).0.into_iter().collect();
+        // A line found twice is as wrong as one found wrongly.
+        let wrong = on_device.symmetric_difference(&scanned).count() + (found.len() - on_device.len());
+        self.add(model, view, "line finder", "edges in one set only", wrong as f64, Some(Limit::AtMost(0.0)));
+        Ok(())
+    }
+
+    /// The width of isolated segments, measured from the picture, against the width asked for.
+    pub(super) fn widths(&mut self) -> Result<(), HarnessError> {
+        let limit = Some(Limit::AtMost(WIDTH_ERROR));
+        let metric = "largest relative error";
+        let size = DVec2::new(f64::from(SIZE.0), f64::from(SIZE.1));
+        let on_cpu = largest_width_error(size, |scene, width_px, camera| {
+            let style = one_px_style(Lines::Fins(black(width_px)));
+            let plan = Plan::new(scene, &style, camera)?;
+            Ok(cpu::render(scene, &style, &plan, camera, SIZE, &CpuOptions::default(), &|_| {}).image())
+        })?;
+        self.add("segments", "on the CPU", "width", metric, on_cpu, limit);
+        #[cfg(feature = "gpu")]
+        if let Executor::Gpu(context) = self.executor {
+            let renderer = crate::gpu::GpuRenderer::new(context);
+            let targets = renderer.targets(SIZE.0, SIZE.1)?;
+            let on_gpu = largest_width_error(size, |scene, width_px, camera| {
+                let style = one_px_style(Lines::Fins(black(width_px)));
+                let plan = Plan::new(scene, &style, camera)?;
+                let uploaded = renderer.upload(scene, &plan, crate::plan::LineFinder::Auto)?;
+                renderer.draw(scene, &uploaded, &style, &plan, camera, &targets)?;
+                Ok(renderer.read(&targets)?)
+            })?;
+            self.add("segments", "on the GPU", "width", metric, on_gpu, limit);
+        }
+        Ok(())
+    }
+}
+
+fn black(width_px: f32) -> LineLook {
+    LineLook { width_px: [width_px; 4], ink: [0.0, 0.0, 0.0, 1.0] }
+}
+
+/// Over all distances, widths and rises, how far the width is off, in widths.
+fn largest_width_error(
+    size_px: DVec2,
+    render: impl Fn(&Scene, f32, &Camera) -> Result<crate::compare::Image, HarnessError>,
+) -> Result<f64, HarnessError> {
+    let camera = Camera {
+        eye: DVec3::ZERO,
+        target: DVec3::NEG_Z,
+        up: DVec3::Y,
+        projection: Projection::Perspective { fov_y_rad: 1.0 },
+        near: 0.1,
+    };
+    let mut worst = 0.0f64;
+    for distance in WIDTH_DISTANCES {
+        for rise in RISES {
+            // The sides that meet the base's ends leave it at so large an angle that they are far away in its middle.
+            let corners = [[-0.3, -0.3 * rise - 0.11], [0.3, 0.3 * rise - 0.11], [0.0, 0.4]];
+            let corners = corners.map(|[x, y]| DVec3::new(x, y, -1.0) * distance);
+            let scene = Scene::new(triangle(corners.map(|corner| corner.as_vec3())));
+            let clip_from_world = camera.clip_from_world(size_px.x / size_px.y);
+            let ends = [corners[0], corners[1]]
+                .map(|end| npr_outline::segment::outline_screen(clip_from_world * end.extend(1.0), size_px).0);
+            for width_px in WIDTHS_PX {
+                let image = render(&scene, width_px, &camera)?;
+                let width = width_in_the_middle(&super::darkness(&image), image.width, ends, f64::from(width_px));
+                worst = worst.max((width / f64::from(width_px) - 1.0).abs());
+            }
+        }
+    }
+    Ok(worst)
+}
+
+fn triangle(corners: [Vec3; 3]) -> Model {
+    Model {
+        positions: corners.to_vec(),
+        normals: vec![Vec3::Z; 3],
+        faces: vec![[0, 1, 2]],
+        face_material: vec![0],
+        materials: vec![Default::default()],
+        ..Default::default()
+    }
+}
+
+/// The mean over the middle third's columns of the darkness across a line from end to end, perpendicular to it.
+fn width_in_the_middle(darkness: &[f64], width: u32, [from, to]: [DVec2; 2], asked_px: f64) -> f64 {
+    let along = to - from;
+    let (first, end) = ((from.x + along.x / 3.0) as u32, (to.x - along.x / 3.0) as u32);
+    let reach = 2.0 * asked_px + 4.0;
+    let mut sum = 0.0;
+    for x in first..end {
+        let middle = from.y + along.y * (f64::from(x) + 0.5 - from.x) / along.x;
+        for y in (middle - reach) as u32..=(middle + reach) as u32 {
+            sum += darkness[(y * width + x) as usize];
+        }
+    }
+    sum / f64::from(end - first) * along.x / along.length()
+}

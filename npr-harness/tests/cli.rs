@@ -1,0 +1,148 @@
+//! The `npr` command, as it is run.
+
+mod common;
+
+use common::Folder;
+use npr_harness::compare::Image;
+use npr_harness::style::styles;
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// A cube's corner: three quadrilaterals.
+const OBJ: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\n\
+                   f 1 4 3 2\nf 1 2 6 5\nf 1 5 7 4\n";
+
+fn npr(arguments: &[&str], environment: &[(&str, &str)], folder: &Path) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_npr"))
+        .args(arguments)
+        .env_remove("NPR_GPU")
+        .envs(environment.iter().copied())
+        .current_dir(folder)
+        .output()
+        .expect("the command can be run")
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+/// Where no driver can be found.
+const NO_ADAPTER: [(&str, &str); 3] = [
+    ("VK_ICD_FILENAMES", "/there/is/no/such/driver.json"),
+    ("VK_DRIVER_FILES", "/there/is/no/such/driver.json"),
+    ("WGPU_BACKEND", "vulkan"),
+];
+
+fn with_model() -> Folder {
+    let folder = Folder::new();
+    std::fs::write(folder.join("corner.obj"), OBJ).expect("written");
+    folder
+}
+
+#[test]
+fn inspect_counts_a_model() {
+    let folder = with_model();
+    let output = npr(&["inspect", "corner.obj", "--json"], &[], &folder.0);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON on stdout");
+    for (key, value) in [
+        ("faces", 6),
+        ("zero_area_faces", 0),
+        ("duplicate_faces", 0),
+        ("edges", 9),
+        ("boundary_edges", 6),
+        ("two_face_edges", 3),
+        ("nonmanifold_edges", 0),
+        ("creases_over_30_deg", 3),
+        ("within_0.01_deg_of_30", 0),
+        ("polygons", 3),
+        ("positions", 7),
+        ("wound_oppositely", 0),
+    ] {
+        assert_eq!(json[key], value, "{key}");
+    }
+    assert_eq!(json["closed"], false);
+    assert_eq!(json["model"], "corner");
+}
+
+#[test]
+fn render_writes_a_picture_of_the_size_asked_for() {
+    let folder = with_model();
+    let arguments = ["render", "corner.obj", "-o", "a.png", "--size", "123x45", "--backend", "cpu", "--json"];
+    let output = npr(&arguments, &[], &folder.0);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let image = Image::load_png(&folder.join("a.png")).expect("a PNG");
+    assert_eq!((image.width, image.height), (123, 45));
+    assert!(image.rgba8.chunks(4).any(|p| p[1] < 60) && image.rgba8.chunks(4).any(|p| p[1] > 230), "ink and paper");
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON on stdout");
+    assert_eq!((json["width"].as_u64(), json["faces"].as_u64()), (Some(123), Some(6)));
+    assert_eq!(json["executor"], "CPU, ray casting");
+    assert_eq!(json["lines"]["boundary"], 6);
+}
+
+#[test]
+fn what_is_wrong_is_said_in_one_line() {
+    let folder = with_model();
+    std::fs::write(folder.join("empty.obj"), "").expect("written");
+    std::fs::write(folder.join("torn.glb"), b"glTF\x02\0\0\0\xff\xff\0\0").expect("written");
+    std::fs::write(folder.join("model.txt"), OBJ).expect("written");
+    std::fs::create_dir(folder.join("folder.obj")).expect("made");
+    let model = "corner.obj";
+    let cases: [(&str, &str, &[&str], &str); 11] = [
+        (model, "a.png", &["--style", "watercolour"], "watercolour"),
+        ("missing.obj", "a.png", &[], "missing.obj"),
+        ("empty.obj", "a.png", &[], "empty.obj"),
+        ("torn.glb", "a.png", &[], "torn.glb"),
+        ("model.txt", "a.png", &[], "model.txt"),
+        ("folder.obj", "a.png", &[], "folder.obj"),
+        (model, "a.png", &["--size", "0x0"], "0 × 0"),
+        (model, "a.png", &["--size", "100000x100000"], "100000 × 100000"),
+        (model, "no/such/folder/a.png", &["--size", "8x8"], "a.png"),
+        (model, "folder.obj", &["--size", "8x8"], "folder.obj"),
+        (model, "a.png", &["--fov", "180"], "180"),
+    ];
+    for (input, output, more, named) in cases {
+        let arguments = [&["render", input, "-o", output, "--backend", "cpu"], more].concat();
+        let done = npr(&arguments, &[], &folder.0);
+        let said = text(&done.stderr);
+        assert_eq!(done.status.code(), Some(1), "{arguments:?}: {said}");
+        assert!(said.starts_with("npr: ") && said.trim_end().lines().count() == 1, "{arguments:?}: {said}");
+        assert!(said.contains(named) && !said.contains("panicked"), "{arguments:?}: {said}");
+        assert!(done.stdout.is_empty(), "{arguments:?}: {}", text(&done.stdout));
+        assert!(!folder.join("a.png").exists(), "{arguments:?} wrote a picture");
+    }
+}
+
+#[test]
+fn without_an_adapter_required_fails_and_auto_says_so() {
+    let folder = with_model();
+    let arguments = ["render", "corner.obj", "-o", "a.png", "--size", "32x32"];
+    let required = [&NO_ADAPTER[..], &[("NPR_GPU", "required")]].concat();
+    let done = npr(&arguments, &required, &folder.0);
+    let said = text(&done.stderr);
+    assert_eq!(done.status.code(), Some(1), "{said}");
+    assert!(said.contains("npr: NPR_GPU=required, but no usable graphics adapter"), "{said}");
+    assert!(!folder.join("a.png").exists());
+    let auto = [&NO_ADAPTER[..], &[("NPR_GPU", "auto")]].concat();
+    let done = npr(&arguments, &auto, &folder.0);
+    let said = text(&done.stderr);
+    assert!(done.status.success(), "{said}");
+    assert!(said.contains("npr: rendering on the CPU: no usable graphics adapter"), "{said}");
+    assert!(folder.join("a.png").exists());
+    let done = npr(&arguments, &[("NPR_GPU", "perhaps")], &folder.0);
+    assert_eq!(done.status.code(), Some(1));
+    assert!(text(&done.stderr).starts_with("npr: NPR_GPU=\"perhaps\""), "{}", text(&done.stderr));
+}
+
+#[test]
+fn without_a_command_every_style_is_drawn() {
+    let folder = Folder::new();
+    let done = npr(&[], &[("NPR_GPU", "off")], &folder.0);
+    assert!(done.status.success(), "{}", text(&done.stderr));
+    let listed = text(&npr(&["styles"], &[], &folder.0).stdout);
+    for style in styles() {
+        let image = Image::load_png(&folder.join("npr-out").join(format!("{}.png", style.name))).expect("a PNG");
+        assert_eq!((image.width, image.height), npr_harness::gallery::SIZE);
+        assert!(listed.lines().any(|line| line.starts_with(style.name)), "{}", style.name);
+    }
+}

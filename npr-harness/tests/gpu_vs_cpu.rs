@@ -1,0 +1,227 @@
+//! The device against the reference, on models made to be awkward; and comparisons that must fail.
+#![cfg(feature = "gpu")]
+#![allow(clippy::print_stdout)]
+
+mod common;
+
+use common::{Folder, device, shared_models};
+use glam::{DVec2, Mat4, Vec2, Vec3, Vec4};
+use npr_harness::camera::{Camera, Framing};
+use npr_harness::check::{self, SIZE, agrees, magnitude, reference};
+use npr_harness::compare::{Image, compare};
+use npr_harness::executor::Executor;
+use npr_harness::gallery::still_life_camera;
+use npr_harness::plan::Plan;
+use npr_harness::scene::Scene;
+use npr_harness::style::{Lines, Shade, Style, style};
+use npr_mesh::{AlphaMode, Material, Model, Texture, Wrap, embedded};
+use npr_outline::line_look::LineLook;
+
+fn framed(scene: &Scene, yaw_deg: f64, pitch_deg: f64, fov_y_rad: Option<f64>) -> Camera {
+    let framing =
+        Framing { yaw_rad: yaw_deg.to_radians(), pitch_rad: pitch_deg.to_radians(), fov_y_rad, distance: 1.0 };
+    Camera::framed(scene.corners(), f64::from(SIZE.0) / f64::from(SIZE.1), &framing)
+}
+
+/// Checks a scene from two perspective views and a parallel one, and prints what does not pass.
+fn check_model(name: &str, model: Model) {
+    let Some(executor) = device() else { return };
+    let scene = Scene::new(model);
+    let views =
+        [("20 15", framed(&scene, 20.0, 15.0, Some(0.6))), ("-70 -35", framed(&scene, -70.0, -35.0, Some(1.2)))];
+    let parallel = ("parallel 35 30", framed(&scene, 35.0, 30.0, None));
+    let views = [views[0].clone(), views[1].clone(), parallel].map(|(name, camera)| (name.to_owned(), camera));
+    let folder = Folder::new();
+    let report = check::scene(&executor, name, &scene, &views, &folder.0).expect("pictures");
+    let failed: Vec<_> = report.metrics.iter().filter(|metric| !metric.pass).collect();
+    assert!(failed.is_empty(), "{report}");
+    println!("{name}: {} metrics pass on {}", report.metrics.len(), report.executor);
+}
+
+/// Squares facing +Z, a row of them; `material` says what the number-th is made of.
+fn cards(count: u32, uv_scale: f32, material: impl Fn(u32) -> Material) -> Model {
+    let mut model = Model::default();
+    for number in 0..count {
+        // Each a little behind the one before and turned, so that they overlap.
+        let place = Mat4::from_translation(Vec3::new(number as f32 * 1.3, 0.0, number as f32 * -0.4))
+            * Mat4::from_rotation_y(0.3 + number as f32 * 0.7);
+        let corners = [Vec2::new(-1.0, -1.0), Vec2::new(1.0, -1.0), Vec2::ONE, Vec2::new(-1.0, 1.0)];
+        let mut card = Model {
+            positions: corners.map(|c| place.transform_point3(c.extend(0.0))).to_vec(),
+            normals: vec![place.transform_vector3(Vec3::Z); 4],
+            uvs: corners.map(|c| Vec2::new(c.x, -c.y) * uv_scale + 0.5).to_vec(),
+            faces: vec![[0, 1, 2], [0, 2, 3]],
+            face_material: vec![0; 2],
+            face_polygon: vec![0; 2],
+            materials: vec![material(number)],
+            ..Default::default()
+        };
+        card.materials[0].name = format!("card {number}");
+        model.append(&card);
+    }
+    model
+}
+
+/// Smooth waves in colour and alpha, without symmetry.
+fn waves(width: u32, height: u32, wrap: [Wrap; 2], smooth: bool) -> Texture {
+    let wave = |v: u32, n: u32, turns: f32, phase: f32| {
+        let at = (v as f32 + 0.5) / n as f32;
+        (127.5 + 120.0 * (std::f32::consts::TAU * (turns * at + phase)).sin()) as u8
+    };
+    let rgba8 = (0..height)
+        .flat_map(|y| {
+            (0..width).flat_map(move |x| {
+                [
+                    wave(x, width, 1.0, 0.1),
+                    wave(y, height, 2.0, 0.3),
+                    wave(x + y, width, 1.0, 0.6),
+                    wave(y, height, 1.0, 0.0),
+                ]
+            })
+        })
+        .collect();
+    Texture { name: "waves".into(), width, height, rgba8, wrap, smooth }
+}
+
+fn plain(base_color: Vec4, alpha_mode: AlphaMode, double_sided: bool) -> Material {
+    Material { base_color, alpha_mode, double_sided, ..Default::default() }
+}
+
+#[test]
+fn the_built_in_scene() {
+    let Some(executor) = device() else { return };
+    let folder = Folder::new();
+    let report = check::run(&executor, &[], &folder.0, &|_| {}).expect("pictures");
+    println!("{report}");
+    assert!(report.passed() && report.skipped.is_empty(), "{report}");
+    for technique in ["cartoon", "lines", "printed-fins", "formats", "line finder", "width"] {
+        assert!(report.metrics.iter().any(|metric| metric.technique == technique), "{technique} was not checked");
+    }
+}
+
+#[test]
+fn textures_with_mip_levels_and_all_wrap_modes() {
+    let wraps = [
+        [Wrap::Repeat, Wrap::Mirror],
+        [Wrap::Mirror, Wrap::Clamp],
+        [Wrap::Clamp, Wrap::Repeat],
+        [Wrap::Clamp, Wrap::Mirror],
+    ];
+    // 61 × 40 texels over a quarter of a card: several levels, sizes that do not halve evenly.
+    let mut model = cards(4, 1.7, |n| Material { texture: Some(0), ..plain(Vec4::ONE, AlphaMode::Opaque, n % 2 == 0) });
+    model.textures = wraps.map(|wrap| waves(61, 40, wrap, true)).to_vec();
+    for (number, material) in model.materials.iter_mut().enumerate() {
+        material.texture = Some(number as u32);
+        material.base_color = Vec4::new(0.9, 0.8, 1.0, 1.0);
+    }
+    check_model("wraps", model);
+}
+
+#[test]
+fn vertex_colours() {
+    let mut model = embedded::torus(1.0, 0.4, 48, 24);
+    model.colors = model.positions.iter().map(|p| (*p * 0.3 + 0.5).extend(1.0)).collect();
+    check_model("vertex colours", model);
+}
+
+#[test]
+fn masked_and_blended_cards() {
+    let modes = [
+        AlphaMode::Mask { cutoff: 0.5 },
+        AlphaMode::Blend,
+        AlphaMode::Opaque,
+        AlphaMode::Blend,
+        AlphaMode::Mask { cutoff: 0.2 },
+    ];
+    let mut model = cards(5, 0.6, |n| plain(Vec4::new(0.8, 0.4, 0.2, 0.7), modes[n as usize], true));
+    model.textures = vec![waves(64, 64, [Wrap::Repeat; 2], true)];
+    for number in [0, 1, 4] {
+        model.materials[number].texture = Some(0);
+        model.materials[number].base_color = Vec4::ONE;
+    }
+    check_model("cards", model);
+}
+
+#[test]
+fn single_sided_and_double_sided() {
+    check_model("sides", cards(6, 0.5, |n| plain(Vec4::new(0.3, 0.7, 0.4, 1.0), AlphaMode::Opaque, n % 2 == 0)));
+}
+
+#[test]
+fn shared_models_from_one_view() {
+    let (Some(executor), Some(folder)) = (device(), shared_models()) else { return };
+    for (file, yaw_deg, pitch_deg) in
+        [("suzanne.obj", 40.0, 15.0), ("Fox.glb", 75.0, 20.0), ("fandisk.obj", 200.0, 30.0)]
+    {
+        let path = folder.join(file);
+        let scene = Scene::new(npr_mesh::load(&path, &Default::default()).expect("a good file").model);
+        let views = [("one".to_owned(), framed(&scene, yaw_deg, pitch_deg, Some(0.6)))];
+        let out = Folder::new();
+        let report = check::scene(&executor, file, &scene, &views, &out.0).expect("pictures");
+        assert!(report.passed(), "{report}");
+    }
+}
+
+fn render(executor: &Executor, scene: &Scene, style: &Style, camera: &Camera) -> Image {
+    let plan = Plan::new(scene, style, camera).expect("a good style");
+    executor.render(scene, style, &plan, camera, SIZE, 1, &|_| {}).expect("a picture")
+}
+
+/// The picture with its content moved to the right.
+fn shifted(image: &Image) -> Image {
+    let mut moved = image.clone();
+    for y in 0..image.height {
+        for x in 1..image.width {
+            moved.set_pixel(x, y, image.pixel(x - 1, y));
+        }
+    }
+    moved
+}
+
+#[test]
+fn broken_pictures_do_not_pass() {
+    let Some(executor) = device() else { return };
+    let scene = Scene::new(embedded::scene());
+    let camera = still_life_camera();
+    for name in ["cartoon", "lines", "printed-fins"] {
+        let style = style(name).expect("a style of the crate");
+        let plan = Plan::new(&scene, &style, &camera).expect("a good style");
+        let magnitude = magnitude(&plan);
+        let (expected, exempt) = reference(&scene, &style, &plan, &camera, SIZE, magnitude).expect("pictures");
+        let is_fine = |actual: &Image| agrees(&compare(&expected, actual, &exempt).expect("one size"), magnitude);
+        let good = render(&executor, &scene, &style, &camera);
+        assert!(is_fine(&good), "{name}");
+        assert!(!is_fine(&shifted(&good)), "{name}: a picture moved by a pixel passes");
+        // Another camera, by a third of a pixel; and a model that is 1 % larger.
+        let mut aside = camera;
+        let px = camera.line_view(DVec2::new(640.0, 360.0)).depth_per_px.x * 13.0;
+        aside.eye += camera.axes()[0] * (px / 3.0);
+        aside.target += camera.axes()[0] * (px / 3.0);
+        assert!(!is_fine(&render(&executor, &scene, &style, &aside)), "{name}: another camera passes");
+        for broken in broken_styles(&style) {
+            assert!(!is_fine(&render(&executor, &scene, &broken, &camera)), "{name}: {broken:?} passes");
+        }
+    }
+}
+
+/// The style with another light, where it has one, and with other lines.
+fn broken_styles(style: &Style) -> Vec<Style> {
+    let mut broken = Vec::new();
+    if let Shade::Toon(bands) = &style.shade {
+        let mut other = bands.clone();
+        // As if the light came from about a degree beside.
+        other.thresholds.iter_mut().for_each(|threshold| *threshold += 0.02);
+        broken.push(Style { shade: Shade::Toon(other), ..style.clone() });
+        let mut other = bands.clone();
+        other.tones[0] *= 1.03;
+        broken.push(Style { shade: Shade::Toon(other), ..style.clone() });
+    }
+    let lines = match style.lines {
+        Some(Lines::Fins(look)) => Some(Lines::Fins(LineLook { width_px: look.width_px.map(|w| w + 0.05), ..look })),
+        Some(Lines::Printed { width_px, ink }) => Some(Lines::Printed { width_px: width_px + 0.25, ink }),
+        None => None,
+    };
+    broken.push(Style { lines, ..style.clone() });
+    broken.push(Style { lines: None, ..style.clone() });
+    broken
+}

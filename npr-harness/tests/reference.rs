@@ -1,0 +1,190 @@
+//! The CPU executor against what is known without it.
+#![allow(clippy::print_stdout)]
+
+use glam::{DVec2, DVec3, Vec3};
+use npr_harness::camera::{Camera, Projection};
+use npr_harness::color::{encode_srgb, to_byte};
+use npr_harness::cpu::{CpuFrame, CpuOptions, render};
+use npr_harness::gallery::still_life_camera;
+use npr_harness::plan::Plan;
+use npr_harness::scene::{Scene, key_light};
+use npr_harness::style::{Style, style};
+use npr_mesh::{Model, embedded};
+use npr_outline::segment::outline_screen;
+
+const PERSPECTIVE: Projection = Projection::Perspective { fov_y_rad: 0.6 };
+
+fn camera(eye: DVec3, projection: Projection) -> Camera {
+    Camera { eye, target: DVec3::ZERO, up: DVec3::Y, projection, near: 0.1 }
+}
+
+fn frame(scene: &Scene, style: &Style, camera: &Camera, size: (u32, u32), samples: u32) -> CpuFrame {
+    let plan = Plan::new(scene, style, camera).expect("a good style");
+    render(scene, style, &plan, camera, size, &CpuOptions { samples, ..Default::default() }, &|_| {})
+}
+
+fn named(name: &str) -> Style {
+    style(name).expect("a style of the crate")
+}
+
+/// Per pixel its centre, and the value there.
+fn centres<T: Copy>(values: &[T], width: u32) -> impl Iterator<Item = (DVec2, T)> + '_ {
+    (0u32..).zip(values).map(move |(i, &v)| (DVec2::new(f64::from(i % width), f64::from(i / width)) + 0.5, v))
+}
+
+#[test]
+fn a_sphere_is_a_circle() {
+    let segments = 256;
+    let scene = Scene::new(embedded::sphere(segments));
+    let size = (400, 400);
+    for (projection, radius) in [
+        // The tangent's angle at a distance of 5: sin = 1 / 5.
+        (PERSPECTIVE, 200.0 * (0.2f64.asin().tan()) / 0.3f64.tan()),
+        (Projection::Orthographic { height: 3.0, far: 20.0 }, 400.0 / 3.0),
+    ] {
+        let frame = frame(&scene, &named("lambert"), &camera(DVec3::Z * 5.0, projection), size, 1);
+        // Facets lie inside the sphere: at most half a step in each of two directions.
+        let step = std::f64::consts::PI / f64::from(segments);
+        let sag = radius * (1.0 - step.cos().powi(2));
+        let mut inside = 0;
+        for (centre, depth) in centres(&frame.depth, size.0) {
+            let distance = centre.distance(DVec2::splat(200.0));
+            if depth > 0.0 {
+                inside += 1;
+                assert!(distance <= radius + 0.05, "{centre} is {distance} px from the centre");
+            } else {
+                assert!(distance >= radius - sag - 0.05, "{centre} is {distance} px from the centre");
+            }
+        }
+        println!("radius {radius:.3} px, sag {sag:.4} px, {inside} px inside");
+        assert!((f64::from(inside) / (std::f64::consts::PI * radius * radius) - 1.0).abs() < 0.01);
+    }
+}
+
+#[test]
+fn a_planes_depth_is_linear_on_the_screen() {
+    // Corners that f32 holds exactly, so that all four lie in one plane.
+    let corners = [[-64.0, -6.0, 16.0], [64.0, -6.0, 16.0], [64.0, 14.0, -64.0], [-64.0, 14.0, -64.0]];
+    let scene = Scene::new(Model {
+        positions: corners.map(Vec3::from_array).to_vec(),
+        normals: vec![Vec3::new(0.0, 4.0, 1.0).normalize(); 4],
+        faces: vec![[0, 1, 2], [0, 2, 3]],
+        face_material: vec![0; 2],
+        materials: vec![Default::default()],
+        ..Default::default()
+    });
+    let size = (120, 80);
+    let eye = DVec3::new(1.3, 2.0, 9.0);
+    for projection in [PERSPECTIVE, Projection::Orthographic { height: 3.0, far: 100.0 }] {
+        let camera = camera(eye, projection);
+        let frame = frame(&scene, &named("lambert"), &camera, size, 1);
+        let at = |x: u32, y: u32| frame.depth[(y * size.0 + x) as usize];
+        let (along_x, along_y) = ((at(100, 20) - at(10, 20)) / 90.0, (at(10, 70) - at(10, 20)) / 50.0);
+        assert!(at(10, 20) > 0.0 && along_y.abs() > 1e-6);
+        let normal = DVec3::new(0.0, 4.0, 1.0);
+        for y in 0..size.1 {
+            for x in 0..size.0 {
+                let linear = at(10, 20) + along_x * (f64::from(x) - 10.0) + along_y * (f64::from(y) - 20.0);
+                assert!((at(x, y) - linear).abs() < 1e-9, "({x}, {y}): {} is not {linear}", at(x, y));
+                // And it is the right plane: where the ray meets 4 y + z = -8.
+                let centre = DVec2::new(f64::from(x), f64::from(y)) + 0.5;
+                let (origin, direction) = camera.ray(centre, DVec2::new(120.0, 80.0));
+                let depth = (-8.0 - normal.dot(origin)) / normal.dot(direction);
+                assert!((at(x, y) - camera.buffer_depth(depth)).abs() < 1e-9);
+            }
+        }
+    }
+}
+
+/// Distance of a point from the nearest of some segments.
+fn distance_to(point: DVec2, segments: &[[DVec2; 2]]) -> f64 {
+    segments
+        .iter()
+        .map(|[a, b]| {
+            let t = ((point - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
+            point.distance(a.lerp(*b, t))
+        })
+        .fold(f64::INFINITY, f64::min)
+}
+
+#[test]
+fn nine_of_a_cubes_twelve_edges_are_seen() {
+    let scene = Scene::new(embedded::cube());
+    let (size, size_px) = ((400, 400), DVec2::splat(400.0));
+    let camera = camera(DVec3::new(3.0, 4.5, 6.0), PERSPECTIVE);
+    let plan = Plan::new(&scene, &named("lines"), &camera).expect("a good style");
+    assert_eq!(plan.lines(camera.homogeneous_eye()).0.len(), 12);
+    let corner = |i: u8| DVec3::from_array([0, 1, 2].map(|axis| f64::from(i >> axis & 1) * 2.0 - 1.0));
+    let on_screen = |i| outline_screen(camera.clip_from_world(1.0) * corner(i).extend(1.0), size_px).0;
+    // The eye is in front of the three faces that meet at corner 7; the edges of corner 0 have none of them.
+    let edges = (0..8u8).flat_map(|a| [1, 2, 4].map(|bit| (a, a | bit))).filter(|(a, b)| a != b);
+    let (hidden, seen): (Vec<_>, Vec<_>) = edges.partition(|&(a, _)| a == 0);
+    let segment = |&(a, b): &(u8, u8)| [on_screen(a), on_screen(b)];
+    let seen: Vec<_> = seen.iter().map(segment).collect();
+    assert_eq!((seen.len(), hidden.len()), (9, 3));
+    let image = frame(&scene, &named("lines"), &camera, size, 1).image();
+    let is_ink = |point: DVec2| image.pixel(point.x as u32, point.y as u32)[1] < 160;
+    for [a, b] in &seen {
+        for step in 0..=40 {
+            let point = a.lerp(*b, f64::from(step) / 40.0);
+            assert!(is_ink(point), "no ink at {point}");
+        }
+    }
+    for [a, b] in hidden.iter().map(segment) {
+        let away = (0..=40).map(|step| a.lerp(b, f64::from(step) / 40.0)).filter(|&p| distance_to(p, &seen) > 3.0);
+        assert!(away.clone().count() > 25);
+        assert!(away.into_iter().all(|point| !is_ink(point)), "ink on a hidden edge");
+    }
+    let inked: Vec<_> = centres(&image.rgba8.chunks_exact(4).map(|p| p[1]).collect::<Vec<_>>(), 400)
+        .filter(|&(_, green)| green < 200)
+        .map(|(centre, _)| distance_to(centre, &seen))
+        .collect();
+    println!("{} px of ink, at most {:.2} px away", inked.len(), inked.iter().fold(0.0, |a: f64, &b| a.max(b)));
+    assert!(inked.len() > 1000 && inked.iter().all(|&distance| distance < 1.3));
+}
+
+#[test]
+fn bands_lie_where_the_light_says() {
+    let scene = Scene::new(embedded::sphere(256));
+    let (size, size_px) = ((400, 400), DVec2::splat(400.0));
+    let camera = camera(DVec3::new(2.0, 1.0, 4.0), PERSPECTIVE);
+    let to_light = key_light(&camera);
+    let image = frame(&scene, &named("printed-bands"), &camera, size, 1).image();
+    let base = encode_srgb(f64::from(0.8f32));
+    let mut judged = [0u32; 3];
+    for (at, pixel) in centres(&image.rgba8.chunks_exact(4).map(|p| [p[0], p[1], p[2]]).collect::<Vec<_>>(), 400) {
+        let (origin, direction) = camera.ray(at, size_px);
+        // The nearer root of |origin + t direction| = 1.
+        let (a, b) = (direction.length_squared(), origin.dot(direction));
+        let root = b * b - a * (origin.length_squared() - 1.0);
+        // Near the rim, facets turn away from the sphere.
+        if root < 0.06 * a {
+            continue;
+        }
+        let normal = origin + direction * ((-b - root.sqrt()) / a);
+        let n_dot_l = normal.dot(to_light);
+        if (n_dot_l - 0.1).abs() < 2e-3 || (n_dot_l - 0.8).abs() < 2e-3 {
+            continue;
+        }
+        let band = usize::from(n_dot_l > 0.1) + usize::from(n_dot_l > 0.8);
+        let tone = [[0.2; 3], [0.6; 3], [0.9, 0.9, 1.0]][band];
+        assert_eq!(pixel, tone.map(|t: f32| to_byte(base * f64::from(t))), "at {at}, N·L is {n_dot_l}");
+        judged[band] += 1;
+    }
+    println!("{judged:?} px by band");
+    assert!(judged.iter().all(|&n| n > 1000));
+}
+
+#[test]
+fn more_samples_converge() {
+    let scene = Scene::new(embedded::scene());
+    let picture = |samples| frame(&scene, &named("cartoon"), &still_life_camera(), (160, 90), samples).color;
+    let truth = picture(8);
+    let rmse = [1, 2, 4].map(|samples| {
+        let sum: f64 = picture(samples).iter().zip(&truth).map(|(a, b)| (*a - *b).length_squared()).sum();
+        (sum / truth.len() as f64).sqrt()
+    });
+    println!("RMSE against 8 × 8 samples, with 1, 2 and 4 along each axis: {rmse:.5?}");
+    assert!(rmse[0] > 1.5 * rmse[1] && rmse[1] > 1.5 * rmse[2] && rmse[2] > 0.0);
+    assert!(rmse[0] < 0.1);
+}

@@ -1,0 +1,34 @@
+//! What kinds of edges a model has: `cargo run -p npr-mesh --example topology -- model.obj`, or without a file those
+//! of the teapot.
+#![allow(clippy::print_stdout)]
+
+use npr_mesh::edges::{EdgeKind, find};
+use npr_mesh::{LoadError, Model, embedded};
+use std::path::PathBuf;
+
+fn main() -> Result<(), LoadError> {
+    let model = match std::env::args_os().nth(1).map(PathBuf::from) {
+        Some(path) => read(path)?,
+        None => embedded::teapot(12),
+    };
+    let edges =
+        find(&model.positions, &model.faces, &model.face_polygon, &model.face_material, &Default::default()).edges;
+    println!("{} faces, {} edges", model.faces.len(), edges.len());
+    for kind in [EdgeKind::Boundary, EdgeKind::TwoFace, EdgeKind::NonManifold] {
+        println!("{:>8} {kind:?}", edges.iter().filter(|edge| edge.kind() == kind).count());
+    }
+    let over_30 = |edge: &npr_mesh::edges::Edge| edge.dihedral_rad().is_some_and(|angle| angle > 30f32.to_radians());
+    println!("{:>8} creases over 30°", edges.iter().filter(|edge| over_30(edge)).count());
+    Ok(())
+}
+
+#[cfg(any(feature = "obj", feature = "gltf"))]
+fn read(path: PathBuf) -> Result<Model, LoadError> {
+    Ok(npr_mesh::load(&path, &Default::default())?.model)
+}
+
+/// A build without loaders knows no format.
+#[cfg(not(any(feature = "obj", feature = "gltf")))]
+fn read(path: PathBuf) -> Result<Model, LoadError> {
+    Err(LoadError::UnknownFormat { path })
+}
