@@ -4,12 +4,14 @@ use crate::camera::Camera;
 use crate::compare::Image;
 use crate::cpu::{self, CpuOptions};
 use crate::error::HarnessError;
-use crate::plan::{LineFinder, Plan};
+use crate::plan::Plan;
 use crate::scene::Scene;
 use crate::style::Style;
 
 #[cfg(feature = "gpu")]
 use crate::gpu::{self, GpuContext};
+#[cfg(feature = "gpu")]
+use crate::plan::LineFinder;
 
 /// What is asked for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -97,6 +99,11 @@ impl Executor {
             return Err(HarnessError::NoGpuInBuild);
         }
         Ok(Self::Cpu { why: Some("this build has no GPU executor".into()) })
+    }
+
+    /// Whether pictures are made with rays.
+    pub fn is_cpu(&self) -> bool {
+        matches!(self, Self::Cpu { .. })
     }
 
     /// One line: where pictures are made, and why not elsewhere.

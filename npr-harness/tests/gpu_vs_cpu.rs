@@ -30,7 +30,7 @@ fn check_model(name: &str, model: Model) {
     let views =
         [("20 15", framed(&scene, 20.0, 15.0, Some(0.6))), ("-70 -35", framed(&scene, -70.0, -35.0, Some(1.2)))];
     let parallel = ("parallel 35 30", framed(&scene, 35.0, 30.0, None));
-    let views = [views[0].clone(), views[1].clone(), parallel].map(|(name, camera)| (name.to_owned(), camera));
+    let views = [views[0], views[1], parallel].map(|(name, camera)| (name.to_owned(), camera));
     let folder = Folder::new();
     let report = check::scene(&executor, name, &scene, &views, &folder.0).expect("pictures");
     let failed: Vec<_> = report.metrics.iter().filter(|metric| !metric.pass).collect();

@@ -277,10 +277,9 @@ fn collect(vertices: usize, faces: &[[u32; 3]], representative: &[u32], skipped:
     let mut edges: Vec<Edge> = Vec::with_capacity(sides.len() / 2 + sides.len() / 32 + 16);
     let mut further_faces = Vec::new();
     let mut start = 0;
-    for low in 0..vertices {
-        let end = bucket_end[low] as usize;
-        let bucket = &mut sides[start..end];
-        start = end;
+    for (low, &end) in (0u32..).zip(&bucket_end[..vertices]) {
+        let bucket = &mut sides[start..end as usize];
+        start = end as usize;
         if bucket.len() > SMALL_BUCKET {
             // By the higher end, then by face.
             bucket.sort_unstable();
@@ -293,7 +292,7 @@ fn collect(vertices: usize, faces: &[[u32; 3]], representative: &[u32], skipped:
             }
             let number = edges.len() as u32;
             let mut edge = Edge {
-                ends: [low as u32, high],
+                ends: [low, high],
                 faces: [first >> 1, NO_FACE],
                 cos_dihedral: f32::NAN,
                 flags: if first & 1 != 0 { FLAG_FIRST_ASCENDS } else { 0 },

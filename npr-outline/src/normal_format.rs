@@ -164,17 +164,25 @@ fn eyes(model: &Model, views: usize) -> Vec<DVec3> {
     fibonacci_sphere(views).map(|direction| centre + 3.0 * radius * direction).collect()
 }
 
-/// Per face the side on which the eye is: [`facing_exact`], of a polygon's faces summed over the polygon.
+/// Per face the side on which the eye is: [`facing_exact`], and for a polygon's faces that of the polygon's plane, with
+/// its Newell normal through the mean of its triangles' corners, as [`crate::contour`] has it.
 fn true_sides(model: &Model, eye: DVec3) -> Vec<bool> {
-    let own = model.faces.iter().map(|face| facing_exact(face.map(|v| model.positions[v as usize]), eye.extend(1.0)));
+    let corners = |face: &[u32; 3]| face.map(|v| model.positions[v as usize]);
     if model.face_polygon.is_empty() {
-        return own.map(|side| side >= 0.0).collect();
+        return model.faces.iter().map(|face| facing_exact(corners(face), eye.extend(1.0)) >= 0.0).collect();
     }
-    let mut of_polygon = HashMap::<u32, f64>::new();
-    for (side, &polygon) in own.zip(&model.face_polygon) {
-        *of_polygon.entry(polygon).or_default() += side;
+    let mut sides = Vec::with_capacity(model.faces.len());
+    for polygon in model.face_polygon.chunk_by(|a, b| a == b) {
+        let faces = &model.faces[sides.len()..][..polygon.len()];
+        let (mut normal, mut sum) = (DVec3::ZERO, DVec3::ZERO);
+        for [a, b, c] in faces.iter().map(|face| corners(face).map(|corner| corner.as_dvec3())) {
+            normal += (b - a).cross(c - a);
+            sum += a + b + c;
+        }
+        let side = normal.dot(eye - sum / (3 * faces.len()) as f64) >= 0.0;
+        sides.resize(sides.len() + faces.len(), side);
     }
-    model.face_polygon.iter().map(|polygon| of_polygon[polygon] >= 0.0).collect()
+    sides
 }
 
 fn truly_silhouette(edge: &Edge, sides: &[bool]) -> bool {

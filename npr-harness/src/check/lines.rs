@@ -6,6 +6,7 @@ use super::{
 use crate::camera::{Camera, Projection};
 use crate::cpu::{self, CpuOptions};
 use crate::error::HarnessError;
+#[cfg(feature = "gpu")]
 use crate::executor::Executor;
 use crate::plan::Plan;
 use crate::scene::Scene;

@@ -14,6 +14,15 @@ struct Surface {
     to_eye: DVec3,
 }
 
+/// Weights of a face's corners at the two pixels beside a pixel with which a 2×2 block of fragments takes its
+/// differences, each with the sign that makes the difference a derivative.
+struct Footprint {
+    along_x: [f64; 3],
+    dx: f64,
+    along_y: [f64; 3],
+    dy: f64,
+}
+
 impl FrameContext<'_> {
     fn material(&self, hit: &Hit) -> &Material {
         &self.scene.model.materials[self.scene.model.face_material[hit.face as usize] as usize]
@@ -48,15 +57,13 @@ impl FrameContext<'_> {
         [1.0 - v - w, v, w]
     }
 
-    /// The weights at the hit and at the pixels beside and below (or above) it with which a 2×2 block of fragments takes
-    /// its differences, each with the sign that makes it a derivative along x and along y.
-    fn footprint(&self, hit: &Hit, x: u32, y: u32) -> ([f64; 3], ([f64; 3], f64), ([f64; 3], f64)) {
-        let beside = |index: u32| if index % 2 == 0 { 1.0 } else { -1.0 };
+    fn footprint(&self, hit: &Hit, x: u32, y: u32) -> Footprint {
+        let beside = |index: u32| if index.is_multiple_of(2) { 1.0 } else { -1.0 };
         let (dx, dy) = (beside(x), beside(y));
         let (px, py) = (f64::from(x), f64::from(y));
         let along_x = self.extrapolated(hit, self.sample_point(px + dx, py));
         let along_y = self.extrapolated(hit, self.sample_point(px, py + dy));
-        (hit.barycentric, (along_x, dx), (along_y, dy))
+        Footprint { along_x, dx, along_y, dy }
     }
 
     fn interpolate_uv(&self, hit: &Hit, weights: [f64; 3]) -> DVec2 {
@@ -93,8 +100,8 @@ impl FrameContext<'_> {
         }
         if let Some(texture) = material.texture {
             let texture = &self.textures[texture as usize];
-            let (here, (along_x, dx), (along_y, dy)) = self.footprint(hit, x, y);
-            let uv = self.interpolate_uv(hit, here);
+            let Footprint { along_x, dx, along_y, dy } = self.footprint(hit, x, y);
+            let uv = self.interpolate_uv(hit, hit.barycentric);
             let uv_dx = (self.interpolate_uv(hit, along_x) - uv) * dx;
             let uv_dy = (self.interpolate_uv(hit, along_y) - uv) * dy;
             color *= texture.sample(uv, texture.level(uv_dx, uv_dy));
@@ -131,7 +138,7 @@ impl FrameContext<'_> {
                 };
                 let here = light(hit.barycentric);
                 let width = if bands.antialias {
-                    let (_, (along_x, _), (along_y, _)) = self.footprint(hit, x, y);
+                    let Footprint { along_x, along_y, .. } = self.footprint(hit, x, y);
                     let (dx, dy) = (light(along_x) - here, light(along_y) - here);
                     DVec2::new(toon_width(dx.x, dy.x), toon_width(dx.y, dy.y))
                 } else {

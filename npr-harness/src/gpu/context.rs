@@ -29,7 +29,7 @@ impl GpuContext {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
         let mut adapters = instance.enumerate_adapters(wgpu::Backends::all()).await;
         let seen: Vec<String> = adapters.iter().map(|a| describe(&a.get_info())).collect();
-        adapters.retain(|adapter| is_enough(adapter));
+        adapters.retain(is_enough);
         // Stable: of equals the one that the system names first.
         adapters.sort_by_key(|adapter| rank(&adapter.get_info()));
         let adapter = adapters.first().ok_or(GpuError::NoAdapter { seen })?;
