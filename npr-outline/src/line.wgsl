@@ -165,16 +165,22 @@ fn outline_half_plane(distance: f32, normal: vec2<f32>) -> f32 {
     return select(near, 1.0 - near, distance < 0.0);
 }
 
-fn outline_coverage(on_line: vec2<f32>, direction: vec2<f32>, point_px: vec2<f32>, width_px: f32) -> f32 {
-    let to_point = point_px - on_line;
-    let distance = length(to_point);
-    var normal = vec2<f32>(-direction.y, direction.x);
-    if distance > 1e-3 {
-        normal = to_point / distance;
-    }
+// The area of the pixel's square between the two borders of a line.
+fn outline_band(distance: f32, normal: vec2<f32>, width_px: f32) -> f32 {
     let half_width = 0.5 * width_px;
     let covered = outline_half_plane(half_width - distance, normal) + outline_half_plane(half_width + distance, normal) - 1.0;
     return clamp(covered, 0.0, 1.0);
+}
+
+// Exact beside the line; past its ends never more than a longer line would cover.
+fn outline_coverage(on_line: vec2<f32>, direction: vec2<f32>, point_px: vec2<f32>, width_px: f32) -> f32 {
+    let to_point = point_px - on_line;
+    let distance = length(to_point);
+    let beside = outline_band(abs(outline_cross(direction, to_point)), vec2<f32>(-direction.y, direction.x), width_px);
+    if abs(dot(to_point, direction)) <= 1e-3 * distance || distance <= 1e-3 {
+        return beside;
+    }
+    return min(beside, outline_band(distance, to_point / distance, width_px));
 }
 
 // (seen, surface) votes of one of the four pixels around a point of the centreline.

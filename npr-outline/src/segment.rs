@@ -172,17 +172,27 @@ pub fn outline_half_plane(distance: f64, normal: DVec2) -> f64 {
     if distance < 0.0 { 1.0 - near } else { near }
 }
 
-/// How much of the pixel around `point_px` a line of `width_px` covers, 0..=1: exact beside the line, and at its
-/// round ends as if their border were straight.
-pub fn outline_coverage(segment: &ScreenSegment, point_px: DVec2, width_px: f64) -> f64 {
-    let to_point = point_px - segment.at(segment.nearest(point_px)).0;
-    let distance = to_point.length();
-    let direction = segment.direction().0;
-    let normal = if distance > 1e-3 { to_point / distance } else { DVec2::new(-direction.y, direction.x) };
+/// The area of the pixel's square between the two borders of a line, whose centreline is `distance` away along the unit
+/// vector `normal`.
+fn outline_band(distance: f64, normal: DVec2, width_px: f64) -> f64 {
     let half_width = 0.5 * width_px;
     let covered =
         outline_half_plane(half_width - distance, normal) + outline_half_plane(half_width + distance, normal) - 1.0;
     covered.clamp(0.0, 1.0)
+}
+
+/// How much of the pixel around `point_px` a line of `width_px` covers, 0..=1: exact beside the line; past its ends as
+/// if their round border were straight, and never more than a longer line would cover, so that a line in pieces
+/// looks like the whole.
+pub fn outline_coverage(segment: &ScreenSegment, point_px: DVec2, width_px: f64) -> f64 {
+    let direction = segment.direction().0;
+    let to_point = point_px - segment.at(segment.nearest(point_px)).0;
+    let distance = to_point.length();
+    let beside = outline_band(segment.offset_px(point_px).abs(), DVec2::new(-direction.y, direction.x), width_px);
+    if to_point.dot(direction).abs() <= 1e-3 * distance || distance <= 1e-3 {
+        return beside;
+    }
+    beside.min(outline_band(distance, to_point / distance, width_px))
 }
 
 /// Whether the centreline is seen at a fraction of its length.

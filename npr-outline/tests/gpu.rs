@@ -229,7 +229,7 @@ fn overlapping_joints_are_not_counted_twice() {
         let most = whole.iter().zip(&in_pieces).map(|(a, b)| a.abs_diff(*b)).max();
         assert!(most <= Some(1), "{width_px} px: {most:?}");
         // Black ink on white, each pixel once.
-        for (ink, covered) in gpu.read_texture(&picture.color, 4).chunks(4).zip(&in_pieces) {
+        for (ink, covered) in gpu.read_texture(&picture.inked, 4).chunks(4).zip(&in_pieces) {
             assert!(ink[0].abs_diff(255 - covered) <= 1 && ink[0] == ink[1] && ink[1] == ink[2]);
         }
     }
