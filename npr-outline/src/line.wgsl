@@ -180,7 +180,7 @@ fn outline_coverage(on_line: vec2<f32>, direction: vec2<f32>, point_px: vec2<f32
     if abs(dot(to_point, direction)) <= 1e-3 * distance || distance <= 1e-3 {
         return beside;
     }
-    return min(beside, outline_band(distance, to_point / distance, width_px));
+    return min(beside, clamp(0.5 * width_px + 0.5 - distance, 0.0, 1.0));
 }
 
 // (seen, surface) votes of one of the four pixels around a point of the centreline.

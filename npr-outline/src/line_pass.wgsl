@@ -10,8 +10,9 @@ struct LineVertex {
     @builtin(position) position: vec4<f32>,
     @location(0) @interpolate(flat) ends_px: vec4<f32>,
     @location(1) @interpolate(flat) depths_slopes: vec4<f32>,
-    @location(2) @interpolate(flat) width_px: f32,
-    @location(3) @interpolate(flat) traits: u32,
+    @location(2) @interpolate(flat) direction: vec2<f32>,
+    @location(3) @interpolate(flat) width_px: f32,
+    @location(4) @interpolate(flat) traits: u32,
 }
 
 fn line_vertex(
@@ -31,8 +32,9 @@ fn line_vertex(
     out.ends_px = segment.ends_px;
     out.depths_slopes = vec4<f32>(segment.depths, segment.slopes);
     // A rectangle around the line and its round ends, and the pixel beside them that they cover in part.
-    let reach = 0.5 * out.width_px + 1.0;
+    let reach = 0.5 * out.width_px + 0.75;
     let along = outline_direction(segment.ends_px);
+    out.direction = along;
     let across = vec2<f32>(-along.y, along.x);
     let at_end = (corner & 1u) != 0u;
     let side = select(-reach, reach, (corner & 2u) != 0u);
@@ -65,7 +67,7 @@ struct Inked {
 fn fs_ink(in: LineVertex) -> Inked {
     let fraction = outline_nearest(in.ends_px, in.position.xy);
     let on_line = mix(in.ends_px.xy, in.ends_px.zw, fraction);
-    let direction = outline_direction(in.ends_px);
+    let direction = in.direction;
     let coverage = outline_coverage(on_line, direction, in.position.xy, in.width_px);
     if coverage <= 0.0 {
         discard;

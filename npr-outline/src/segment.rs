@@ -181,9 +181,8 @@ fn outline_band(distance: f64, normal: DVec2, width_px: f64) -> f64 {
     covered.clamp(0.0, 1.0)
 }
 
-/// How much of the pixel around `point_px` a line of `width_px` covers, 0..=1: exact beside the line; past its ends as
-/// if their round border were straight, and never more than a longer line would cover, so that a line in pieces
-/// looks like the whole.
+/// How much of the pixel around `point_px` a line of `width_px` covers, 0..=1: exact beside the line; past its ends by the
+/// distance from them, and never more than a longer line would cover, so that a line in pieces looks like the whole.
 pub fn outline_coverage(segment: &ScreenSegment, point_px: DVec2, width_px: f64) -> f64 {
     let direction = segment.direction().0;
     let to_point = point_px - segment.at(segment.nearest(point_px)).0;
@@ -192,7 +191,7 @@ pub fn outline_coverage(segment: &ScreenSegment, point_px: DVec2, width_px: f64)
     if to_point.dot(direction).abs() <= 1e-3 * distance || distance <= 1e-3 {
         return beside;
     }
-    beside.min(outline_band(distance, to_point / distance, width_px))
+    beside.min((0.5 * width_px + 0.5 - distance).clamp(0.0, 1.0))
 }
 
 /// Whether the centreline is seen at a fraction of its length.

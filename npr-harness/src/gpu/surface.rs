@@ -49,6 +49,7 @@ struct Variant {
     blended: bool,
     /// How many tones.
     bands: u32,
+    highlight: bool,
 }
 
 /// The pipelines of the geometry pass.
@@ -203,6 +204,7 @@ impl SurfacePass {
                 cull_back: plan.cull_back || !double_sided,
                 blended,
                 bands: toon_uniform.count.max(1),
+                highlight: toon_uniform.highlight_strength > 0.0,
             };
             let mut pipelines = self.pipelines.borrow_mut();
             let pipeline = pipelines.entry(variant).or_insert_with(|| self.pipeline(device, variant));
@@ -226,7 +228,7 @@ impl SurfacePass {
     }
 
     fn pipeline(&self, device: &wgpu::Device, variant: Variant) -> wgpu::RenderPipeline {
-        let Variant { paint, looked_up, cull_back, blended, bands } = variant;
+        let Variant { paint, looked_up, cull_back, blended, bands, highlight } = variant;
         let (vertex, fragment) = match (paint, looked_up) {
             (Paint::Depth, false) => ("vs_depth", None),
             (Paint::Depth, true) => ("vs_textured", Some("fs_cut_out")),
@@ -282,7 +284,10 @@ impl SurfacePass {
                 entry_point: Some(fragment.unwrap_or("fs_nothing")),
                 compilation_options: wgpu::PipelineCompilationOptions {
                     // The loop over bands is unrolled for as many as there are.
-                    constants: &[(npr_toon::TOON_BANDS_OVERRIDE, f64::from(bands))],
+                    constants: &[
+                        (npr_toon::TOON_BANDS_OVERRIDE, f64::from(bands)),
+                        ("surface_highlight", f64::from(u8::from(highlight))),
+                    ],
                     ..Default::default()
                 },
                 targets: &[Some(target)],
