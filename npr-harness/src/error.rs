@@ -32,7 +32,9 @@ pub enum HarnessError {
         known: String,
     },
     /// A picture without pixels, or with more than can be held.
-    #[error("a picture of {width} × {height} px: width and height must lie in 1..={limit}")]
+    #[error(
+        "a picture of {width} × {height} px: each side must lie in 1..={limit}, and all samples together must not exceed 2^30"
+    )]
     Size {
         /// Px.
         width: u32,

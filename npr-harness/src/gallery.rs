@@ -30,10 +30,10 @@ pub struct Row {
 /// The view for which the built-in scene is composed.
 pub fn still_life_camera() -> Camera {
     Camera {
-        eye: DVec3::new(3.0, 6.0, 13.0),
-        target: DVec3::new(0.4, 1.15, 0.5),
+        eye: DVec3::new(3.0, 6.2, 14.0),
+        target: DVec3::new(0.7, 1.0, 0.9),
         up: DVec3::Y,
-        projection: Projection::Perspective { fov_y_rad: 30f64.to_radians() },
+        projection: Projection::Perspective { fov_y_rad: 31f64.to_radians() },
         near: 0.1,
     }
 }
