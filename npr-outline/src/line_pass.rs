@@ -48,7 +48,7 @@ const _: () = assert!(size_of::<OutlineUniform>() == 144);
 pub struct LineRecord {
     /// World space, in the order in which the first face runs over the edge.
     pub end0: [f32; 3],
-    /// [`LineKind`] in the two lowest bits, and the edge's traits.
+    /// [`crate::LineKind`] in the two lowest bits, and the edge's traits.
     pub kind_traits: u32,
     /// World space.
     pub end1: [f32; 3],
