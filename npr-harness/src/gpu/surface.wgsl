@@ -83,8 +83,7 @@ fn lambert(base: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
     return base * (ambient + (1.0 - ambient) * max(dot(toon_unit(normal), view.to_light.xyz), 0.0));
 }
 
-// `toon_shade`, reading the bands where they lie: handing them over by value costs a software rasteriser a sixth of a
-// frame. In uniform control flow.
+// `toon_shade`, with the highlight left out when the pipeline is made. In uniform control flow.
 fn banded(base: vec3<f32>, normal: vec3<f32>, eye: vec3<f32>) -> vec3<f32> {
     let n = toon_unit(normal);
     let n_dot_l = dot(n, view.to_light.xyz);
