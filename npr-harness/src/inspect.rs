@@ -3,7 +3,7 @@
 use glam::DVec3;
 use npr_mesh::{
     Model,
-    edges::{self, Edge, EdgeKind, EdgeOptions},
+    edges::{self, EdgeKind, EdgeOptions, Edges},
 };
 use std::{collections::HashMap, fmt, ops::Range};
 
@@ -70,7 +70,7 @@ pub fn inspect(name: &str, model: &Model, warnings: Vec<String>) -> Inspection {
     let found = edges::find(&model.positions, &model.faces, &model.face_polygon, &model.face_material, &options);
     let of_kind = |kind| found.edges.iter().filter(|edge| edge.kind() == kind).count();
     let (boundary_edges, nonmanifold_edges) = (of_kind(EdgeKind::Boundary), of_kind(EdgeKind::NonManifold));
-    let (creases_over_30_deg, within_0_01_deg_of_30) = creases(model, &found.edges);
+    let (creases_over_30_deg, within_0_01_deg_of_30) = creases(model, &found);
     let (min, max) = model.bounds().unwrap_or_default();
     Inspection {
         model: name.to_owned(),
@@ -148,17 +148,17 @@ fn duplicate_faces(model: &Model, representative: &[u32]) -> usize {
 }
 
 /// Edges over 30°, and edges at 30° to within 0.01°.
-fn creases(model: &Model, edges: &[Edge]) -> (usize, usize) {
+fn creases(model: &Model, found: &Edges) -> (usize, usize) {
     let cos_of_crease = CREASE_DEG.to_radians().cos();
     let mut areas = HashMap::new();
     let (mut over, mut near) = (0, 0);
-    for edge in edges.iter().filter(|edge| edge.kind() == EdgeKind::TwoFace) {
-        let cos = f64::from(edge.cos_dihedral);
-        // The stored cosine has errors of 1e-7, and 0.01° at 30° is 9e-5: only edges near that need a better one.
+    for edge in &found.edges {
+        let Some(cos) = found.cos_dihedral(edge).map(f64::from) else { continue };
+        // The f32 cosine has errors of 1e-7, and 0.01° at 30° is 9e-5: only edges near that need a better one.
         if cos < cos_of_crease - 1e-3 {
             over += 1;
         } else if cos < cos_of_crease + 1e-3 {
-            let [first, second] = edge.faces.map(|face| area_vector(model, face, &mut areas));
+            let [first, second] = edge.faces().map(|face| area_vector(model, face, &mut areas));
             let second = if edge.wound_oppositely() { -second } else { second };
             let angle_deg = first.cross(second).length().atan2(first.dot(second)).to_degrees();
             over += usize::from(angle_deg > CREASE_DEG);

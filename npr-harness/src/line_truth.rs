@@ -160,7 +160,7 @@ fn borrow_planes(scene: &Scene, planes: &mut [Plane]) {
     for edge in scene.edges.edges.iter().filter(|edge| edge.kind() == EdgeKind::TwoFace) {
         let [p, q] = edge.ends.map(|v| scene.model.positions[v as usize].as_dvec3());
         let length = p.distance(q);
-        let [first, second] = edge.faces;
+        let [first, second] = edge.faces();
         for (face, other) in [(first, second), (second, first)] {
             if planes[face as usize].normal == DVec3::ZERO
                 && lenders.get(&face).is_none_or(|&(longest, ..)| length > longest)
@@ -192,7 +192,7 @@ fn borrow_planes(scene: &Scene, planes: &mut [Plane]) {
 
 /// Why an edge is a line for an eye, if it is.
 fn line_kind(edge: &Edge, planes: &[Plane], eye: DVec4, crease_angle_rad: f64) -> Option<LineKind> {
-    let [first, second] = edge.faces;
+    let [first, second] = edge.faces();
     if second == NO_FACE {
         return Some(LineKind::Boundary);
     }
@@ -310,7 +310,7 @@ impl Sight<'_> {
         let corners = model.faces[face as usize].map(|v| self.scene.edges.representative[v as usize]);
         edge.ends.iter().all(|end| corners.contains(end))
             || (!model.face_polygon.is_empty()
-                && edge.faces.iter().any(|&own| {
+                && edge.faces().iter().any(|&own| {
                     own != NO_FACE && model.face_polygon[own as usize] == model.face_polygon[face as usize]
                 }))
     }

@@ -11,14 +11,14 @@ fn main() -> Result<(), LoadError> {
         Some(path) => read(path)?,
         None => embedded::teapot(12),
     };
-    let edges =
-        find(&model.positions, &model.faces, &model.face_polygon, &model.face_material, &Default::default()).edges;
-    println!("{} faces, {} edges", model.faces.len(), edges.len());
+    let found = find(&model.positions, &model.faces, &model.face_polygon, &model.face_material, &Default::default());
+    println!("{} faces, {} edges", model.faces.len(), found.edges.len());
     for kind in [EdgeKind::Boundary, EdgeKind::TwoFace, EdgeKind::NonManifold] {
-        println!("{:>8} {kind:?}", edges.iter().filter(|edge| edge.kind() == kind).count());
+        println!("{:>8} {kind:?}", found.edges.iter().filter(|edge| edge.kind() == kind).count());
     }
-    let over_30 = |edge: &npr_mesh::edges::Edge| edge.dihedral_rad().is_some_and(|angle| angle > 30f32.to_radians());
-    println!("{:>8} creases over 30°", edges.iter().filter(|edge| over_30(edge)).count());
+    let is_crease = |cos: f32| cos < 30f32.to_radians().cos();
+    let creases = found.edges.iter().filter(|edge| found.cos_dihedral(edge).is_some_and(is_crease));
+    println!("{:>8} creases over 30°", creases.count());
     Ok(())
 }
 

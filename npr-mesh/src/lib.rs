@@ -6,7 +6,7 @@
 //! let model = embedded::cube(); // or, from a file: npr_mesh::load(path, &Default::default())?.model
 //! let found =
 //!     edges::find(&model.positions, &model.faces, &model.face_polygon, &model.face_material, &Default::default());
-//! let creases = found.edges.iter().filter(|edge| edge.dihedral_rad() > Some(30f32.to_radians()));
+//! let creases = found.edges.iter().filter(|edge| found.dihedral_rad(edge) > Some(30f32.to_radians()));
 //! assert_eq!(creases.count(), 12); // no diagonals: the cube's faces are squares
 //! ```
 //!

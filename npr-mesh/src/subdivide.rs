@@ -8,12 +8,12 @@ use crate::Model;
 ///
 /// Positions, texture coordinates and colours of the new vertices are means, normals are means of unit length (where
 /// two are opposite, one of them). Two faces that share both vertices of an edge share its midpoint too; across a seam
-/// the two midpoints stand at one position, to the last bit. The old vertices keep their numbers, and the four faces
+/// the two midpoints stand at one position, to the last bit. The old vertices keep their numbers, the new ones follow
+/// in the order in which the faces meet them, and the four faces
 /// from face f are 4f to 4f + 3: at its corners, then the middle one. They belong to its polygon, and are polygons by
 /// themselves where [`Model::face_polygon`] is empty.
 pub fn subdivide_midpoint(model: &Model) -> Model {
-    // Sorted by edge; equal edges then stand together and get one vertex. Sorting beats hashing here, and numbers the
-    // vertices along the old ones.
+    // Sorted by edge; equal edges then stand together and get one vertex. Sorting beats hashing here.
     let mut sides = Vec::with_capacity(model.faces.len() * 3);
     for (face, &[a, b, c]) in model.faces.iter().enumerate() {
         for (side, (from, to)) in [(a, b), (b, c), (c, a)].into_iter().enumerate() {
@@ -22,16 +22,24 @@ pub fn subdivide_midpoint(model: &Model) -> Model {
         }
     }
     sides.sort_unstable();
-
     let mut midpoints = vec![[0; 3]; model.faces.len()];
-    let mut edges: Vec<[usize; 2]> = Vec::with_capacity(sides.len() / 2);
-    let mut last = None;
-    for (edge, face, side) in sides {
-        if last != Some(edge) {
-            edges.push([(edge >> 32) as usize, edge as u32 as usize]);
-            last = Some(edge);
+    for (number, edge) in (0u32..).zip(sides.chunk_by(|a, b| a.0 == b.0)) {
+        for &(_, face, side) in edge {
+            midpoints[face as usize][side as usize] = number;
         }
-        midpoints[face as usize][side as usize] = (model.positions.len() + edges.len() - 1) as u32;
+    }
+    // Numbered as the faces meet them, so that what a face needs stands together in memory.
+    let mut edges: Vec<[usize; 2]> = Vec::with_capacity(sides.len() / 2);
+    let mut numbered = vec![u32::MAX; sides.len()];
+    for (&[a, b, c], of_face) in model.faces.iter().zip(&mut midpoints) {
+        for (midpoint, ends) in of_face.iter_mut().zip([[a, b], [b, c], [c, a]]) {
+            let number = &mut numbered[*midpoint as usize];
+            if *number == u32::MAX {
+                *number = (model.positions.len() + edges.len()) as u32;
+                edges.push(ends.map(|end| end as usize));
+            }
+            *midpoint = *number;
+        }
     }
 
     let mut fine = Model {

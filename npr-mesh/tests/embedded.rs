@@ -253,13 +253,13 @@ fn subdivision_interpolates_and_keeps_polygons() {
     assert_eq!((fine.faces.len(), fine.positions.len()), (8, 9));
     assert_eq!(fine.face_polygon, [7; 8]);
     assert_eq!(fine.positions[..4], square.positions);
-    // The midpoints of 0-1, 0-2, 0-3, 1-2, 2-3, in this order.
+    // The midpoints of 0-1, 1-2, 2-0, 2-3, 3-0, in this order.
     assert_eq!(fine.positions[4], Vec3::new(0.5, 0.0, 0.0));
-    assert_eq!(fine.positions[5], Vec3::new(0.5, 0.5, 0.0));
+    assert_eq!(fine.positions[6], Vec3::new(0.5, 0.5, 0.0));
     assert!(fine.normals[4].abs_diff_eq(Vec3::new(0.5_f32.sqrt(), 0.0, 0.5_f32.sqrt()), 1e-6));
-    assert_eq!(fine.uvs[5], Vec2::splat(0.5));
+    assert_eq!(fine.uvs[6], Vec2::splat(0.5));
     assert_eq!(fine.colors[4], Vec4::splat(0.5));
-    assert_eq!(fine.faces[..4], [[0, 4, 5], [4, 1, 7], [5, 7, 2], [4, 7, 5]]);
+    assert_eq!(fine.faces[..4], [[0, 4, 6], [4, 1, 5], [6, 5, 2], [4, 5, 6]]);
     assert!(subdivide_midpoint(&sphere(8)).face_polygon.is_empty());
     assert_eq!(subdivide_midpoint(&Model::default()), Model::default());
 }

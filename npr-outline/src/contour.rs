@@ -128,7 +128,7 @@ pub fn contour_edges(model: &Model, edges: &Edges, options: &ContourOptions) -> 
     contours.first_face.reserve_exact(edges.edges.len());
     for want_always in [true, false] {
         for edge in &edges.edges {
-            let [first, second] = edge.faces;
+            let [first, second] = edge.faces();
             let n0 = normal_of(first);
             let (line, n1) = match edge.kind() {
                 EdgeKind::Boundary => (Some(LineKind::Boundary), -n0),
@@ -137,7 +137,7 @@ pub fn contour_edges(model: &Model, edges: &Edges, options: &ContourOptions) -> 
                     // Only on a surface with one side are two faces left that do not fit.
                     let fits = edge.wound_oppositely() == (is_turned(first) != is_turned(second));
                     let n1 = if fits { normal_of(second) } else { -normal_of(second) };
-                    let cos = if edge.cos_dihedral.is_nan() { n0.dot(n1) } else { edge.cos_dihedral };
+                    let cos = edges.cos_dihedral(edge).unwrap_or_else(|| n0.dot(n1));
                     let borrowed_nothing = n0 == Vec3::ZERO || n1 == Vec3::ZERO;
                     let line = if cos < cos_crease && !borrowed_nothing {
                         Some(LineKind::Crease)
@@ -164,8 +164,8 @@ pub fn contour_edges(model: &Model, edges: &Edges, options: &ContourOptions) -> 
             let plane0 = plane(n0, first);
             let plane1 = if second == NO_FACE { plane0.map(|x| -x) } else { plane(n1, second) };
             contours.planes.push(EdgePlanes { plane0, plane1 });
-            let [low, high] = edge.ends;
-            contours.ends.push(if edge.first_face_ascends() != is_turned(first) { [low, high] } else { [high, low] });
+            let [from, to] = edge.ends;
+            contours.ends.push(if is_turned(first) { [to, from] } else { [from, to] });
             contours.traits.push(flags);
             contours.first_face.push(first);
         }
@@ -200,7 +200,7 @@ fn borrowed_normals(positions: &[Vec3], edges: &Edges) -> HashMap<u32, Vec3> {
     for edge in edges.edges.iter().filter(|edge| edge.kind() == EdgeKind::TwoFace) {
         let [p, q] = edge.ends.map(|v| positions[v as usize].as_dvec3());
         let length = p.distance_squared(q);
-        let [first, second] = edge.faces;
+        let [first, second] = edge.faces();
         for (face, other) in [(first, second), (second, first)] {
             if edges.face_normals[face as usize] == Vec3::ZERO
                 && lenders.get(&face).is_none_or(|&(longest, ..)| length > longest)
@@ -265,7 +265,7 @@ fn turned_faces(edges: &Edges, face_polygon: &[u32]) -> Vec<bool> {
         }
     }
     for edge in two_face() {
-        join(edge.faces, edge.wound_oppositely());
+        join(edge.faces(), edge.wound_oppositely());
     }
     (0..above.len() as u32).map(|face| root(&mut above, face).1).collect()
 }

@@ -63,7 +63,7 @@ pub fn printed_fins(model: &Model, edges: &Edges) -> PrintedFins {
     fins.vertices.reserve_exact(4 * edges.edges.len());
     fins.indices.reserve_exact(6 * edges.edges.len());
     for edge in &edges.edges {
-        let [first, second] = edge.faces;
+        let [first, second] = edge.faces();
         let n_face0 = edges.face_normals[first as usize];
         let n_face1 = match second {
             NO_FACE => -n_face0,

@@ -186,13 +186,13 @@ fn true_sides(model: &Model, eye: DVec3) -> Vec<bool> {
 }
 
 fn truly_silhouette(edge: &Edge, sides: &[bool]) -> bool {
-    let [first, second] = edge.faces.map(|face| sides[face as usize]);
+    let [first, second] = edge.faces().map(|face| sides[face as usize]);
     (first != second) != edge.wound_oppositely()
 }
 
 /// Edges whose being a silhouette depends on the eye and has a truth: two faces, neither without area.
 fn judged(edges: &Edges) -> impl Iterator<Item = &Edge> {
-    edges.edges.iter().filter(|edge| edge.kind() == EdgeKind::TwoFace && !edge.cos_dihedral.is_nan())
+    edges.edges.iter().filter(|edge| edge.kind() == EdgeKind::TwoFace && edges.cos_dihedral(edge).is_some())
 }
 
 /// The share, 0..=1, of (edge, view) pairs that the chapter's test tells wrongly with normals of a format.
@@ -205,7 +205,7 @@ pub fn misclassified_share(model: &Model, edges: &Edges, format: NormalFormat, v
     let normals: Vec<Vec3> = edges.face_normals.iter().map(|&normal| format.quantised(normal)).collect();
     let told = |edge: &Edge, eye: Vec3| {
         let view = model.positions[edge.ends[0] as usize] - eye;
-        let [first, second] = edge.faces.map(|face| view.dot(normals[face as usize]));
+        let [first, second] = edge.faces().map(|face| view.dot(normals[face as usize]));
         let product = first * second;
         if edge.wound_oppositely() { -product < 0.0 } else { product < 0.0 }
     };
@@ -226,12 +226,13 @@ pub fn misclassified_share(model: &Model, edges: &Edges, format: NormalFormat, v
 /// None that the input could cause; those of [`contour_edges`].
 pub fn misclassified_share_of_planes(model: &Model, edges: &Edges, views: usize) -> Result<f64, OutlineError> {
     let contours = contour_edges(model, edges, &ContourOptions::default())?;
-    let judged: HashMap<[u32; 2], &Edge> = judged(edges).map(|edge| (edge.ends, edge)).collect();
+    let sorted = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
+    let judged: HashMap<[u32; 2], &Edge> = judged(edges).map(|edge| (sorted(edge.ends), edge)).collect();
     let records: Vec<_> = contours
         .ends
         .iter()
         .zip(&contours.planes)
-        .filter_map(|(&[a, b], planes)| Some((*judged.get(&[a.min(b), a.max(b)])?, planes)))
+        .filter_map(|(&ends, planes)| Some((*judged.get(&sorted(ends))?, planes)))
         .collect();
     let (mut wrong, mut pairs) = (0usize, 0usize);
     for eye in eyes(model, views) {

@@ -66,7 +66,7 @@ fn the_listing_draws_silhouettes_and_neither_creases_nor_edges_seen_edge_on() {
             let normal = edges.face_normals[face as usize].as_dvec3();
             normal.dot(eye) - 1.0
         };
-        side(edge.faces[0]) * side(edge.faces[1]) < 0.0
+        side(edge.faces()[0]) * side(edge.faces()[1]) < 0.0
     };
     let silhouettes = edges.edges.iter().filter(|edge| by_hand(edge)).count();
     assert_eq!(silhouettes, 2, "with faces seen edge-on, two of six are left");
