@@ -148,7 +148,8 @@ fn face_shapes(model: &Model) -> Vec<FaceShape> {
         }
         for (face, measures) in (before..).zip(&*measures) {
             let goes_on = face > 0 && model.face_polygon[face] == model.face_polygon[face - 1];
-            let (first, area, longest_squared, magnitude) = if goes_on { polygon } else { (face, DVec3::ZERO, 0.0, 0.0) };
+            let (first, area, longest_squared, magnitude) =
+                if goes_on { polygon } else { (face, DVec3::ZERO, 0.0, 0.0) };
             polygon = (
                 first,
                 area + measures.area,

@@ -17,7 +17,7 @@ mod meshes;
 mod pose;
 mod scene;
 
-use super::Loaded;
+use super::{Loaded, read_file};
 use crate::{Limits, LoadError};
 use files::Bytes;
 use gltf::json::{self, Root};
@@ -53,7 +53,7 @@ fn malformed(path: &Path, fault: impl Into<String>) -> LoadError {
 /// # Errors
 /// [`LoadError`], which names the file and the fault.
 pub(super) fn load(path: &Path, limits: &Limits) -> Result<Loaded, LoadError> {
-    let bytes = files::read(path, limits)?;
+    let bytes = read_file(path, limits)?;
     let (text, binary) = files::split_container(&bytes).map_err(|fault| malformed(path, fault))?;
     let root: Root =
         json::deserialize::from_slice(text).map_err(|error| malformed(path, format!("not glTF 2.0: {error}")))?;

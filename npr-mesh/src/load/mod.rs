@@ -10,6 +10,8 @@ mod image_file;
 mod obj;
 
 use crate::{Limits, LoadError, Model, normals};
+use std::fs;
+use std::io::{self, Read};
 use std::path::Path;
 
 /// How a file is to be read.
@@ -54,4 +56,31 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, LoadError> {
     }
     normals::fill_missing(&mut loaded.model, options.normal_crease_angle_rad);
     Ok(loaded)
+}
+
+/// All of a regular file that is within [`Limits::file_bytes`].
+fn read_file(path: &Path, limits: &Limits) -> Result<Vec<u8>, LoadError> {
+    let failed = |source: io::Error| LoadError::Read { path: path.to_owned(), source };
+    let too_large = |count| LoadError::TooLarge {
+        path: path.to_owned(),
+        what: "bytes in the file",
+        count,
+        limit: limits.file_bytes,
+    };
+    // Asked before opening: to open a pipe may wait for ever.
+    let metadata = fs::metadata(path).map_err(failed)?;
+    if !metadata.is_file() {
+        return Err(failed(io::Error::other("not a regular file")));
+    }
+    if metadata.len() > limits.file_bytes {
+        return Err(too_large(metadata.len()));
+    }
+    let mut bytes = Vec::with_capacity(usize::try_from(metadata.len()).unwrap_or(0));
+    let file = fs::File::open(path).map_err(failed)?;
+    // A file may grow between the question and the reading.
+    file.take(limits.file_bytes.saturating_add(1)).read_to_end(&mut bytes).map_err(failed)?;
+    if bytes.len() as u64 > limits.file_bytes {
+        return Err(too_large(bytes.len() as u64));
+    }
+    Ok(bytes)
 }

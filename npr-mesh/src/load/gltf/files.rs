@@ -1,11 +1,10 @@
 //! Bytes: the binary container, buffers, and what URIs refer to.
 
 use super::{Document, malformed};
+use crate::load::read_file;
 use crate::{Limits, LoadError};
 use gltf::json::{Index, Root, buffer};
 use std::collections::HashMap;
-use std::fs::File;
-use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
@@ -24,33 +23,6 @@ impl Bytes<'_> {
             Bytes::Resource(bytes, length) => &bytes[..*length],
         }
     }
-}
-
-/// All of a regular file that is within [`Limits::file_bytes`].
-pub(super) fn read(path: &Path, limits: &Limits) -> Result<Vec<u8>, LoadError> {
-    let failed = |source: io::Error| LoadError::Read { path: path.to_owned(), source };
-    let too_large = |count| LoadError::TooLarge {
-        path: path.to_owned(),
-        what: "bytes in the file",
-        count,
-        limit: limits.file_bytes,
-    };
-    // Asked before opening: to open a pipe may wait for ever.
-    let metadata = std::fs::metadata(path).map_err(failed)?;
-    if !metadata.is_file() {
-        return Err(failed(io::Error::other("not a regular file")));
-    }
-    if metadata.len() > limits.file_bytes {
-        return Err(too_large(metadata.len()));
-    }
-    let mut bytes = Vec::with_capacity(usize::try_from(metadata.len()).unwrap_or(0));
-    let file = File::open(path).map_err(failed)?;
-    // A file may grow between the question and the reading.
-    file.take(limits.file_bytes.saturating_add(1)).read_to_end(&mut bytes).map_err(failed)?;
-    if bytes.len() as u64 > limits.file_bytes {
-        return Err(too_large(bytes.len() as u64));
-    }
-    Ok(bytes)
 }
 
 /// The JSON text and, of a GLB file, the binary chunk (glTF 2.0, 4.4 "Binary glTF Layout").
@@ -120,7 +92,7 @@ pub(super) fn buffers<'a>(
                         match read_before.get(&file) {
                             Some(bytes) => Rc::clone(bytes),
                             None => {
-                                let bytes = Rc::new(read(&file, limits)?);
+                                let bytes = Rc::new(read_file(&file, limits)?);
                                 read_before.insert(file, Rc::clone(&bytes));
                                 bytes
                             }

@@ -1,7 +1,7 @@
 //! Materials, their textures, and which texture coordinates they want.
 
 use super::{Document, files};
-use crate::load::image_file;
+use crate::load::{image_file, read_file};
 use crate::{AlphaMode, LoadError, Material, Model, Texture, Wrap};
 use glam::{Vec2, Vec4};
 use gltf::json::texture::{Info, MagFilter, WrappingMode};
@@ -164,7 +164,7 @@ fn decode(document: &Document, number: usize) -> Result<Texture, LoadError> {
             None => {
                 let file = files::resolve(document.path, uri).map_err(fail)?;
                 name = files::shortened(uri);
-                image_file::decode(&files::read(&file, limits)?, &name, &file, limits)?
+                image_file::decode(&read_file(&file, limits)?, &name, &file, limits)?
             }
         },
         (None, None) => return Err(fail("neither a buffer view nor a URI".to_owned())),

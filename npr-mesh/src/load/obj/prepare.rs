@@ -1,0 +1,525 @@
+//! A text that tobj reads as it is meant.
+
+use crate::{Limits, LoadError};
+use std::borrow::Cow;
+use std::collections::BTreeSet;
+use std::io::BufRead;
+use std::ops::Range;
+use std::path::Path;
+
+#[derive(Default)]
+pub(super) struct Counts {
+    /// `v`, `vt` and `vn` lines.
+    pub arrays: [u64; 3],
+    pub colored: u64,
+    pub corners: u64,
+    pub triangles: u64,
+}
+
+/// What tobj can read safely, and what it would lose.
+pub(super) struct Prepared {
+    pub text: Vec<u8>,
+    pub counts: Counts,
+    /// Corners without texture coordinate, and without normal, numbered through all faces that tobj is given.
+    pub absent: [Runs; 2],
+    pub materials_used: BTreeSet<String>,
+    pub warnings: Vec<String>,
+}
+
+/// Ascending ranges of corners that neither touch nor overlap.
+pub(super) type Runs = Vec<Range<u64>>;
+
+/// Adds `count` corners from `start`, behind all that are there.
+fn add_run(runs: &mut Runs, start: u64, count: u64) {
+    match runs.last_mut() {
+        Some(last) if last.end == start => last.end += count,
+        _ => runs.push(start..start + count),
+    }
+}
+
+/// Takes the corners from `end` on out.
+fn cut_runs(runs: &mut Runs, end: u64) {
+    while let Some(last) = runs.last_mut()
+        && last.end > end
+    {
+        last.end = end;
+        if last.is_empty() {
+            runs.pop();
+        }
+    }
+}
+
+/// What of the runs is in a range.
+pub(super) fn runs_within(runs: &Runs, range: &Range<u64>) -> impl Iterator<Item = Range<u64>> {
+    let (start, end) = (range.start, range.end);
+    runs[runs.partition_point(|run| run.end <= start)..]
+        .iter()
+        .take_while(move |run| run.start < end)
+        .map(move |run| run.start.max(start)..run.end.min(end))
+}
+
+const ARRAYS: [&str; 3] = ["vertex", "texture coordinate", "normal"];
+
+/// The `v`, `vt`, `vn`, `f`, `usemtl` and `mtllib` lines in a form that tobj reads as it is meant, everything
+/// checked that it would not check.
+pub(super) fn prepare(mut bytes: Vec<u8>, path: &Path, limits: &Limits) -> Result<Prepared, LoadError> {
+    let malformed = |line: u64, fault: String| LoadError::Malformed {
+        path: path.to_owned(),
+        fault: if line == 0 { fault } else { format!("line {line}: {fault}") },
+    };
+    if bytes.contains(&0) {
+        return Err(malformed(0, "not a text file".to_owned()));
+    }
+    if bytes.starts_with(b"\xef\xbb\xbf") {
+        bytes[..3].fill(b' ');
+    }
+    // Lines ended so before 2001.
+    if !bytes.contains(&b'\n') {
+        bytes.iter_mut().filter(|b| **b == b'\r').for_each(|b| *b = b'\n');
+    }
+
+    let mut counts = Counts::default();
+    let mut absent = [Runs::new(), Runs::new()];
+    let mut materials_used = BTreeSet::new();
+    let mut repaired = Repaired::default();
+    // Per array the highest number that a face names, and that face's line.
+    let mut highest = [(0u64, 0u64); 3];
+    let mut edit = Edit { bytes: &bytes, out: Vec::new(), copied: 0 };
+    let mut at = 0;
+    let mut line_number = 0;
+    let mut joined = Vec::new();
+    while at < bytes.len() {
+        // Nearly all lines are of two kinds and need neither a change nor a closer look.
+        if let Some(length) = plain_vertex(&bytes[at..]) {
+            line_number += 1;
+            at += length;
+            counts.arrays[0] += 1;
+            continue;
+        }
+        if let Some(face) = plain_face(&bytes[at..])
+            && face.corners <= limits.polygon_corners
+        {
+            line_number += 1;
+            at += face.length;
+            for (highest, of_face) in
+                highest.iter_mut().zip(face.highest).filter(|(highest, of_face)| *of_face > highest.0)
+            {
+                *highest = (of_face, line_number);
+            }
+            for (runs, _) in absent.iter_mut().zip(&face.highest[1..]).filter(|(_, highest)| **highest == 0) {
+                add_run(runs, counts.corners, face.corners);
+            }
+            counts.corners += face.corners;
+            counts.triangles += face.corners - 2;
+            continue;
+        }
+        let begin = at;
+        line_number += 1;
+        let first_line_number = line_number;
+        at += line_length(&bytes[at..]);
+        let mut line = trim_end(&bytes[begin..at]);
+        let mut rewritten = false;
+        if line.ends_with(b"\\") && !line.trim_ascii_start().starts_with(b"#") {
+            joined.clear();
+            while let [start @ .., b'\\'] = line {
+                joined.extend_from_slice(start);
+                joined.push(b' ');
+                line_number += 1;
+                let end = at + line_length(&bytes[at..]);
+                line = trim_end(&bytes[at..end]);
+                at = end;
+            }
+            joined.extend_from_slice(line);
+            line = trim_end(&joined);
+            rewritten = true;
+        }
+        let bad = |fault: String| malformed(first_line_number, fault);
+        let trimmed = line.trim_ascii_start();
+        // tobj takes names from where a line without indentation would have them.
+        rewritten |= trimmed.len() < line.len();
+        line = trimmed;
+        let word_length = line.iter().position(u8::is_ascii_whitespace).unwrap_or(line.len());
+        let (keyword, mut rest) = line.split_at(word_length);
+        let mut words = 0;
+        if matches!(keyword, b"v" | b"vt" | b"vn") {
+            let length;
+            (words, length) = count_words(rest);
+            if length < rest.len() {
+                rest = &rest[..length];
+                line = trim_end(&line[..word_length + length]);
+                rewritten = true;
+            }
+        }
+        match keyword {
+            b"v" => {
+                counts.arrays[0] += 1;
+                match words {
+                    0..=2 => return Err(bad(format!("a vertex of {words} coordinates"))),
+                    3 | 4 => {}
+                    5 => {
+                        edit.replace(begin, at, &first_words(line, 4));
+                        repaired.vertex_words += 1;
+                        continue;
+                    }
+                    _ => {
+                        counts.colored += 1;
+                        if words_of(rest).skip(3).take(3).any(|word| number(word).is_none()) {
+                            return Err(bad("a vertex colour that is no number".to_owned()));
+                        }
+                        if words > 6 {
+                            edit.replace(begin, at, &first_words(line, 7));
+                            repaired.vertex_words += 1;
+                            continue;
+                        }
+                    }
+                }
+            }
+            b"vt" => {
+                counts.arrays[1] += 1;
+                if words == 1 {
+                    edit.replace(begin, at, &[line, b" 0"].concat());
+                    continue;
+                }
+            }
+            b"vn" => counts.arrays[2] += 1,
+            b"f" => {
+                let mut corners = 0u64;
+                let corners_before = counts.corners;
+                let mut outline = Corners { rest };
+                while let Some(corner) = outline.next_corner().map_err(|fault| bad(fault.to_owned()))? {
+                    for kind in 0..3 {
+                        let index = corner[kind];
+                        if index > 0 {
+                            if index as u64 > highest[kind].0 {
+                                highest[kind] = (index as u64, first_line_number);
+                            }
+                        } else if index == 0 {
+                            if kind == 0 {
+                                return Err(bad("a face corner without a vertex (they count from 1)".to_owned()));
+                            }
+                            add_run(&mut absent[kind - 1], corners_before + corners, 1);
+                        } else if index.unsigned_abs() > counts.arrays[kind] {
+                            let (name, count) = (ARRAYS[kind], counts.arrays[kind]);
+                            return Err(bad(format!("a face uses {name} {index}, and there are {count} before it")));
+                        }
+                    }
+                    corners += 1;
+                }
+                if corners < 3 {
+                    repaired.short_faces += 1;
+                    absent.iter_mut().for_each(|runs| cut_runs(runs, corners_before));
+                    edit.replace(begin, at, b"");
+                    continue;
+                }
+                if corners > limits.polygon_corners {
+                    return Err(LoadError::TooLarge {
+                        path: path.to_owned(),
+                        what: "corners of a polygon",
+                        count: corners,
+                        limit: limits.polygon_corners,
+                    });
+                }
+                counts.corners += corners;
+                counts.triangles += corners - 2;
+                if !outline.rest.is_empty() {
+                    line = &line[..line.len() - outline.rest.len()];
+                    rewritten = true;
+                }
+            }
+            b"usemtl" | b"mtllib" => {
+                // Names can have any bytes; tobj takes UTF-8 only, and a single space before them.
+                let name = String::from_utf8_lossy(rest.trim_ascii());
+                if name.is_empty() {
+                    edit.replace(begin, at, b"");
+                    continue;
+                }
+                if keyword == b"usemtl" && !materials_used.contains(name.as_ref()) {
+                    materials_used.insert(name.to_string());
+                }
+                if rewritten || matches!(name, Cow::Owned(_)) || rest[0] != b' ' {
+                    edit.replace(begin, at, &[keyword, b" ", name.as_bytes()].concat());
+                    continue;
+                }
+            }
+            // Lines that would be parsed as faces or that part the file into meshes, and what may not be UTF-8.
+            [] => continue,
+            [b'#', ..] if line.is_ascii() => continue,
+            _ => {
+                edit.replace(begin, at, b"");
+                continue;
+            }
+        }
+        if rewritten {
+            edit.replace(begin, at, line);
+        }
+    }
+
+    for (what, count, limit) in [
+        ("vertices", counts.arrays.iter().copied().max().unwrap_or(0), limits.vertices),
+        ("faces", counts.triangles, limits.faces),
+    ] {
+        if count > limit {
+            return Err(LoadError::TooLarge { path: path.to_owned(), what, count, limit });
+        }
+    }
+    for kind in 0..3 {
+        let ((index, line), count, name) = (highest[kind], counts.arrays[kind], ARRAYS[kind]);
+        if index > count {
+            return Err(malformed(line, format!("a face uses {name} {index} of {count}")));
+        }
+    }
+    let text = edit.finish();
+    let mut text = text.unwrap_or(bytes);
+    if counts.colored > 0 && counts.colored < counts.arrays[0] {
+        text = color_all(&text);
+        repaired.uncolored = counts.arrays[0] - counts.colored;
+    }
+    Ok(Prepared { text, counts, absent, materials_used, warnings: repaired.warnings() })
+}
+
+/// The length, with its end, of a line of `v`, a space and three numbers.
+fn plain_vertex(bytes: &[u8]) -> Option<usize> {
+    const OTHER: u8 = 0;
+    const IN_NUMBER: u8 = 1;
+    const SPACE: u8 = 2;
+    const END: u8 = 3;
+    const CLASS: [u8; 256] = {
+        let mut class = [OTHER; 256];
+        let mut i = 0;
+        while i < 256 {
+            class[i] = match i as u8 {
+                b'0'..=b'9' | b'+' | b'-' | b'.' | b'e' | b'E' => IN_NUMBER,
+                b' ' | b'\t' | b'\r' => SPACE,
+                b'\n' => END,
+                _ => OTHER,
+            };
+            i += 1;
+        }
+        class
+    };
+    let mut words = 0;
+    let mut before = SPACE;
+    for (at, &byte) in bytes.strip_prefix(b"v ")?.iter().enumerate() {
+        let class = CLASS[byte as usize];
+        if class == END || class == OTHER {
+            return (class == END && words == 3).then_some(at + 3);
+        }
+        words += u32::from(class < before);
+        before = class;
+    }
+    None
+}
+
+/// A line of `f` that has three corners and more, all with the same kinds of positive numbers, and nothing else.
+struct PlainFace {
+    /// With its end.
+    length: usize,
+    corners: u64,
+    /// Of vertex, texture coordinate and normal the highest number, 0 where the face has none.
+    highest: [u64; 3],
+}
+
+#[inline]
+fn plain_face(bytes: &[u8]) -> Option<PlainFace> {
+    let mut rest = bytes.strip_prefix(b"f ")?;
+    let mut highest = [0u64; 3];
+    let mut corners = 0;
+    loop {
+        while let [b' ', after @ ..] = rest {
+            rest = after;
+        }
+        if let [b'\n', after @ ..] | [b'\r', b'\n', after @ ..] = rest {
+            return (corners >= 3).then_some(PlainFace { length: bytes.len() - after.len(), corners, highest });
+        }
+        let mut kind = 0;
+        loop {
+            let mut value = 0u64;
+            let mut digits = 0;
+            // Ten digits could be too large a number.
+            while let [digit @ b'0'..=b'9', after @ ..] = rest
+                && digits < 10
+            {
+                value = value * 10 + u64::from(digit - b'0');
+                digits += 1;
+                rest = after;
+            }
+            let may_be_absent = kind == 1 && digits == 0;
+            if (value == 0 && !may_be_absent) || digits > 9 || (corners > 0 && (highest[kind] == 0) != (value == 0)) {
+                return None;
+            }
+            highest[kind] = highest[kind].max(value);
+            match rest {
+                [b'/', after @ ..] if kind < 2 => {
+                    kind += 1;
+                    rest = after;
+                }
+                [b' ' | b'\n' | b'\r', ..] => break,
+                _ => return None,
+            }
+        }
+        // The first corner says which kinds there are.
+        if highest[kind + 1..].iter().any(|&highest| highest > 0) {
+            return None;
+        }
+        corners += 1;
+    }
+}
+
+#[derive(Default)]
+struct Repaired {
+    short_faces: u64,
+    vertex_words: u64,
+    uncolored: u64,
+}
+
+impl Repaired {
+    fn warnings(&self) -> Vec<String> {
+        [
+            (self.short_faces, "faces with fewer than 3 corners are left out"),
+            (self.vertex_words, "vertices have 5 numbers or more than 6: what is too much is passed over"),
+            (self.uncolored, "vertices have no colour where others have one: they are white"),
+        ]
+        .iter()
+        .filter(|(count, _)| *count > 0)
+        .map(|(count, what)| format!("{count} {what}"))
+        .collect()
+    }
+}
+
+/// A text in which lines are replaced; nothing is copied until one is.
+struct Edit<'a> {
+    bytes: &'a [u8],
+    out: Vec<u8>,
+    /// Up to here `bytes` is in `out`, edited.
+    copied: usize,
+}
+
+impl Edit<'_> {
+    /// The lines from `begin` up to `end`, with their line ends, become one line.
+    fn replace(&mut self, begin: usize, end: usize, line: &[u8]) {
+        self.out.extend_from_slice(&self.bytes[self.copied..begin]);
+        self.out.extend_from_slice(line);
+        self.out.push(b'\n');
+        self.copied = end;
+    }
+
+    fn finish(mut self) -> Option<Vec<u8>> {
+        (self.copied > 0).then(|| {
+            self.out.extend_from_slice(&self.bytes[self.copied..]);
+            self.out
+        })
+    }
+}
+
+/// With the line end.
+fn line_length(mut bytes: &[u8]) -> usize {
+    bytes.skip_until(b'\n').unwrap_or(0)
+}
+
+fn trim_end(line: &[u8]) -> &[u8] {
+    line.trim_ascii_end()
+}
+
+/// How many words there are before a comment, and where that begins.
+fn count_words(line: &[u8]) -> (usize, usize) {
+    let mut words = 0;
+    let mut in_space = true;
+    for (i, &b) in line.iter().enumerate() {
+        if b == b'#' {
+            return (words, i);
+        }
+        let is_space = b <= b' ';
+        words += usize::from(in_space && !is_space);
+        in_space = is_space;
+    }
+    (words, line.len())
+}
+
+fn words_of(line: &[u8]) -> impl Iterator<Item = &[u8]> {
+    line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty())
+}
+
+fn first_words(line: &[u8], count: usize) -> Vec<u8> {
+    words_of(line).take(count).collect::<Vec<_>>().join(&b' ')
+}
+
+fn number(word: &[u8]) -> Option<f32> {
+    std::str::from_utf8(word).ok()?.parse().ok()
+}
+
+/// The corners of an `f` line that are still to come; a comment in the end.
+struct Corners<'a> {
+    rest: &'a [u8],
+}
+
+impl Corners<'_> {
+    /// Numbers of vertex, texture coordinate and normal as in the file, 0 where there is none.
+    #[inline]
+    fn next_corner(&mut self) -> Result<Option<[i64; 3]>, &'static str> {
+        let mut bytes = self.rest;
+        while let [b' ' | b'\t' | b'\r' | 12, after @ ..] = bytes {
+            bytes = after;
+        }
+        if matches!(bytes, [] | [b'#', ..]) {
+            self.rest = bytes;
+            return Ok(None);
+        }
+        let mut corner = [0i64; 3];
+        let mut kind = 0;
+        loop {
+            let negative = bytes.first() == Some(&b'-');
+            let signed = negative || bytes.first() == Some(&b'+');
+            if signed {
+                bytes = &bytes[1..];
+            }
+            let mut value = 0i64;
+            let mut digits = 0;
+            while let [digit @ b'0'..=b'9', after @ ..] = bytes {
+                value = value * 10 + i64::from(digit - b'0');
+                digits += 1;
+                bytes = after;
+                if value > i64::from(u32::MAX) {
+                    return Err("a face with a number that is too large");
+                }
+            }
+            if signed && digits == 0 {
+                return Err("a face corner that is no number");
+            }
+            corner[kind] = if negative { -value } else { value };
+            match bytes {
+                [] | [b' ' | b'\t' | b'\r' | 12 | b'#', ..] => break,
+                [b'/', after @ ..] if kind < 2 => {
+                    kind += 1;
+                    bytes = after;
+                }
+                _ => return Err("a face corner that is no number"),
+            }
+        }
+        self.rest = bytes;
+        Ok(Some(corner))
+    }
+}
+
+/// White for the vertices without a colour.
+fn color_all(text: &[u8]) -> Vec<u8> {
+    let mut out = Vec::with_capacity(text.len() * 2);
+    for line in text.split(|b| *b == b'\n') {
+        let line = trim_end(line);
+        out.extend_from_slice(line);
+        if let [b'v', space, rest @ ..] = line
+            && space.is_ascii_whitespace()
+        {
+            let (words, _) = count_words(rest);
+            if words == 4 {
+                // A weight cannot stand beside a colour. It is 1 wherever this has been met.
+                let end = line.iter().rposition(u8::is_ascii_whitespace).unwrap_or(line.len());
+                out.truncate(out.len() - (line.len() - end));
+            }
+            if words < 6 {
+                out.extend_from_slice(b" 1 1 1");
+            }
+        }
+        out.push(b'\n');
+    }
+    out
+}
