@@ -6,7 +6,7 @@
 
 use npr_harness::camera::{Camera, Framing};
 use npr_harness::gpu::{GpuContext, GpuRenderer};
-use npr_harness::plan::{LineFinder, Plan};
+use npr_harness::plan::{LineMethod, Plan};
 use npr_harness::scene::Scene;
 use npr_harness::style::{Shade, Style, style};
 use std::path::Path;
@@ -36,27 +36,36 @@ fn main() {
         other => other.clone(),
     };
     let lambert = Shade::Lambert { ambient: 0.25 };
-    let cases: [(&str, Style, LineFinder); 7] = [
-        ("Lambert", Style { shade: lambert.clone(), lines: None, ..base.clone() }, LineFinder::Cpu),
-        ("toon", Style { lines: None, ..base.clone() }, LineFinder::Cpu),
-        ("toon without highlight", Style { shade: without_highlight, lines: None, ..base.clone() }, LineFinder::Cpu),
-        ("Lambert + lines, found on the CPU", Style { shade: lambert, ..base.clone() }, LineFinder::Cpu),
-        ("toon + lines, found on the CPU", base.clone(), LineFinder::Cpu),
-        ("toon + lines, found on the device", base.clone(), LineFinder::Device),
+    let cases: [(&str, Style, LineMethod); 8] = [
+        ("Lambert", Style { shade: lambert.clone(), lines: None, ..base.clone() }, LineMethod::Rectangles),
+        ("toon", Style { lines: None, ..base.clone() }, LineMethod::Rectangles),
+        (
+            "toon without highlight",
+            Style { shade: without_highlight, lines: None, ..base.clone() },
+            LineMethod::Rectangles,
+        ),
+        ("Lambert + lines as strokes", Style { shade: lambert, ..base.clone() }, LineMethod::Strokes),
+        ("toon + lines as strokes", base.clone(), LineMethod::Strokes),
+        ("toon + lines as rectangles", base.clone(), LineMethod::Rectangles),
+        ("toon + lines found on the device", base.clone(), LineMethod::OnDevice),
         (
             "toon + printed fins, all edges",
             Style { lines: style("printed-fins").and_then(|s| s.lines), ..base },
-            LineFinder::Cpu,
+            LineMethod::Rectangles,
         ),
     ];
     let renderer = GpuRenderer::new(&context);
     let targets = renderer.targets(SIZE.0, SIZE.1).expect("the size is within every device's limits");
     let prepared: Vec<_> = cases
         .iter()
-        .filter(|(_, _, finder)| *finder == LineFinder::Cpu || context.can_find_lines)
-        .map(|(name, style, finder)| {
+        .filter(|(.., method)| match method {
+            LineMethod::OnDevice => context.can_find_lines,
+            LineMethod::Strokes => context.can_stroke,
+            LineMethod::Auto | LineMethod::Rectangles => true,
+        })
+        .map(|(name, style, method)| {
             let plan = Plan::new(&scene, style, &camera).expect("the styles are valid");
-            let uploaded = renderer.upload(&scene, &plan, *finder).expect("the scene fits");
+            let uploaded = renderer.upload(&scene, &plan, *method).expect("the scene fits");
             (name, style, plan, uploaded)
         })
         .collect();

@@ -11,7 +11,7 @@ use crate::style::Style;
 #[cfg(feature = "gpu")]
 use crate::gpu::{self, GpuContext};
 #[cfg(feature = "gpu")]
-use crate::plan::LineFinder;
+use crate::plan::LineMethod;
 
 /// What is asked for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -135,7 +135,7 @@ impl Executor {
     ) -> Result<Image, HarnessError> {
         match self {
             #[cfg(feature = "gpu")]
-            Self::Gpu(context) => Ok(gpu::render(context, scene, style, plan, camera, size, LineFinder::Auto)?),
+            Self::Gpu(context) => Ok(gpu::render(context, scene, style, plan, camera, size, LineMethod::Auto)?),
             Self::Cpu { .. } => {
                 let options = CpuOptions { samples, ..Default::default() };
                 Ok(cpu::render(scene, style, plan, camera, size, &options, progress).image())

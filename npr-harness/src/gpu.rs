@@ -16,12 +16,13 @@ pub use targets::Targets;
 
 use crate::camera::Camera;
 use crate::compare::Image;
-use crate::plan::{LineFinder, Plan};
+use crate::plan::{LineMethod, Plan};
 use crate::scene::{Scene, key_light};
 use crate::style::{Lines, Shade, Style};
 use glam::DVec2;
 use npr_outline::fin_pass::FinPass;
 use npr_outline::line_pass::{LineRecord, LineSource, LineTargets, line_records};
+use npr_outline::line_strokes::{LineStrokes, StrokeTargets};
 use npr_outline::normal_format::NormalFormat;
 use npr_toon::ToonUniform;
 use std::cell::{OnceCell, RefCell};
@@ -32,6 +33,7 @@ pub struct GpuRenderer<'a> {
     context: &'a GpuContext,
     surface: SurfacePass,
     lines: npr_outline::line_pass::LinePass,
+    strokes: OnceCell<LineStrokes>,
     printed: OnceCell<FinPass>,
     scratch: RefCell<(Vec<u32>, Vec<LineRecord>)>,
 }
@@ -47,6 +49,7 @@ impl<'a> GpuRenderer<'a> {
                 targets::COLOR_FORMAT,
                 context.can_find_lines,
             ),
+            strokes: OnceCell::new(),
             printed: OnceCell::new(),
             scratch: Default::default(),
         }
@@ -56,20 +59,27 @@ impl<'a> GpuRenderer<'a> {
     ///
     /// # Errors
     /// [`GpuError::BufferTooLarge`].
-    pub fn upload(&self, scene: &Scene, plan: &Plan, finder: LineFinder) -> Result<GpuScene, GpuError> {
-        let on_device = match finder {
-            LineFinder::Auto => self.context.can_find_lines && !self.context.is_software(),
-            LineFinder::Cpu => false,
-            LineFinder::Device => true,
+    pub fn upload(&self, scene: &Scene, plan: &Plan, method: LineMethod) -> Result<GpuScene, GpuError> {
+        let (context, hardware) = (self.context, !self.context.is_software());
+        let (on_device, strokes) = match method {
+            LineMethod::Auto => (hardware && context.can_find_lines, !hardware && context.can_stroke),
+            LineMethod::Rectangles => (false, false),
+            LineMethod::Strokes => (false, true),
+            LineMethod::OnDevice => (true, false),
         };
         let mut uploaded = GpuScene::new(self.context, &self.surface, scene, plan)?;
         if let (true, Some(contours)) = (on_device, &plan.contours) {
             uploaded.edges = Some(self.lines.upload_edges(&self.context.device, contours, &scene.model.positions)?);
         }
+        uploaded.strokes = strokes;
         if let Some(fins) = &plan.printed_fins {
             uploaded.fins = Some(self.printed().upload(&self.context.device, fins)?);
         }
         Ok(uploaded)
+    }
+
+    fn strokes(&self) -> &LineStrokes {
+        self.strokes.get_or_init(|| LineStrokes::new(&self.context.device))
     }
 
     fn printed(&self) -> &FinPass {
@@ -131,15 +141,22 @@ impl<'a> GpuRenderer<'a> {
                     LineSource::Records(records)
                 }
             };
-            let line_targets = LineTargets {
-                painted: &targets.color_view,
-                depth: &targets.depth_view,
-                inked: &targets.inked_view,
-                winner: &targets.winner_view,
-            };
             let view = camera.line_view(size_px);
-            targets.begin_ink(&mut encoder);
-            self.lines.record(device, &mut encoder, source, look, &view, eye, &line_targets)?;
+            let buffers = if uploaded.strokes { targets.stroke_buffers(device, self.strokes()) } else { None };
+            if let (LineSource::Records(records), Some(buffers)) = (source, buffers) {
+                let stroke_targets =
+                    StrokeTargets { picture: &targets.color_view, depth: &targets.depth_view, buffers };
+                self.strokes().record(device, &mut encoder, records, look, &view, &stroke_targets)?;
+            } else {
+                let line_targets = LineTargets {
+                    painted: &targets.color_view,
+                    depth: &targets.depth_view,
+                    inked: &targets.inked_view,
+                    winner: &targets.winner_view,
+                };
+                targets.begin_ink(&mut encoder);
+                self.lines.record(device, &mut encoder, source, look, &view, eye, &line_targets)?;
+            }
         }
         if let (Some(Lines::Printed { width_px, ink }), Some(fins), Some(bounds)) =
             (&style.lines, &uploaded.fins, scene.model.bounds())
@@ -153,7 +170,7 @@ impl<'a> GpuRenderer<'a> {
     }
 
     /// The lines, in no order, that the device found for the last frame of this upload, or `None` if it was not asked
-    /// to ([`LineFinder`]).
+    /// to ([`LineMethod`]).
     ///
     /// # Errors
     /// [`GpuError::Device`].
@@ -186,11 +203,11 @@ pub fn render(
     plan: &Plan,
     camera: &Camera,
     (width, height): (u32, u32),
-    finder: LineFinder,
+    method: LineMethod,
 ) -> Result<Image, GpuError> {
     let renderer = GpuRenderer::new(context);
     let targets = renderer.targets(width, height)?;
-    let uploaded = renderer.upload(scene, plan, finder)?;
+    let uploaded = renderer.upload(scene, plan, method)?;
     renderer.draw(scene, &uploaded, style, plan, camera, &targets)?;
     renderer.read(&targets)
 }

@@ -10,16 +10,19 @@ use npr_outline::fin_printed::{PrintedFins, printed_fins};
 use npr_outline::{LineKind, OutlineError};
 use std::fmt;
 
-/// Where the edges that are lines are found.
+/// How lines are found and drawn on a device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum LineFinder {
-    /// On the CPU where the adapter is software, on the device where it is hardware.
+pub enum LineMethod {
+    /// [`LineMethod::OnDevice`] where the adapter is hardware, [`LineMethod::Strokes`] where it is software;
+    /// [`LineMethod::Rectangles`] where it can do neither.
     #[default]
     Auto,
-    /// A scan on the CPU; the lines alone are sent.
-    Cpu,
-    /// A compute pass and an indirect draw.
-    Device,
+    /// A scan on the CPU, and the lines that it finds drawn as rectangles.
+    Rectangles,
+    /// A scan on the CPU, and the lines that it finds drawn by compute shaders.
+    Strokes,
+    /// A compute pass that finds the lines, and an indirect draw of rectangles.
+    OnDevice,
 }
 
 /// A pass and why it is there, or why not.

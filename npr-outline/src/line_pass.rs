@@ -17,6 +17,7 @@ use wgpu::util::DeviceExt;
 
 /// The WGSL library of this crate: no bindings, no entry points.
 pub const WGSL: &str = include_str!("line.wgsl");
+pub(crate) const INK_WGSL: &str = include_str!("line_ink.wgsl");
 const PASS_WGSL: &str = include_str!("line_pass.wgsl");
 const PULLED_WGSL: &str = include_str!("line_pulled.wgsl");
 const COMPACTION_WGSL: &str = include_str!("compaction.wgsl");
@@ -165,7 +166,7 @@ impl LinePass {
             let groups = [&[Some(&view_layout), Some(&picture_layout)], pulled].concat();
             line_pipeline(device, module, vertex, &groups, color_format)
         };
-        let module = shader(device, "outline lines", &[WGSL, PASS_WGSL]);
+        let module = shader(device, "outline lines", &[WGSL, INK_WGSL, PASS_WGSL]);
         let record_pipeline = pipeline(&module, ("vs_record", &RECORD_LAYOUT), &[]);
         let read = wgpu::BufferBindingType::Storage { read_only: true };
         let vertex = wgpu::ShaderStages::VERTEX;
@@ -180,7 +181,7 @@ impl LinePass {
                 "outline compaction",
                 &[buffer_entry(0, compute, read), buffer_entry(1, compute, write), buffer_entry(2, compute, write)],
             );
-            let module = shader(device, "outline pulled lines", &[WGSL, PASS_WGSL, PULLED_WGSL]);
+            let module = shader(device, "outline pulled lines", &[WGSL, INK_WGSL, PASS_WGSL, PULLED_WGSL]);
             let pulled_pipeline = pipeline(&module, ("vs_pulled", &EDGE_NUMBER_LAYOUT), &[Some(&pulled_layout)]);
             let compaction = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
                 label: Some("outline compaction"),
@@ -361,11 +362,8 @@ impl LinePass {
 }
 
 impl EdgesOnDevice {
-    /// Workgroups of 64 edges, in rows of at most 65,535, which every device can dispatch.
     fn workgroups(&self) -> (u32, u32) {
-        let groups = self.edge_count.div_ceil(64).max(1);
-        let rows = groups.div_ceil(65_535);
-        (groups.div_ceil(rows), rows)
+        workgroups(self.edge_count)
     }
 
     /// The numbers of the lines that the last frame's compute pass found, in no order; the first
@@ -382,35 +380,48 @@ impl EdgesOnDevice {
 
 impl OutlineUniform {
     fn new(look: &LineLook, view: &LineView, eye: DVec4, source: LineSource<'_>) -> Self {
-        let (edge_count, always_count, row_stride, origin) = match source {
-            LineSource::Records(_) => (0, 0, 0, Vec3::ZERO),
-            LineSource::OnDevice(edges) => {
-                (edges.edge_count, edges.always_count, 64 * edges.workgroups().0, edges.local_origin)
-            }
-        };
+        let LineSource::OnDevice(edges) = source else { return Self::of_records(look, view, 0, 0) };
+        Self {
+            local_eye: (eye - edges.local_origin.as_dvec3().extend(0.0) * eye.w).as_vec4().to_array(),
+            edge_count: edges.edge_count,
+            always_count: edges.always_count,
+            row_stride: 64 * edges.workgroups().0,
+            ..Self::of_records(look, view, 0, 0)
+        }
+    }
+
+    /// For so many records, with so many invocations in a row of workgroups.
+    pub(crate) fn of_records(look: &LineLook, view: &LineView, records: u32, row_stride: u32) -> Self {
         Self {
             clip_from_world: view.clip_from_world.as_mat4().to_cols_array_2d(),
             viewport_px: view.viewport_px.as_vec2().to_array(),
             depth_per_px: view.depth_per_px.as_vec2().to_array(),
             width_px: look.width_px,
             ink: look.ink,
-            local_eye: (eye - origin.as_dvec3().extend(0.0) * eye.w).as_vec4().to_array(),
-            edge_count,
-            always_count,
+            local_eye: [0.0; 4],
+            edge_count: records,
+            always_count: 0,
             row_stride,
             padding: 0,
         }
     }
 }
 
-fn shader(device: &wgpu::Device, label: &str, parts: &[&str]) -> wgpu::ShaderModule {
+/// Workgroups of 64 for so many invocations, in rows of at most 65,535, which every device can dispatch.
+pub(crate) fn workgroups(invocations: u32) -> (u32, u32) {
+    let groups = invocations.div_ceil(64).max(1);
+    let rows = groups.div_ceil(65_535);
+    (groups.div_ceil(rows), rows)
+}
+
+pub(crate) fn shader(device: &wgpu::Device, label: &str, parts: &[&str]) -> wgpu::ShaderModule {
     device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some(label),
         source: wgpu::ShaderSource::Wgsl(parts.concat().into()),
     })
 }
 
-fn buffer_entry(
+pub(crate) fn buffer_entry(
     binding: u32,
     visibility: wgpu::ShaderStages,
     ty: wgpu::BufferBindingType,
@@ -419,10 +430,10 @@ fn buffer_entry(
     wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None }
 }
 
-fn texture_entry(binding: u32, sample_type: wgpu::TextureSampleType) -> wgpu::BindGroupLayoutEntry {
+pub(crate) fn texture_entry(binding: u32, sample_type: wgpu::TextureSampleType) -> wgpu::BindGroupLayoutEntry {
     wgpu::BindGroupLayoutEntry {
         binding,
-        visibility: wgpu::ShaderStages::FRAGMENT,
+        visibility: wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE,
         ty: wgpu::BindingType::Texture {
             sample_type,
             view_dimension: wgpu::TextureViewDimension::D2,

@@ -1,10 +1,4 @@
-// Entry points of the line pass; appended to `line.wgsl`.
-
-@group(0) @binding(0) var<uniform> view: OutlineView;
-
-@group(1) @binding(0) var scene_depth: texture_depth_2d;
-// The picture without lines.
-@group(1) @binding(1) var painted: texture_2d<f32>;
+// The line pass's entry points; appended to `line.wgsl` and `line_ink.wgsl`.
 
 struct LineVertex {
     @builtin(position) position: vec4<f32>,
@@ -65,28 +59,10 @@ struct Inked {
 
 @fragment
 fn fs_ink(in: LineVertex) -> Inked {
-    let fraction = outline_nearest(in.ends_px, in.position.xy);
-    let on_line = mix(in.ends_px.xy, in.ends_px.zw, fraction);
-    let direction = in.direction;
-    let coverage = outline_coverage(on_line, direction, in.position.xy, in.width_px);
+    let coverage = ink_coverage(in.ends_px, in.depths_slopes, in.direction, in.width_px, in.traits, in.position.xy);
     if coverage <= 0.0 {
         discard;
     }
-    let depth = mix(in.depths_slopes.x, in.depths_slopes.y, fraction);
-    let per_px = depth * view.depth_per_px.x + view.depth_per_px.y;
-    let corner = floor(on_line - 0.5);
-    let last = vec2<i32>(view.viewport_px) - 1;
-    var votes = vec2<bool>(false);
-    for (var tap = 0; tap < 4; tap++) {
-        let pixel = corner + vec2<f32>(f32(tap & 1), f32(tap >> 1u));
-        let scene = textureLoad(scene_depth, clamp(vec2<i32>(pixel), vec2<i32>(0), last), 0);
-        let offset = outline_cross(direction, pixel + 0.5 - on_line);
-        votes = votes | outline_vote(scene, depth, offset, in.depths_slopes.zw, per_px);
-    }
-    if !votes.x || (!votes.y && (in.traits & OUTLINE_TRAIT_CUT_OUT) != 0u) {
-        discard;
-    }
     let below = textureLoad(painted, vec2<i32>(in.position.xy), 0);
-    let opacity = view.ink.a * coverage;
-    return Inked(vec4<f32>(mix(below.rgb, view.ink.rgb, opacity), opacity + below.a * (1.0 - opacity)), coverage);
+    return Inked(ink_over(below, coverage), coverage);
 }

@@ -59,7 +59,7 @@ impl Checker<'_> {
         camera: &Camera,
     ) -> Result<(), HarnessError> {
         use crate::gpu::GpuRenderer;
-        use crate::plan::LineFinder;
+        use crate::plan::LineMethod;
         use std::collections::BTreeSet;
         let Executor::Gpu(context) = self.executor else { return Ok(()) };
         if !context.can_find_lines {
@@ -70,7 +70,7 @@ impl Checker<'_> {
         let plan = Plan::new(scene, &style, camera)?;
         let renderer = GpuRenderer::new(context);
         let targets = renderer.targets(SIZE.0, SIZE.1)?;
-        let uploaded = renderer.upload(scene, &plan, LineFinder::Device)?;
+        let uploaded = renderer.upload(scene, &plan, LineMethod::OnDevice)?;
         renderer.draw(scene, &uploaded, &style, &plan, camera, &targets)?;
         let found = renderer.found_lines(&uploaded)?.unwrap_or_default();
         let on_device: BTreeSet<u32> = found.iter().copied().collect();
@@ -99,7 +99,7 @@ impl Checker<'_> {
             let on_gpu = largest_width_error(size, |scene, width_px, camera| {
                 let style = one_px_style(Lines::Fins(black(width_px)));
                 let plan = Plan::new(scene, &style, camera)?;
-                let uploaded = renderer.upload(scene, &plan, crate::plan::LineFinder::Auto)?;
+                let uploaded = renderer.upload(scene, &plan, crate::plan::LineMethod::Auto)?;
                 renderer.draw(scene, &uploaded, &style, &plan, camera, &targets)?;
                 Ok(renderer.read(&targets)?)
             })?;

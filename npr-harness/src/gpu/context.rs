@@ -1,6 +1,7 @@
 //! An adapter, a device, and what went wrong on it.
 
 use super::GpuError;
+use npr_outline::line_strokes::STROKE_FORMAT;
 use std::sync::{Arc, Mutex};
 
 /// A device to render on.
@@ -13,6 +14,8 @@ pub struct GpuContext {
     pub info: wgpu::AdapterInfo,
     /// Whether lines can be found on the device.
     pub can_find_lines: bool,
+    /// Whether lines can be drawn by compute shaders.
+    pub can_stroke: bool,
     faults: Arc<Mutex<Vec<String>>>,
 }
 
@@ -39,11 +42,17 @@ impl GpuContext {
         let can_find_lines = flags
             .contains(wgpu::DownlevelFlags::VERTEX_STORAGE | wgpu::DownlevelFlags::INDIRECT_EXECUTION)
             && flags.contains(wgpu::DownlevelFlags::COMPUTE_SHADERS);
+        let limits = adapter.limits();
+        let stored = adapter.get_texture_format_features(STROKE_FORMAT).allowed_usages;
+        let can_stroke = flags.contains(wgpu::DownlevelFlags::COMPUTE_SHADERS)
+            && stored.contains(wgpu::TextureUsages::STORAGE_BINDING)
+            && limits.max_storage_buffers_per_shader_stage >= 4
+            && limits.max_storage_textures_per_shader_stage >= 1;
         let (device, queue) = adapter
             .request_device(&wgpu::DeviceDescriptor {
                 label: Some("npr"),
                 required_features: adapter.features() & wanted,
-                required_limits: adapter.limits(),
+                required_limits: limits,
                 ..Default::default()
             })
             .await
@@ -55,7 +64,7 @@ impl GpuContext {
                 faults.push(error.to_string());
             }
         }));
-        Ok(Self { device, queue, info, can_find_lines, faults })
+        Ok(Self { device, queue, info, can_find_lines, can_stroke, faults })
     }
 
     /// Whether the adapter runs on the CPU.

@@ -31,6 +31,8 @@ pub struct GpuScene {
     pub(super) materials: Vec<wgpu::BindGroup>,
     /// Edges, where lines are found on the device.
     pub(super) edges: Option<npr_outline::line_pass::EdgesOnDevice>,
+    /// Whether lines that are found on the CPU are drawn by compute shaders.
+    pub(super) strokes: bool,
     /// Fins for all edges, where the printed form is drawn.
     pub(super) fins: Option<npr_outline::fin_pass::FinsOnDevice>,
 }
@@ -74,7 +76,17 @@ impl GpuScene {
             Some(buffer("faces", bytemuck::cast_slice(&indices), wgpu::BufferUsages::INDEX)?)
         };
         let materials = materials(context, pass, scene, plan);
-        Ok(Self { vertices, lookups, indices, batches, blended_faces, materials, edges: None, fins: None })
+        Ok(Self {
+            vertices,
+            lookups,
+            indices,
+            batches,
+            blended_faces,
+            materials,
+            edges: None,
+            strokes: false,
+            fins: None,
+        })
     }
 }
 

@@ -3,7 +3,8 @@
 use super::{GpuContext, GpuError};
 use crate::compare::Image;
 use npr_outline::line_pass::WINNER_FORMAT;
-use std::cell::Cell;
+use npr_outline::line_strokes::{LineStrokes, StrokeBuffers};
+use std::cell::{Cell, OnceCell};
 
 /// Display-referred values, so no encoding on store.
 pub(super) const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
@@ -23,6 +24,8 @@ pub struct Targets {
     inked: wgpu::Texture,
     pub(super) inked_view: wgpu::TextureView,
     pub(super) winner_view: wgpu::TextureView,
+    /// Made when first needed; `None` where the device's buffers are too small for them.
+    stroke_buffers: OnceCell<Option<StrokeBuffers>>,
     /// Which of the two the last frame ended in.
     is_inked: Cell<bool>,
 }
@@ -47,7 +50,9 @@ impl Targets {
         };
         let view = |texture: &wgpu::Texture| texture.create_view(&Default::default());
         let read = wgpu::TextureUsages::TEXTURE_BINDING;
-        let color = texture("colour", COLOR_FORMAT, read | wgpu::TextureUsages::COPY_SRC);
+        let stored =
+            if context.can_stroke { wgpu::TextureUsages::STORAGE_BINDING } else { wgpu::TextureUsages::empty() };
+        let color = texture("colour", COLOR_FORMAT, read | stored | wgpu::TextureUsages::COPY_SRC);
         let copied = wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::COPY_DST;
         let inked = texture("colour and lines", COLOR_FORMAT, copied);
         Ok(Self {
@@ -59,6 +64,7 @@ impl Targets {
             inked_view: view(&inked),
             inked,
             winner_view: view(&texture("greatest coverage", WINNER_FORMAT, wgpu::TextureUsages::empty())),
+            stroke_buffers: OnceCell::new(),
             is_inked: Cell::new(false),
         })
     }
@@ -66,6 +72,10 @@ impl Targets {
     /// Says that the frame ends in the painted picture.
     pub(super) fn begin(&self) {
         self.is_inked.set(false);
+    }
+
+    pub(super) fn stroke_buffers(&self, device: &wgpu::Device, strokes: &LineStrokes) -> Option<&StrokeBuffers> {
+        self.stroke_buffers.get_or_init(|| strokes.buffers(device, [self.width, self.height]).ok()).as_ref()
     }
 
     /// Copies the painted picture to where lines are drawn on it, and says that the frame ends there.

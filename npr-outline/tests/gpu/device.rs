@@ -45,13 +45,15 @@ pub struct Picture {
     pub depth: wgpu::Texture,
     /// Where lines are drawn; starts white.
     pub inked: wgpu::Texture,
+    /// Where lines are drawn as strokes; starts white.
+    pub stroked: wgpu::Texture,
     views: [wgpu::TextureView; 4],
 }
 
 impl Gpu {
     /// A white picture with a depth buffer cleared to 0, infinitely far.
     pub fn picture(&self, [width, height]: [u32; 2]) -> Picture {
-        let texture = |format| {
+        let texture = |format, usage| {
             self.device.create_texture(&wgpu::TextureDescriptor {
                 label: None,
                 size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
@@ -61,12 +63,16 @@ impl Gpu {
                 format,
                 usage: wgpu::TextureUsages::RENDER_ATTACHMENT
                     | wgpu::TextureUsages::TEXTURE_BINDING
+                    | usage
                     | wgpu::TextureUsages::COPY_SRC
                     | wgpu::TextureUsages::COPY_DST,
                 view_formats: &[],
             })
         };
-        let [color, depth, inked] = [COLOR_FORMAT, wgpu::TextureFormat::Depth32Float, COLOR_FORMAT].map(texture);
+        let nothing = wgpu::TextureUsages::empty();
+        let [color, inked] = [(); 2].map(|()| texture(COLOR_FORMAT, nothing));
+        let stroked = texture(COLOR_FORMAT, wgpu::TextureUsages::STORAGE_BINDING);
+        let depth = texture(wgpu::TextureFormat::Depth32Float, nothing);
         let winner = self.device.create_texture(&wgpu::TextureDescriptor {
             label: None,
             size: color.size(),
@@ -78,7 +84,7 @@ impl Gpu {
             view_formats: &[],
         });
         let views = [&color, &depth, &inked, &winner].map(|t| t.create_view(&Default::default()));
-        let picture = Picture { color, depth, inked, views };
+        let picture = Picture { color, depth, inked, stroked, views };
         self.clear(&picture);
         picture
     }
