@@ -91,12 +91,7 @@ fn banded(base: vec3<f32>, normal: vec3<f32>, eye: vec3<f32>) -> vec3<f32> {
     if toon.antialias != 0u {
         nl_width = toon_pixel_width(n_dot_l);
     }
-    var tone = toon.bands[0].rgb;
-    for (var i = 1u; i < toon_bands; i++) {
-        let share = toon_coverage(n_dot_l, toon.bands[i - 1u].w, nl_width);
-        tone += share * (toon.bands[i].rgb - toon.bands[i - 1u].rgb);
-    }
-    let color = base * tone;
+    let color = base * toon_band(toon, n_dot_l, nl_width);
     if !surface_highlight {
         return color;
     }
