@@ -14,6 +14,14 @@ pub enum ImageSpaceError {
         /// Of the picture.
         size_px: UVec2,
     },
+    /// A picture and its ink differ in size.
+    #[error("{pixels} pixels and {ink} of ink")]
+    Pixels {
+        /// How many there are.
+        pixels: usize,
+        /// How many there are.
+        ink: usize,
+    },
     /// The nearest and farthest depth of a range are not `0 < near < far`.
     #[error("depths from {near} to {far}: they must be 0 < near < far, and far may be infinite only where 1/z is stored")]
     DepthRange {

@@ -1,10 +1,13 @@
 //! stub
 #![warn(missing_docs)]
+pub mod artist;
+pub mod composite;
 mod error;
-pub mod format;
 pub mod filter;
+pub mod format;
 pub mod morphology;
 pub mod picture;
+pub mod region;
 pub use error::ImageSpaceError;
 /// The functions.
 pub const WGSL: &str = concat!(
@@ -22,4 +25,6 @@ pub const WGSL: &str = concat!(
     include_str!("filter/inker.wgsl"),
     include_str!("morphology.wgsl"),
     include_str!("morphology/flood.wgsl"),
+    include_str!("composite.wgsl"),
+    include_str!("artist.wgsl"),
 );

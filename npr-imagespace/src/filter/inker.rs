@@ -26,6 +26,7 @@
 //! line, or if larger the ramp of d₀² + d₁² around δ².
 
 use crate::filter::ink_ramp;
+use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
 /// √(1/512): the smallest difference of depth whose square is not 0 in 8 bits.
@@ -66,6 +67,37 @@ impl Default for Inker {
             normal_fall: 0.25,
             depth_delta: DEPTH_DELTA,
             softness: 0.0,
+        }
+    }
+}
+
+/// An [`Inker`] as `InkInker` of the WGSL, 32 bytes.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct InkerUniform {
+    /// 0 printed, 1 repaired, 2 explicit.
+    pub form: u32,
+    /// As [`Inker::normal_cos`].
+    pub normal_cos: f32,
+    /// As [`Inker::normal_fall`].
+    pub normal_fall: f32,
+    /// As [`Inker::depth_delta`].
+    pub depth_delta: f32,
+    /// As [`Inker::softness`].
+    pub softness: f32,
+    /// Unused, 0.
+    pub padding: [u32; 3],
+}
+
+impl From<&Inker> for InkerUniform {
+    fn from(inker: &Inker) -> Self {
+        Self {
+            form: inker.form as u32,
+            normal_cos: inker.normal_cos,
+            normal_fall: inker.normal_fall,
+            depth_delta: inker.depth_delta,
+            softness: inker.softness,
+            padding: [0; 3],
         }
     }
 }

@@ -38,6 +38,17 @@ fn ink_fold_region(region: u32, most: u32) -> u32 {
     return select(1u + (region - 1u) % most, 0u, region == 0u);
 }
 
+// The region that a texture's colour stands for, sampled without filtering.
+fn ink_region_of_color(rgb: vec3<f32>) -> u32 {
+    let bytes = vec3<u32>(rgb * 255.0 + 0.5);
+    return (bytes.x | (bytes.y << 8u) | (bytes.z << 16u)) + 1u;
+}
+
+// A region in the light and in shadow: two numbers.
+fn ink_region_in_shadow(region: u32, shadowed: bool) -> u32 {
+    return select(2u * region - select(1u, 0u, shadowed), 0u, region == 0u);
+}
+
 // One word, for an r32uint target. Region 0, and a depth that no surface has, give background.
 fn ink_narrow_pack(normal: vec3<f32>, region: u32, depth: f32, code: InkDepthCode) -> u32 {
     if region == 0u || !ink_is_surface(depth) {
