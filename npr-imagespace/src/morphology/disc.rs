@@ -82,8 +82,9 @@ trait Lane: Copy + Ord + Default {
     const MOST: usize;
     fn from_index(value: usize) -> Self;
     fn less_one(self) -> Self;
-    /// The smallest squared distance in a column of each of the pixels `from..from + best.len()`.
-    fn nearest(along: &[Self], width: usize, rows: std::ops::Range<usize>, y: usize, from: usize, best: &mut [i32]);
+    /// For the pixels `from..from + best.len()` of row `y` the smallest squared distance that their column knows of
+    /// within `most` rows.
+    fn nearest(along: &[Self], width: usize, y: usize, most: usize, from: usize, best: &mut [i32]);
 }
 
 /// Columns that are searched side by side.
@@ -97,13 +98,13 @@ impl Lane for u8 {
     fn less_one(self) -> Self {
         self.saturating_sub(1)
     }
-    fn nearest(along: &[Self], width: usize, rows: std::ops::Range<usize>, y: usize, from: usize, best: &mut [i32]) {
-        // Up to 180 the squares are below 2^15.
-        if best.len() < SIDE_BY_SIDE || rows.len() > 2 * 126 {
-            return nearest_in_words(along, width, rows, y, from, best);
+    fn nearest(along: &[Self], width: usize, y: usize, most: usize, from: usize, best: &mut [i32]) {
+        // Distances are capped at one more than `most`, and the two squares of 126 and 127 sum to less than 2^15.
+        if best.len() < SIDE_BY_SIDE || most > 126 {
+            return nearest_in_words(along, width, y, most, from, best);
         }
         let mut nearest = [i16::MAX; SIDE_BY_SIDE];
-        for row in rows {
+        for row in rows(along.len() / width, y, most) {
             let away = y.abs_diff(row) as i16;
             let squared = away * away;
             let chunk = &along[row * width + from..][..SIDE_BY_SIDE];
@@ -124,21 +125,26 @@ impl Lane for u16 {
     fn less_one(self) -> Self {
         self.saturating_sub(1)
     }
-    fn nearest(along: &[Self], width: usize, rows: std::ops::Range<usize>, y: usize, from: usize, best: &mut [i32]) {
-        nearest_in_words(along, width, rows, y, from, best);
+    fn nearest(along: &[Self], width: usize, y: usize, most: usize, from: usize, best: &mut [i32]) {
+        nearest_in_words(along, width, y, most, from, best);
     }
+}
+
+/// The rows within `most` of row `y`.
+fn rows(height: usize, y: usize, most: usize) -> std::ops::Range<usize> {
+    y.saturating_sub(most)..height.min(y + most + 1)
 }
 
 fn nearest_in_words<T: Copy + Into<i32>>(
     along: &[T],
     width: usize,
-    rows: std::ops::Range<usize>,
     y: usize,
+    most: usize,
     from: usize,
     best: &mut [i32],
 ) {
     best.fill(i32::MAX);
-    for row in rows {
+    for row in rows(along.len() / width, y, most) {
         let away = y.abs_diff(row) as i32;
         let squared = away * away;
         let chunk = &along[row * width + from..][..best.len()];
@@ -266,12 +272,10 @@ fn soft<T: Lane>(ink: &[u8], width: usize, radius_px: f32, planes: &mut Planes<T
     for (row, along) in ink.chunks_exact(width).zip(planes.along.chunks_exact_mut(width)) {
         fill_row(row, &distances, along);
     }
-    let height = ink.len() / width;
     for (y, row) in out.chunks_exact_mut(width).enumerate().rev() {
         sweep_up_row(&mut planes.inner, width, y);
         sweep_up_row(&mut planes.outer, width, y);
         let (inside, around) = (&planes.inner[y * width..][..width], &planes.outer[y * width..][..width]);
-        let rows = y.saturating_sub(most)..height.min(y + most + 1);
         let mut best = [0; SIDE_BY_SIDE];
         for (chunk, out) in row.chunks_mut(SIDE_BY_SIDE).enumerate() {
             let from = chunk * SIDE_BY_SIDE;
@@ -286,7 +290,7 @@ fn soft<T: Lane>(ink: &[u8], width: usize, radius_px: f32, planes: &mut Planes<T
                 continue;
             }
             let best = &mut best[..out.len()];
-            T::nearest(&planes.along, width, rows.clone(), y, from, best);
+            T::nearest(&planes.along, width, y, most, from, best);
             for (out, &square) in out.iter_mut().zip(&*best) {
                 if *out == 0 && square as u32 <= outer {
                     *out = shades[(square as u32 - inner - 1) as usize];
