@@ -85,7 +85,7 @@ fn main() {
     let size = UVec2::new(1920, 1080);
     let ink = drawing(size);
     let inked = ink.iter().filter(|&&ink| ink > 0).count() as f64 / ink.len() as f64;
-    let radii = [1.0, 2.0, 3.0, 4.0, 8.0, 16.0, 64.0, 200.0];
+    let radii = [1.0, 2.0, 3.0, 4.0, 6.0, 9.0, 16.0, 64.0];
     let (mut hard, mut soft) = ([f64::INFINITY; 8], [f64::INFINITY; 8]);
     let [mut copy, mut square, mut envelope] = [f64::INFINITY; 3];
     let (mut buffers, mut out) = (DiscBuffers::default(), vec![0; ink.len()]);

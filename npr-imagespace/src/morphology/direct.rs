@@ -5,51 +5,66 @@
 
 use super::disc::{LINE, root};
 
+/// `to` = the largest of three. A function of its own, since slices that are arguments are known not to overlap.
+#[inline(never)]
+fn largest(to: &mut [u8], a: &[u8], b: &[u8], c: &[u8]) {
+    for (((to, &a), &b), &c) in to.iter_mut().zip(a).zip(b).zip(c) {
+        *to = a.max(b).max(c);
+    }
+}
+
+/// `to` becomes the largest of three, of which it is one.
+#[inline(never)]
+fn raise(to: &mut [u8], a: &[u8], b: &[u8]) {
+    for ((to, &a), &b) in to.iter_mut().zip(a).zip(b) {
+        *to = (*to).max(a).max(b);
+    }
+}
+
+#[inline(never)]
+fn lines(to: &mut [u8], ink: &[u8]) {
+    for (to, &ink) in to.iter_mut().zip(ink) {
+        *to = if ink >= LINE { 255 } else { 0 };
+    }
+}
+
 /// `out` = ink where a line pixel is within a squared distance of `square`. `rows` is a buffer.
 pub(super) fn dilate(ink: &[u8], width: usize, square: u32, rows: &mut Vec<u8>, out: &mut [u8]) {
     let most = root(square);
     let height = ink.len() / width;
-    // For each row in use, its maxima over 1, 3, .. 2 most + 1 pixels.
+    // For each row in use, its maxima over 1, 3, .. 2 most + 1 pixels, each with paper at both ends; and a row of paper.
     let (window, kinds) = (2 * most + 1, most + 1);
     let padded = width + 2 * most;
     rows.clear();
-    rows.resize(window * kinds * width + padded, 0);
-    let (maxima, line) = rows.split_at_mut(window * kinds * width);
-    let place = |y: usize, kind: usize| ((y % window) * kinds + kind) * width;
+    rows.resize((window * kinds + 1) * padded, 0);
+    let (maxima, paper) = rows.split_at_mut(window * kinds * padded);
+    let place = |y: usize, kind: usize| ((y % window) * kinds + kind) * padded;
     for ahead in 0..height + most {
         if ahead < height {
-            for (line, &ink) in line[most..most + width].iter_mut().zip(&ink[ahead * width..][..width]) {
-                *line = if ink >= LINE { 255 } else { 0 };
-            }
-            let first = place(ahead, 0);
-            maxima[first..first + width].copy_from_slice(&line[most..most + width]);
+            lines(&mut maxima[place(ahead, 0) + most..][..width], &ink[ahead * width..][..width]);
             for kind in 1..kinds {
                 let (narrow, wide) = maxima.split_at_mut(place(ahead, kind));
-                let narrow = &narrow[place(ahead, kind - 1)..];
+                let line = &narrow[place(ahead, 0)..];
+                let narrow = &narrow[place(ahead, kind - 1) + most..][..width];
                 let (left, right) = (&line[most - kind..][..width], &line[most + kind..][..width]);
-                for (((wide, &narrow), &a), &b) in wide[..width].iter_mut().zip(narrow).zip(left).zip(right) {
-                    *wide = narrow.max(a).max(b);
-                }
+                largest(&mut wide[most..][..width], narrow, left, right);
             }
         }
         let Some(y) = ahead.checked_sub(most) else { continue };
         let to = &mut out[y * width..][..width];
-        let own = place(y, most);
-        to.copy_from_slice(&maxima[own..own + width]);
-        for away in 1..=most {
+        let row = |row: Option<usize>, kind: usize| match row {
+            Some(row) if row < height => &maxima[place(row, kind) + most..][..width],
+            _ => &paper[..width],
+        };
+        let own = row(Some(y), most);
+        for away in 0..=most {
             let kind = root(square - (away * away) as u32);
-            let above = y.checked_sub(away).map(|row| &maxima[place(row, kind)..][..width]);
-            let below = (y + away < height).then(|| &maxima[place(y + away, kind)..][..width]);
-            match (above, below) {
-                (Some(above), Some(below)) => {
-                    for ((to, &a), &b) in to.iter_mut().zip(above).zip(below) {
-                        *to = (*to).max(a).max(b);
-                    }
-                }
-                (Some(one), None) | (None, Some(one)) => {
-                    to.iter_mut().zip(one).for_each(|(to, &one)| *to = (*to).max(one));
-                }
-                (None, None) => {}
+            let (above, below) = (row(y.checked_sub(away), kind), row(Some(y + away), kind));
+            match away {
+                0 if most == 0 => to.copy_from_slice(own),
+                0 => {}
+                1 => largest(to, own, above, below),
+                _ => raise(to, above, below),
             }
         }
     }

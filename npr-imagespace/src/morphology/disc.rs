@@ -30,7 +30,7 @@ use crate::picture::checked_len;
 use glam::UVec2;
 
 /// The largest integer part of a radius for which shifted rows are used.
-pub const DIRECT_MOST: usize = 3;
+pub const DIRECT_MOST: usize = 5;
 /// The largest radius.
 pub const RADIUS_MOST_PX: f32 = 32766.0;
 /// The least ink of a line pixel.
@@ -51,7 +51,7 @@ pub struct Disc {
 pub struct DiscBuffers {
     bytes: Planes<u8>,
     words: Planes<u16>,
-    pub(crate) rows: Vec<u8>,
+    rows: Vec<u8>,
     inverse: Vec<u8>,
 }
 
@@ -198,8 +198,8 @@ impl<T: Lane> Ramp<T> {
     }
 }
 
-/// A row of what its distances are worth.
-fn fill_row<T: Lane>(ink: &[u8], ramp: &Ramp<T>, row: &mut [T]) {
+/// Rows of what a row's distances are worth, by several ramps.
+fn fill_rows<T: Lane, const N: usize>(ink: &[u8], mut rows: [(&Ramp<T>, &mut [T]); N]) {
     let is_line = |&ink: &u8| ink >= LINE;
     let mut at = 0;
     while at < ink.len() {
@@ -209,14 +209,19 @@ fn fill_row<T: Lane>(ink: &[u8], ramp: &Ramp<T>, row: &mut [T]) {
             at += 64;
         }
         at += ink[at..].iter().position(is_line).unwrap_or(ink.len() - at);
-        ramp.fill(&mut row[from..at], from > 0, at < ink.len());
+        for (ramp, row) in &mut rows {
+            ramp.fill(&mut row[from..at], from > 0, at < ink.len());
+        }
         let from = at;
         at += ink[at..].iter().position(|ink| !is_line(ink)).unwrap_or(ink.len() - at);
-        row[from..at].fill(ramp.up[0]);
+        for (ramp, row) in &mut rows {
+            row[from..at].fill(ramp.up[0]);
+        }
     }
 }
 
 /// Carries reaches from one row to the next.
+#[inline(never)]
 fn carry<T: Lane>(from: &[T], to: &mut [T]) {
     for (to, &from) in to.iter_mut().zip(from) {
         *to = (*to).max(from.less_one());
@@ -228,15 +233,10 @@ fn row_pair<T>(plane: &mut [T], width: usize, from: usize, to: usize) -> (&[T], 
     if from < to { (&low[from * width..], &mut high[..width]) } else { (&high[..width], &mut low[to * width..]) }
 }
 
-/// The first sweep, downwards, with the rows made just before they are needed.
-fn sweep_down<T: Lane>(ink: &[u8], width: usize, ramp: &Ramp<T>, plane: &mut Vec<T>) {
-    plane.resize(ink.len(), T::default());
-    for (y, row) in ink.chunks_exact(width).enumerate() {
-        fill_row(row, ramp, &mut plane[y * width..][..width]);
-        if y > 0 {
-            let (from, to) = row_pair(plane, width, y - 1, y);
-            carry(from, to);
-        }
+fn sweep_down_row<T: Lane>(plane: &mut [T], width: usize, y: usize) {
+    if y > 0 {
+        let (from, to) = row_pair(plane, width, y - 1, y);
+        carry(from, to);
     }
 }
 
@@ -248,7 +248,12 @@ fn sweep_up_row<T: Lane>(plane: &mut [T], width: usize, y: usize) {
 }
 
 fn hard<T: Lane>(ink: &[u8], width: usize, square: u32, planes: &mut Planes<T>, out: &mut [u8]) {
-    sweep_down(ink, width, &Ramp::of_reaches(square), &mut planes.inner);
+    let ramp = Ramp::of_reaches(square);
+    planes.inner.resize(ink.len(), T::default());
+    for (y, row) in ink.chunks_exact(width).enumerate() {
+        fill_rows(row, [(&ramp, &mut planes.inner[y * width..][..width])]);
+        sweep_down_row(&mut planes.inner, width, y);
+    }
     for (y, row) in out.chunks_exact_mut(width).enumerate().rev() {
         sweep_up_row(&mut planes.inner, width, y);
         for (out, &reach) in row.iter_mut().zip(&planes.inner[y * width..]) {
@@ -257,7 +262,14 @@ fn hard<T: Lane>(ink: &[u8], width: usize, square: u32, planes: &mut Planes<T>, 
     }
 }
 
-fn soft<T: Lane>(ink: &[u8], width: usize, radius_px: f32, planes: &mut Planes<T>, out: &mut [u8]) {
+fn soft<T: Lane>(
+    ink: &[u8],
+    width: usize,
+    radius_px: f32,
+    planes: &mut Planes<T>,
+    fringe: &mut Vec<u8>,
+    out: &mut [u8],
+) {
     let (inner, outer) = (square_within(radius_px), square_beyond(radius_px));
     let most = root(outer);
     let radius = f64::from(radius_px);
@@ -265,38 +277,57 @@ fn soft<T: Lane>(ink: &[u8], width: usize, radius_px: f32, planes: &mut Planes<T
     let shades: Vec<u8> = (inner + 1..=outer)
         .map(|square| ((radius + 1.0 - f64::from(square).sqrt()).clamp(0.0, 1.0) * 255.0 + 0.5) as u8)
         .collect();
-    sweep_down(ink, width, &Ramp::of_reaches(inner), &mut planes.inner);
-    sweep_down(ink, width, &Ramp::of_reaches(outer), &mut planes.outer);
-    planes.along.resize(ink.len(), T::default());
-    let distances = Ramp::of_distances(most);
-    for (row, along) in ink.chunks_exact(width).zip(planes.along.chunks_exact_mut(width)) {
-        fill_row(row, &distances, along);
+    let ramps = [Ramp::of_reaches(inner), Ramp::of_reaches(outer), Ramp::of_distances(most)];
+    for plane in [&mut planes.inner, &mut planes.outer, &mut planes.along] {
+        plane.resize(ink.len(), T::default());
     }
+    for (y, row) in ink.chunks_exact(width).enumerate() {
+        let here = y * width..(y + 1) * width;
+        fill_rows(
+            row,
+            [
+                (&ramps[0], &mut planes.inner[here.clone()]),
+                (&ramps[1], &mut planes.outer[here.clone()]),
+                (&ramps[2], &mut planes.along[here]),
+            ],
+        );
+        sweep_down_row(&mut planes.inner, width, y);
+        sweep_down_row(&mut planes.outer, width, y);
+    }
+    fringe.resize(width, 0);
     for (y, row) in out.chunks_exact_mut(width).enumerate().rev() {
         sweep_up_row(&mut planes.inner, width, y);
         sweep_up_row(&mut planes.outer, width, y);
         let (inside, around) = (&planes.inner[y * width..][..width], &planes.outer[y * width..][..width]);
-        let mut best = [0; SIDE_BY_SIDE];
-        for (chunk, out) in row.chunks_mut(SIDE_BY_SIDE).enumerate() {
-            let from = chunk * SIDE_BY_SIDE;
-            let (inside, around) = (&inside[from..][..out.len()], &around[from..][..out.len()]);
-            let mut fringe = false;
-            for ((out, &inside), &around) in out.iter_mut().zip(inside).zip(around) {
-                let covered = inside > T::default();
-                fringe |= !covered & (around > T::default());
-                *out = if covered { 255 } else { 0 };
-            }
-            if !fringe {
+        between(inside, around, row, fringe);
+        for (block, fringe) in fringe.chunks(4 * SIDE_BY_SIDE).enumerate() {
+            if fringe.iter().fold(0, |all, &fringe| all | fringe) == 0 {
                 continue;
             }
-            let best = &mut best[..out.len()];
-            T::nearest(&planes.along, width, y, most, from, best);
-            for (out, &square) in out.iter_mut().zip(&*best) {
-                if *out == 0 && square as u32 <= outer {
-                    *out = shades[(square as u32 - inner - 1) as usize];
+            for (chunk, fringe) in fringe.chunks(SIDE_BY_SIDE).enumerate() {
+                if fringe.iter().fold(0, |all, &fringe| all | fringe) == 0 {
+                    continue;
+                }
+                let from = (4 * block + chunk) * SIDE_BY_SIDE;
+                let mut best = [0; SIDE_BY_SIDE];
+                let best = &mut best[..fringe.len()];
+                T::nearest(&planes.along, width, y, most, from, best);
+                for ((out, &fringe), &square) in row[from..].iter_mut().zip(fringe).zip(&*best) {
+                    if fringe != 0 {
+                        *out = shades[(square as u32 - inner - 1) as usize];
+                    }
                 }
             }
         }
+    }
+}
+
+/// What the inner disc covers, and what only the outer one does.
+#[inline(never)]
+fn between<T: Lane>(inside: &[T], around: &[T], covered: &mut [u8], fringe: &mut [u8]) {
+    for (((covered, fringe), &inside), &around) in covered.iter_mut().zip(fringe).zip(inside).zip(around) {
+        *covered = if inside > T::default() { 255 } else { 0 };
+        *fringe = !*covered & if around > T::default() { 255 } else { 0 };
     }
 }
 
@@ -329,9 +360,9 @@ pub fn dilate_disc(
     let within = root(square);
     if disc.antialias && square_beyond(disc.radius_px) > square {
         if root(square_beyond(disc.radius_px)) + 2 <= u8::MOST {
-            soft(ink, width, disc.radius_px, &mut buffers.bytes, out);
+            soft(ink, width, disc.radius_px, &mut buffers.bytes, &mut buffers.rows, out);
         } else {
-            soft(ink, width, disc.radius_px, &mut buffers.words, out);
+            soft(ink, width, disc.radius_px, &mut buffers.words, &mut buffers.rows, out);
         }
     } else if within <= DIRECT_MOST {
         direct::dilate(ink, width, square, &mut buffers.rows, out);
