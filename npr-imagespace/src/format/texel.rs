@@ -11,8 +11,9 @@
 //! - *Region*: whether two neighbours are the same, no more. 0 is background, and a texel of region 0 is all zeros;
 //!   others are folded to what there is room for ([`ink_fold_region`]), and neighbours whose numbers differ by a
 //!   multiple of 255 (or 16,777,215) are not told apart.
-//! - *Normal*: whether two directions are 30° or more apart. 5 bits a number are wrong by no more than a few degrees; where
-//!   creases should be exact it is regions that carry them, since smooth normals have none.
+//! - *Normal*: whether two directions are some 35° apart. 5 bits a number are wrong by up to 8°, 8 bits by 1°: enough for folds
+//!   of 55° and more, and for all over 40°. Where creases should be exact it is regions that carry them, since smooth normals
+//!   have none.
 //! - *Depth*: whether three neighbours in a row lie on a plane. On the screen 1/z of a plane is linear, z is not, so what
 //!   is stored is 1/z ([`DepthCode`]), or in a parallel view −z, which is linear there. Then the test is a second
 //!   difference of integers, and its rounding is known: it is no more than 2 for any three points of a plane. 14 bits
