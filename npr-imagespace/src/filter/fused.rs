@@ -3,7 +3,7 @@
 //! For a pixel c and its taps 0–3 (0 opposite 2, 1 opposite 3), each with a normal a of integers, a region r and a depth
 //! code q that is linear on the screen ([`crate::format::texel`]), a tap i lies *across* a border if
 //!
-//! - one of the two is background and the other is not; or
+//! - one of the two is background and the other is not (if both are, it does not, whatever else they hold); or
 //! - regions are asked for and r ≠ rᵢ; or
 //! - normals are asked for and a · aᵢ < t |a| |aᵢ|, which is decided as a · aᵢ < 0 or
 //!   (a · aᵢ)² < t² |a|² |aᵢ|², with t² in steps of 2^−16 (and the right side of a wide texel to 2^−12 of its own size); or
@@ -187,8 +187,8 @@ fn step_excess(filter: &FilterUniform, a: &Tap, b: &Tap) -> (i32, i32) {
 
 /// Whether a tap lies across a border.
 pub fn ink_tap_across(filter: &FilterUniform, centre: &Tap, tap: &Tap) -> bool {
-    if (centre.region == 0) != (tap.region == 0) {
-        return true;
+    if centre.region == 0 || tap.region == 0 {
+        return centre.region != tap.region;
     }
     (filter.asked & ASKED_REGION != 0 && centre.region != tap.region)
         || (filter.asked & ASKED_STEP != 0 && step_excess(filter, centre, tap).0 > 0)
@@ -233,13 +233,14 @@ fn depth_soft(filter: &FilterUniform, (excess, threshold): (i32, i32)) -> f64 {
 
 /// The soft form of [`ink_tap_across`].
 pub fn ink_tap_soft(filter: &FilterUniform, centre: &Tap, tap: &Tap) -> f64 {
-    if (centre.region == 0) != (tap.region == 0)
-        || (filter.asked & ASKED_REGION != 0 && centre.region != tap.region)
-    {
+    if centre.region == 0 || tap.region == 0 {
+        return f64::from(u8::from(centre.region != tap.region));
+    }
+    if filter.asked & ASKED_REGION != 0 && centre.region != tap.region {
         return 1.0;
     }
     let mut ink = 0.0f64;
-    if centre.region != 0 && filter.asked & ASKED_STEP != 0 {
+    if filter.asked & ASKED_STEP != 0 {
         ink = depth_soft(filter, step_excess(filter, centre, tap));
     }
     if filter.asked & ASKED_NORMAL != 0 {

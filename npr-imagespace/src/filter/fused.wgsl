@@ -57,8 +57,8 @@ fn ink_step_excess(what: InkFilter, a: i32, b: i32) -> vec2<i32> {
 
 // Whether a tap lies across a border.
 fn ink_tap_across(what: InkFilter, centre: InkTap, tap: InkTap) -> bool {
-    if (centre.region == 0u) != (tap.region == 0u) {
-        return true;
+    if centre.region == 0u || tap.region == 0u {
+        return centre.region != tap.region;
     }
     if (what.asked & INK_ASKED_REGION) != 0u && centre.region != tap.region {
         return true;
@@ -115,12 +115,14 @@ fn ink_depth_soft(what: InkFilter, excess: vec2<i32>) -> f32 {
 
 // The soft form of `ink_tap_across`.
 fn ink_tap_soft(what: InkFilter, centre: InkTap, tap: InkTap) -> f32 {
-    if (centre.region == 0u) != (tap.region == 0u)
-        || ((what.asked & INK_ASKED_REGION) != 0u && centre.region != tap.region) {
+    if centre.region == 0u || tap.region == 0u {
+        return select(0.0, 1.0, centre.region != tap.region);
+    }
+    if (what.asked & INK_ASKED_REGION) != 0u && centre.region != tap.region {
         return 1.0;
     }
     var ink = 0.0;
-    if centre.region != 0u && (what.asked & INK_ASKED_STEP) != 0u {
+    if (what.asked & INK_ASKED_STEP) != 0u {
         ink = ink_depth_soft(what, ink_step_excess(what, centre.depth, tap.depth));
     }
     if (what.asked & INK_ASKED_NORMAL) != 0u {
