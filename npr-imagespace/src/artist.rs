@@ -1,35 +1,37 @@
 //! Lines that an artist asks for: "The Evolution of a Cartoon Renderer", listings 1 and 4 and the text between.
 //!
-//! A material's G-buffer normals need not be its surface's. Where they are one of four directions that no visible surface
-//! can have, the normal filter draws a line between two of them, at the borders that the artist painted, and another
-//! between any of them and a surface that keeps its own normals. So each material has one [`LineKind`], and the filters
-//! need not know which.
+//! A material's G-buffer normals need not be its surface's. Where they are one of four directions that no visible
+//! surface can have, the normal filter draws a line between two of them, at the borders that the artist painted, and
+//! another between any of them and a surface that keeps its own normals. So each material has one [`LineKind`], and
+//! the filters need not know which.
 //!
 //! # The four directions
 //!
-//! Away from the eye, 45° from the plane of the screen and equally spaced around the view: (±½, ±½, 1/√2) with z along the
-//! view. What was wrong in print: the caption of figure 3 has them about 45° apart "from each other and a plane";
-//! neighbours are 60° and opposite ones 90° apart, so that both are below every threshold in use (cos 60° = 0.5).
+//! Away from the eye, 45° from the plane of the screen and equally spaced around the view: (±½, ±½, 1/√2) with z
+//! along the view. What was wrong in print: the caption of figure 3 has them 45° apart like their angle to the plane;
+//! neighbours are 60° and opposite ones 90° apart, so that both are below every threshold in use (cos 60° =
+//! 0.5).
 //!
-//! [`ink_artist_direction`] turns z to the direction from the eye to a point. All is in view space, where the eye looks down
-//! −z and no visible point lies behind it: the shortest turn from −z is then the same up to a little for points next to each other,
-//! with no place where it jumps. A world-space G-buffer takes the result through the view's rotation.
+//! [`ink_artist_direction`] turns z to the direction from the eye to a point. All is in view space, where the eye
+//! looks down −z and no visible point lies behind it: the shortest turn from −z is then the same up to a little for
+//! points next to each other, with no place where it jumps. A world-space G-buffer takes the result through the
+//! view's rotation.
 //!
 //! - Vertex colours ([`LineKind::VertexColor`]): turned with the vector from the eye to each vertex, or better to each
 //!   pixel. Every visible normal is 90° and more from that vector, so the four stay 45° and more from all of them,
 //!   from every side.
 //! - Texture ([`LineKind::Texture`]): red and alpha of the artist's texture pick one of the 2 × 2 palette
-//!   ([`ink_artist_texel`], as `texreg2ar` does), turned once for an object with the vector from the eye to its centre. At a
-//!   point that is an angle α off that vector the distance to visible normals is 45° − α, and lines vanish where
-//!   that is below the filter's threshold: nearer than r / sin(45° − acos t) to the centre of an object of radius r
-//!   ([`artist_object_distance`]), 7.1 r for the threshold 0.80 and 4.4 r for 0.85. With the pixel's own vector, which costs a few
-//!   instructions today, the kind has no such limit.
+//!   ([`ink_artist_texel`], as `texreg2ar` does), turned once for an object with the vector from the eye to its
+//!   centre. At a point that is an angle α off that vector the distance to visible normals is 45° − α, and lines
+//!   vanish where that is below the filter's threshold: nearer than r / sin(45° − acos t) to the centre of an object
+//!   of radius r ([`artist_object_distance`]), 7.1 r for the threshold 0.80 and 4.4 r for 0.85. With the pixel's own
+//!   vector, which costs a few instructions today, the kind has no such limit.
 //!
 //! # Alpha-tested materials
 //!
-//! A pixel whose alpha is below the reference ([`ink_alpha_kept`]) must be discarded from *every* target of the geometry pass, depth
-//! included. What lies behind is then what the filters see there, and all of them draw the border of what remains.
-//! Alpha must not be blended: half a normal or half a region is another one.
+//! A pixel whose alpha is below the reference ([`ink_alpha_kept`]) must be discarded from *every* target of the
+//! geometry pass, depth included. What lies behind is then what the filters see there, and all of them draw the
+//! border of what remains. Alpha must not be blended: half a normal or half a region is another one.
 
 use glam::{Quat, Vec3, Vec4};
 
@@ -55,7 +57,8 @@ pub enum LineKind {
 /// Cosine of the angle between the view and each of the four directions: 45°.
 const ALONG: f32 = std::f32::consts::FRAC_1_SQRT_2;
 
-/// One of the four directions, with z along the view; of `index` the two lowest bits count, the sign of x and that of y.
+/// One of the four directions, with z along the view; of `index` the two lowest bits count, the sign of x and that of
+/// y.
 pub fn ink_artist_vector(index: u32) -> Vec3 {
     let sign = |bit: u32| if index & bit != 0 { 0.5 } else { -0.5 };
     Vec3::new(sign(1), sign(2), ALONG)

@@ -1,14 +1,14 @@
 //! Lines over a picture.
 //!
-//! - [`ink_multiply`]: Card & Mitchell 2002 multiply the frame buffer with the edge image, white paper and black lines, so
-//!   that several passes add up: c · (1 − ink).
-//! - [`ink_alpha_tested`]: the same with the alpha test that spares the frame buffer the white pixels. The edge image has
-//!   its value in alpha, too, 255 on paper and 0 on a line. What was wrong in print: `D3DCMP_GREATER` keeps what
+//! - [`ink_multiply`]: Card & Mitchell 2002 multiply the frame buffer with the edge image, white paper and black
+//!   lines, so that several passes add up: c · (1 − ink).
+//! - [`ink_alpha_tested`]: the same with the alpha test that spares the frame buffer the white pixels. The edge image
+//!   has its value in alpha, too, 255 on paper and 0 on a line. What was wrong in print: `D3DCMP_GREATER` keeps what
 //!   is greater than the reference, that is the paper, and kills the lines; and the reference `(DWORD) 0.5f` is 0, of
-//!   0–255 ([`AlphaTest::PRINTED`]): the picture stays as it was, at the cost of writing all of it. Right is LESS and 128
-//!   ([`AlphaTest::CORRECTED`]).
-//! - [`ink_over`]: a line of any colour, by its coverage: c + opacity · ink · (line − c). The default. With a black opaque line
-//!   it is the multiplication.
+//!   0–255 ([`AlphaTest::PRINTED`]): the picture stays as it was, at the cost of writing all of it. Right is LESS and
+//!   128 ([`AlphaTest::CORRECTED`]).
+//! - [`ink_over`]: a line of any colour, by its coverage: c + opacity · ink · (line − c). The default. With a black
+//!   opaque line it is the multiplication.
 //!
 //! Colours are display-referred, and coverage blends in display space.
 

@@ -23,7 +23,9 @@ pub enum ImageSpaceError {
         ink: usize,
     },
     /// The nearest and farthest depth of a range are not `0 < near < far`.
-    #[error("depths from {near} to {far}: they must be 0 < near < far, and far may be infinite only where 1/z is stored")]
+    #[error(
+        "depths from {near} to {far}: they must be 0 < near < far, and far may be infinite only where 1/z is stored"
+    )]
     DepthRange {
         /// Eye-space depth.
         near: f32,

@@ -9,10 +9,10 @@
 //!
 //! # Soft lines
 //!
-//! The slides of 2002 say that the filters can be made fuzzy, and not how. Here a comparison `x > t` becomes
-//! clamp((x − t) / width + 1/2, 0, 1) ([`ink_ramp`]), and the four taps are added and weighted
-//! ([`crate::picture::Taps::weight`]) so that a straight border is a full line and its outer corners are paler. A softness
-//! of 0 is hard.
+//! The slides of 2002 say that the filters can be made fuzzy, and not how. Here a comparison `x > t` becomes clamp((x
+//! − t) / width + 1/2, 0, 1) ([`ink_ramp`]), and the four taps are added and weighted
+//! ([`crate::picture::Taps::weight`]) so that a straight border is a full line and its outer corners are paler. A
+//! softness of 0 is hard.
 
 pub mod depth;
 pub mod fused;

@@ -1,7 +1,7 @@
 //! Thicker and thinner lines.
 //!
-//! Ink is 0 on paper and 255, or 1.0, on a line. The papers have it as black on white: their dilation is a minimum, and a
-//! maximum here.
+//! Ink is 0 on paper and 255, or 1.0, on a line. The papers have it as black on white: their dilation is a minimum,
+//! and a maximum here.
 //!
 //! - this module: steps by a pixel with four, five or nine taps, hard and soft, and n of them by ping-pong;
 //! - [`disc`]: a Euclidean disc of any radius, exact, at a cost that does not grow with the radius;
@@ -12,18 +12,18 @@
 //!
 //! # Sources
 //!
-//! - [`Kernel::Diagonal`]: "The Evolution of a Cartoon Renderer", listing 5: ink if any of the four diagonal neighbours is.
-//!   The pixel itself is not read: an isolated one becomes four with a hole between them, which `n` steps widen into a
-//!   chequered square.
+//! - [`Kernel::Diagonal`]: "The Evolution of a Cartoon Renderer", listing 5: ink if any of the four diagonal
+//!   neighbours is. The pixel itself is not read: an isolated one becomes four with a hole between them, which `n`
+//!   steps widen into a chequered square.
 //! - [`Kernel::Cross`]: the slides of SIGGRAPH 2002 read a + of five.
-//! - [`ink_dilate_soft_cross`]: the slides' shader, in their polarity saturate(0.4 Σ − 1), which in ink is min(0.4 Σ, 1): one
-//!   line pixel of five gives 0.4, two 0.8 and three 1.
-//! - [`ink_dilate_soft_diagonal`]: listing 5's second program as its text has it: the four samples, times a threshold from
-//!   0.25 (softest) to 1 (hard), clamped. What was wrong in print: the program reads two of the four and does not clamp
-//!   ([`ink_dilate_soft_diagonal_printed`]).
+//! - [`ink_dilate_soft_cross`]: the slides' shader, in their polarity saturate(0.4 Σ − 1), which in ink is min(0.4 Σ,
+//!   1): one line pixel of five gives 0.4, two 0.8 and three 1.
+//! - [`ink_dilate_soft_diagonal`]: listing 5's second program as its text has it: the four samples, times a threshold
+//!   from 0.25 (softest) to 1 (hard), clamped. What was wrong in print: the program reads two of the four and does
+//!   not clamp ([`ink_dilate_soft_diagonal_printed`]).
 
-pub mod disc;
 mod direct;
+pub mod disc;
 pub mod flood;
 
 use crate::ImageSpaceError;

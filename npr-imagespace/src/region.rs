@@ -1,7 +1,7 @@
 //! Region numbers: what the region filter draws borders between. 0 is background, so numbers start at 1.
 //!
-//! By material, by mesh, by smooth-connected patch, by a texture's colours, in shadow and out of it, and any of them together. They are numbers of
-//! any size here; [`crate::format::texel`] folds them to what a texel has room for.
+//! By material, by mesh, by smooth-connected patch, by a texture's colours, in shadow and out of it, and any of them
+//! together. They are numbers of any size here; [`crate::format::texel`] folds them to what a texel has room for.
 
 use crate::ImageSpaceError;
 use std::collections::HashMap;
@@ -14,8 +14,8 @@ pub fn region_of_index(index: u32) -> u32 {
 /// The regions of faces that are connected by smooth edges, numbered in the order of their first faces.
 ///
 /// - `faces`: how many there are;
-/// - `smooth_pairs`: faces that share an edge over which the surface is smooth. Whether it is, is the caller's to say: by the dihedral
-///   angle, by normals that are the same on both sides, by material.
+/// - `smooth_pairs`: faces that share an edge over which the surface is smooth. Whether it is, is the caller's to
+///   say: by the dihedral angle, by normals that are the same on both sides, by material.
 ///
 /// With these the borders of patches are the creases, exactly, while smooth normals that are interpolated have none.
 ///
@@ -53,8 +53,8 @@ pub fn region_of_patches(faces: usize, smooth_pairs: &[[u32; 2]]) -> Result<Vec<
     Ok(regions)
 }
 
-/// A number for pairs of numbers, such as mesh and patch: equal pairs have equal ones, counted from 1 by first appearance.
-/// A pair with a 0 in it is background and stays 0.
+/// A number for pairs of numbers, such as mesh and patch: equal pairs have equal ones, counted from 1 by first
+/// appearance. A pair with a 0 in it is background and stays 0.
 pub fn region_of_pairs(pairs: impl IntoIterator<Item = [u32; 2]>) -> Vec<u32> {
     let mut known = HashMap::new();
     pairs
@@ -66,16 +66,16 @@ pub fn region_of_pairs(pairs: impl IntoIterator<Item = [u32; 2]>) -> Vec<u32> {
         .collect()
 }
 
-/// The region that a texture's colour stands for, alpha not looked at: the colour as a number, and 1. Sample without filtering: a mean of
-/// two regions is a third.
+/// The region that a texture's colour stands for, alpha not looked at: the colour as a number, and 1. Sample without
+/// filtering: a mean of two regions is a third.
 pub fn ink_region_of_color(rgb: [u8; 3]) -> u32 {
     u32::from_le_bytes([rgb[0], rgb[1], rgb[2], 0]) + 1
 }
 
 /// A region in the light and in shadow: two numbers, so that the shadow's outline is a border of regions.
 ///
-/// The papers negate the normals in shadow. A shadowed surface with normal n is then like a lit one with −n, the line between
-/// the two vanishes, and negated depth does not fit an unsigned format; a bit has neither fault.
+/// The papers negate the normals in shadow. A shadowed surface with normal n is then like a lit one with −n, the line
+/// between the two vanishes, and negated depth does not fit an unsigned format; a bit has neither fault.
 pub fn ink_region_in_shadow(region: u32, shadowed: bool) -> u32 {
     if region == 0 { 0 } else { 2 * region - u32::from(!shadowed) }
 }

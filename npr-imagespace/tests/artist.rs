@@ -75,7 +75,8 @@ fn directions_turned_once_for_an_object_fail_near_it_as_the_formula_says() {
                 let (off, around) = ((f64::from(i)).to_radians(), (f64::from(j) * 5.0).to_radians());
                 let point_normal = DVec3::new(off.sin() * around.cos(), off.sin() * around.sin(), off.cos());
                 let point = centre + point_normal;
-                // The rim and what lies before it is seen; normals of anything at that point are up to 90° off the view.
+                // The rim and what lies before it is seen; normals of anything at that point are up to 90° off the
+                // view.
                 if point_normal.dot(point) > 0.0 {
                     continue;
                 }

@@ -196,8 +196,9 @@ fn a_line_gets_the_width_asked_for() {
 #[test]
 fn bad_input_is_refused() {
     let (mut buffers, mut out) = (DiscBuffers::default(), Vec::new());
-    let mut disc =
-        |radius_px, ink: &[u8]| dilate_disc(ink, UVec2::new(2, 2), &Disc { radius_px, antialias: false }, &mut buffers, &mut out);
+    let mut disc = |radius_px, ink: &[u8]| {
+        dilate_disc(ink, UVec2::new(2, 2), &Disc { radius_px, antialias: false }, &mut buffers, &mut out)
+    };
     assert_eq!(disc(1.0, &[0; 3]), Err(ImageSpaceError::Length { len: 3, size_px: UVec2::new(2, 2) }));
     assert!(matches!(disc(-0.5, &[0; 4]), Err(ImageSpaceError::Radius { .. })));
     assert!(matches!(disc(f32::NAN, &[0; 4]), Err(ImageSpaceError::Radius { .. })));
@@ -239,7 +240,8 @@ fn plans_reach_as_far_as_the_disc() {
             let disc = Disc { radius_px, antialias };
             for fan in [1, 2, 3] {
                 let plan = FloodPlan::separable(&disc, fan);
-                let along = |x: bool| plan.passes.iter().filter(|p| p.along_x == x).map(|p| p.fan * p.step).sum::<u32>();
+                let along =
+                    |x: bool| plan.passes.iter().filter(|p| p.along_x == x).map(|p| p.fan * p.step).sum::<u32>();
                 let needed = if antialias { (radius_px + 1.0).ceil() as u32 - 1 } else { radius_px as u32 };
                 assert!(along(true) >= needed && along(false) >= needed, "{disc:?} {fan}");
             }
@@ -300,7 +302,10 @@ fn floods_miss_less_than_half_a_percent() {
                 let flooded = flood(&ink, size, &disc, &plan).unwrap();
                 let wrong = flooded.iter().zip(&exact).filter(|(f, e)| f.abs_diff(**e) > 1).count() as f64;
                 let passes = plan.passes.len();
-                println!("r {radius_px} aa {antialias} {name}: {passes} passes, {:.3} % wrong", 100.0 * wrong / covered);
+                println!(
+                    "r {radius_px} aa {antialias} {name}: {passes} passes, {:.3} % wrong",
+                    100.0 * wrong / covered
+                );
                 assert!(wrong <= 0.005 * covered, "{disc:?} {name}: {wrong} of {covered}");
             }
         }

@@ -6,7 +6,9 @@ use glam::{DVec3, UVec2};
 use npr_imagespace::filter::depth::{BEND, ink_depth_bend, ink_depth_step};
 use npr_imagespace::filter::fused::{DepthTest, FilterUniform, FusedFilter, ink_fused_hard};
 use npr_imagespace::format::normal::NormalFormat;
-use npr_imagespace::format::texel::{DepthCode, TexelLayout, ink_narrow_pack, ink_narrow_tap, ink_wide_pack, ink_wide_tap};
+use npr_imagespace::format::texel::{
+    DepthCode, TexelLayout, ink_narrow_pack, ink_narrow_tap, ink_wide_pack, ink_wide_tap,
+};
 use npr_imagespace::picture::{Taps, filter_picture};
 
 const SIZE: UVec2 = UVec2::new(320, 240);
@@ -64,8 +66,8 @@ fn scene(grazing_deg: f64, roll_deg: f64, parallel: bool) -> Vec<Seen> {
     seen
 }
 
-/// Pixels beside a jump of more than a share of the depth, or beside the background; and pixels of the plane with nothing
-/// but the plane within two.
+/// Pixels beside a jump of more than a share of the depth, or beside the background; and pixels of the plane with
+/// nothing but the plane within two.
 fn truth(seen: &[Seen], share: f64) -> (Vec<usize>, Vec<usize>) {
     let at = |x: i64, y: i64| {
         let inside = x >= 0 && y >= 0 && x < i64::from(SIZE.x) && y < i64::from(SIZE.y);
@@ -108,10 +110,8 @@ fn judge(seen: &[Seen], ink: &[u8]) -> (f64, usize, usize) {
 
 /// The other way: the neighbour's 1/z from the plane through the centre with its normal as a G-buffer holds it.
 fn predicted(seen: &[Seen], format: NormalFormat) -> Vec<u8> {
-    let stored: Vec<(Seen, DVec3)> = seen
-        .iter()
-        .map(|pixel| (*pixel, format.decode(format.encode(pixel.normal.as_vec3())).as_dvec3()))
-        .collect();
+    let stored: Vec<(Seen, DVec3)> =
+        seen.iter().map(|pixel| (*pixel, format.decode(format.encode(pixel.normal.as_vec3())).as_dvec3())).collect();
     filter_picture(&stored, SIZE, Taps::Diagonal, |(centre, normal), taps| {
         let across = |(tap, _): (Seen, DVec3)| {
             if centre.surface == 0 || tap.surface == 0 {
@@ -138,8 +138,10 @@ fn packed(seen: &[Seen], layout: TexelLayout, code: &DepthCode, filter: &FusedFi
             }
         })
         .collect();
-    filter_picture(&taps, SIZE, filter.taps, |centre, taps| f32::from(u8::from(ink_fused_hard(&uniform, &centre, &taps))))
-        .unwrap()
+    filter_picture(&taps, SIZE, filter.taps, |centre, taps| {
+        f32::from(u8::from(ink_fused_hard(&uniform, &centre, &taps)))
+    })
+    .unwrap()
 }
 
 #[test]

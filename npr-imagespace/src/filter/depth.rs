@@ -6,8 +6,9 @@
 //! On depth u that runs from 0 at near to 1 at far, with the neighbours in the order of
 //! [`crate::picture::Taps::Diagonal`]:
 //!
-//! - sum ([`DepthPlain::Sum`]): Σ |u − uᵢ| ≥ t, with t = 0.02 in the chapter. What was wrong in print: the instructions that
-//!   accumulate (`r0 = r1 + r2`, `r0 = r1 + r3`, `r0 = r1 + r4`) overwrite one another, so that only
+//! - sum ([`DepthPlain::Sum`]): Σ |u − uᵢ| ≥ t, with t = 0.02 in the chapter. What was wrong in print: the
+//!   instructions that accumulate (`r0 = r1 + r2`, `r0 = r1 + r3`, `r0 = r1 + r4`) overwrite one another, so that
+//!   only
 //!   |u − u₀| + |u − u₃| counts ([`DepthPlain::SumPrinted`]);
 //! - any ([`DepthPlain::Any`]): |u − uᵢ| ≥ t for any i, with t = 0.01 in the slides.
 //!
@@ -15,14 +16,17 @@
 //!
 //! # The test for bends
 //!
-//! On the screen the reciprocal of a plane's depth is linear, so that its second difference across opposite neighbours,
-//! b = 1/z₋ − 2/z + 1/z₊, is 0 however steep the plane is. Ink where |b| > t · max(1/z₋, 1/z, 1/z₊) for either pair: the depth
-//! jumps by more than a share t of the distance of the nearer side. In a parallel view z itself is linear, and ink is where
+//! On the screen the reciprocal of a plane's depth is linear, so that its second difference across opposite
+//! neighbours, b = 1/z₋ − 2/z + 1/z₊, is 0 however steep the plane is. Ink where |b| > t · max(1/z₋, 1/z, 1/z₊) for
+//! either pair: the depth jumps by more than a share t of the distance of the nearer side. In a parallel view z
+//! itself is linear, and ink is where
 //! |z₋ − 2z + z₊| > t, in units of depth. The other way, to predict the neighbours from the plane through the centre
-//! with its normal, needs normals better than those that a G-buffer holds: at 1° grazing a normal wrong by
-//! ½° is wrong by half the slope. (Measured over planes 0.5° to 10° grazing with normals of 2 × 8 bits: see
-//! `tests/plane.rs`.) The price is that a bend is told from the pixel on either side of it, so that a surface
-//! one pixel wide is a line.
+//! with its normal, needs normals better than those that a G-buffer holds: at 1° grazing a normal wrong by ½° is
+//! wrong by half the slope. On planes 0.5° to 10° grazing with spheres on them (`tests/plane.rs`, 320 × 240 px, all
+//! with t = 0.01), false line pixels on the plane: second differences none, in f32, 24 or 14 bits; prediction none
+//! with normals of 2 × 16 bits, 300 to 5000 with 2 × 8; plain 29,000 to 42,000, nearly all of it. None loses an
+//! outline. The price is that a fold between two planes is a bend, too, where the slope changes by more than t of the
+//! distance in a pixel.
 //!
 //! A depth that no surface has ([`ink_is_surface`]) is background, which differs from every surface. The plain tests
 //! as printed compare numbers only, and NaN is never ink.
@@ -102,8 +106,8 @@ pub fn ink_depth_bend(centre: f32, taps: [f32; 4], step: f64, parallel: bool, so
     if outside.contains(&true) { 1.0 } else { pairs[0].max(pairs[1]) }
 }
 
-/// The plain test with the share of the distance as its threshold, and the rules of [`ink_depth_bend`] for all else: ink
-/// where |1/z − 1/zᵢ| > t · max(1/z, 1/zᵢ) for any i. Kept to be compared with.
+/// The plain test with the share of the distance as its threshold, and the rules of [`ink_depth_bend`] for all else:
+/// ink where |1/z − 1/zᵢ| > t · max(1/z, 1/zᵢ) for any i. Kept to be compared with.
 pub fn ink_depth_step(centre: f32, taps: [f32; 4], step: f64) -> bool {
     taps.iter().any(|&tap| match (ink_is_surface(centre), ink_is_surface(tap)) {
         (true, true) => {

@@ -1,12 +1,12 @@
 //! The three filters at once over packed texels, decided on integers: the same pixels on every machine.
 //!
-//! For a pixel c and its taps 0–3 (0 opposite 2, 1 opposite 3), each with a normal a of integers, a region r and a depth
-//! code q that is linear on the screen ([`crate::format::texel`]), a tap i lies *across* a border if
+//! For a pixel c and its taps 0–3 (0 opposite 2, 1 opposite 3), each with a normal a of integers, a region r and a
+//! depth code q that is linear on the screen ([`crate::format::texel`]), a tap i lies *across* a border if
 //!
 //! - one of the two is background and the other is not (if both are, it does not, whatever else they hold); or
 //! - regions are asked for and r ≠ rᵢ; or
-//! - normals are asked for and a · aᵢ < t |a| |aᵢ|, which is decided as a · aᵢ < 0 or
-//!   (a · aᵢ)² < t² |a|² |aᵢ|², with t² in steps of 2^−16 (and the right side of a wide texel to 2^−12 of its own size); or
+//! - normals are asked for and a · aᵢ < t |a| |aᵢ|, which is decided as a · aᵢ < 0 or (a · aᵢ)² < t² |a|² |aᵢ|², with
+//!   t² in steps of 2^−16 (and the right side of a wide texel to 2^−12 of its own size); or
 //! - the plain depth test is asked for and |q − qᵢ| > T;
 //!
 //! and a pair (i, i + 2) *bends* if none of the three is background, the test for bends is asked for and
@@ -17,8 +17,8 @@
 //! The slides multiply the white of the three filters, which is the same where they are hard. Soft, a pixel on an edge
 //! of both normals and depth would come out darker than on either; here the larger ink of a tap counts.
 //!
-//! What is not asked for costs nothing but a uniform branch; five equal texels are paper, whatever is asked for, which a
-//! pass may test first.
+//! What is not asked for costs nothing but a uniform branch; five equal texels are paper, whatever is asked for,
+//! which a pass may test first.
 
 use crate::ImageSpaceError;
 use crate::filter::depth::BEND;
@@ -41,7 +41,7 @@ pub struct FusedFilter {
     /// Where it looks.
     pub taps: Taps,
     /// 0 for hard lines; else the width of the transition, in cosines for normals and as a share of its threshold for
-    /// depth.
+    /// depth. Above 2 (1 − cos), flat surfaces are no longer paper.
     pub softness: f32,
 }
 
@@ -175,7 +175,7 @@ pub fn ink_tap_normal_differs(filter: &FilterUniform, a: IVec3, b: IVec3) -> boo
 
 /// The threshold on differences of depth codes of which `nearest` is the largest.
 pub fn ink_tap_depth_threshold(filter: &FilterUniform, nearest: i32) -> i32 {
-    let growth = (nearest as u32 >> filter.depth_shift) * filter.depth_step >> (16 - filter.depth_shift);
+    let growth = ((nearest as u32 >> filter.depth_shift) * filter.depth_step) >> (16 - filter.depth_shift);
     filter.depth_slack.max(filter.depth_base + growth) as i32
 }
 

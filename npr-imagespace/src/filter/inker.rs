@@ -1,5 +1,5 @@
-//! The inker of "The Evolution of a Cartoon Renderer", listings 3 and 4: four diagonal neighbours, compared in two opposite
-//! pairs, and no centre.
+//! The inker of "The Evolution of a Cartoon Renderer", listings 3 and 4: four diagonal neighbours, compared in two
+//! opposite pairs, and no centre.
 //!
 //! With taps 0 and 2 opposite, 1 and 3 opposite, normals n and depths z (0..=1, as encoded), sat = clamp to 0..=1:
 //!
@@ -10,12 +10,12 @@
 //! dⱼ = zⱼ − zⱼ₊₂
 //! ```
 //!
-//! - [`InkerForm::Printed`]: ink where (1 − N) + d₀² + ¼ + d₁ > ½. What was wrong in print: d₁ is not squared, though the
-//!   comment says "square the differences"; `mad r1.a, r1.a, r1.a, c1.a` is missing. So its sign decides, and a
+//! - [`InkerForm::Printed`]: ink where (1 − N) + d₀² + ¼ + d₁ > ½. What was wrong in print: d₁ is not squared, though
+//!   the comment says "square the differences"; `mad r1.a, r1.a, r1.a, c1.a` is missing. So its sign decides, and a
 //!   border is inked in one direction only.
-//! - [`InkerForm::Repaired`]: the missing instruction put in, ink where (1 − N) + d₀² + d₁² + ½ > ½. In exact arithmetic that
-//!   is any difference of depth at all: every slanted face is ink. On the hardware of 2002 a square below half a
-//!   step of 8 bits was 0.
+//! - [`InkerForm::Repaired`]: the missing instruction put in, ink where (1 − N) + d₀² + d₁² + ½ > ½. In exact
+//!   arithmetic that is any difference of depth at all: every slanted face is ink. On the hardware of 2002 a square
+//!   below half a step of 8 bits was 0.
 //! - [`InkerForm::Explicit`]: both thresholds by name. Ink where 1 − N > ½ or d₀² + d₁² > δ². The default
 //!   δ = [`DEPTH_DELTA`] is what the rounding of 2002 amounted to: √(1/512) = 0.044, 11 steps of 8 bits.
 //!
@@ -61,13 +61,7 @@ pub struct Inker {
 
 impl Default for Inker {
     fn default() -> Self {
-        Self {
-            form: InkerForm::Explicit,
-            normal_cos: 0.9,
-            normal_fall: 0.25,
-            depth_delta: DEPTH_DELTA,
-            softness: 0.0,
-        }
+        Self { form: InkerForm::Explicit, normal_cos: 0.9, normal_fall: 0.25, depth_delta: DEPTH_DELTA, softness: 0.0 }
     }
 }
 

@@ -92,8 +92,7 @@ pub fn ink_depth_split4(code: u32) -> [u8; 4] {
 
 impl DepthFormat {
     /// All formats.
-    pub const ALL: [Self; 6] =
-        [Self::Unorm8, Self::Unorm16, Self::Packed2x8, Self::Packed4x8, Self::Half, Self::Float];
+    pub const ALL: [Self; 6] = [Self::Unorm8, Self::Unorm16, Self::Packed2x8, Self::Packed4x8, Self::Half, Self::Float];
 
     /// Bytes of a texel.
     pub fn bytes(self) -> usize {

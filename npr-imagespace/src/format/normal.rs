@@ -4,9 +4,9 @@
 //! Greiner 2010, "On Floating-Point Normal Vectors") and store two numbers −m..=m, rounded to the nearest, as
 //! number + m + 1. So 0 is 0, which `_bx2` has no code for, and the code (0, 0) is left over and stands for no normal.
 //!
-//! The largest angle between a normal and what comes back, and the mean, over 100,000 directions (`tests/format.rs`): bytes
-//! 0.38° and 0.17°, octahedral 2 × 5 bits 7.9° and 2.8°, 2 × 8 0.92° and 0.34°, 2 × 16 0.0036° and 0.0013°, half floats
-//! 0.022° and 0.006°.
+//! The largest angle between a normal and what comes back, and the mean, over 100,000 directions (`tests/format.rs`):
+//! bytes 0.38° and 0.17°, octahedral 2 × 5 bits 7.9° and 2.8°, 2 × 8 0.92° and 0.34°, 2 × 16 0.0036° and 0.0013°,
+//! half floats 0.022° and 0.006°.
 //!
 //! Folded back ([`ink_oct_vector`]) a code is a vector of integers with |x| + |y| + |z| = m in the direction of the
 //! normal. Dot products of such vectors are exact on every machine, which is what the filters use.
@@ -44,7 +44,8 @@ pub fn ink_oct_encode(normal: Vec3, most: i32) -> Option<IVec2> {
     let mut flat = Vec2::new(normal.x / sum, normal.y / sum);
     if normal.z < 0.0 {
         let folded = Vec2::new(1.0 - flat.y.abs(), 1.0 - flat.x.abs());
-        flat = Vec2::new(if flat.x < 0.0 { -folded.x } else { folded.x }, if flat.y < 0.0 { -folded.y } else { folded.y });
+        flat =
+            Vec2::new(if flat.x < 0.0 { -folded.x } else { folded.x }, if flat.y < 0.0 { -folded.y } else { folded.y });
     }
     Some((flat * most as f32 + 0.5).floor().as_ivec2())
 }

@@ -1,15 +1,15 @@
 //! The RGBA8 target of Card & Mitchell 2002, listing 8: the normal biased into rgb, depth in alpha.
 //!
-//! rgb = (n + 1) / 2 and a = (z − near) · scale, each rounded to the nearest of 256 steps. The inverse of rgb is 2 c − 1
-//! (`_bx2`), and there is no code for 0: the nearest are ±1/255.
+//! rgb = (n + 1) / 2 and a = (z − near) · scale, each rounded to the nearest of 256 steps. The inverse of rgb is 2 c
+//! − 1 (`_bx2`), and there is no code for 0: the nearest are ±1/255.
 //!
 //! What was wrong in print:
 //!
-//! - The target is cleared to the normal +z ([`CLEAR_PRINTED`]). In the chapter's left-handed space +z points away from
-//!   the default viewer, in a right-handed one at them: what faces the viewer then has no normal edge against
+//! - The target is cleared to the normal +z ([`CLEAR_PRINTED`]). In the chapter's left-handed space +z points away
+//!   from the default viewer, in a right-handed one at them: what faces the viewer then has no normal edge against
 //!   the background. No clear colour helps a filter of dot products, since a vector that is far from every normal in
-//!   that sense is far from itself, too. [`CLEAR`], all zeros, is a word that no normal encodes to, and the filters here
-//!   compare it as a surface of its own.
+//!   that sense is far from itself, too. [`CLEAR`], all zeros, is a word that no normal encodes to, and the filters
+//!   here compare it as a surface of its own.
 //! - Listing 8 writes the normal of the vertex buffer. It is the world's only where the model's matrix is the
 //!   identity; [`ink_printed_encode`] takes it in the space that the caller wants.
 //!

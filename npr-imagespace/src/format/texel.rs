@@ -5,20 +5,20 @@
 //! | [`TexelLayout::Narrow`] | `R32Uint` | bits 0–13 | bits 14–21 | bits 22–26, 27–31: octahedral 2 × 5 |
 //! | [`TexelLayout::Wide`] | `Rg32Uint` | x, bits 0–23 | x, bits 24–31 and y, bits 16–31 | y, bits 0–7, 8–15: octahedral 2 × 8 |
 //!
-//! A filter over five taps is bound by its loads and its arithmetic, and not by bytes, so that what it reads is decided by
-//! what it asks:
+//! A filter over five taps is bound by its loads and its arithmetic, and not by bytes, so that what it reads is
+//! decided by what it asks:
 //!
 //! - *Region*: whether two neighbours are the same, no more. 0 is background, and a texel of region 0 is all zeros;
 //!   others are folded to what there is room for ([`ink_fold_region`]), and neighbours whose numbers differ by a
 //!   multiple of 255 (or 16,777,215) are not told apart.
-//! - *Normal*: whether two directions are some 35° apart. 5 bits a number are wrong by up to 8°, 8 bits by 1°: enough for folds
-//!   of 55° and more, and for all over 40°. Where creases should be exact it is regions that carry them, since smooth normals
-//!   have none.
-//! - *Depth*: whether three neighbours in a row lie on a plane. On the screen 1/z of a plane is linear, z is not, so what
-//!   is stored is 1/z ([`DepthCode`]), or in a parallel view −z, which is linear there. Then the test is a second
-//!   difference of integers, and its rounding is known: it is no more than 2 for any three points of a plane. 14 bits
-//!   part surfaces 1% apart up to some 80 times the distance of the near end of an infinite range; 24 bits, all
-//!   that an f32 holds, up to 20,000 times.
+//! - *Normal*: whether two directions are some 35° apart. 5 bits a number are wrong by up to 8°, 8 bits by 1°: enough
+//!   for folds of 55° and more, and for all over 40°. Where creases should be exact it is regions that carry them,
+//!   since smooth normals have none.
+//! - *Depth*: whether three neighbours in a row lie on a plane. On the screen 1/z of a plane is linear, z is not, so
+//!   what is stored is 1/z ([`DepthCode`]), or in a parallel view −z, which is linear there. Then the test is a
+//!   second difference of integers, and its rounding is known: it is no more than 2 for any three points of a plane.
+//!   14 bits part surfaces 1% apart up to some 80 times the distance of the near end of an infinite range; 24 bits,
+//!   all that an f32 holds, up to 20,000 times.
 //!
 //! Larger is nearer, and background is farthest.
 
@@ -66,8 +66,8 @@ impl TexelLayout {
         }
     }
 
-    /// The largest second difference that rounding alone gives on a plane: 2 for the rounding to codes, and in 24 bits as
-    /// much again and more for the rounding of f32 on the way there.
+    /// The largest second difference that rounding alone gives on a plane: 2 for the rounding to codes, and in 24
+    /// bits as much again and more for the rounding of f32 on the way there.
     pub const fn depth_slack(self) -> u32 {
         match self {
             Self::Narrow => 2,
@@ -76,8 +76,8 @@ impl TexelLayout {
     }
 }
 
-/// How eye-space depth becomes a code that is linear on the screen: round(v · scale + bias), clamped, where v is 1/z, or
-/// z in a parallel view. `InkDepthCode` of the WGSL.
+/// How eye-space depth becomes a code that is linear on the screen: round(v · scale + bias), clamped, where v is 1/z,
+/// or z in a parallel view. `InkDepthCode` of the WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct DepthCode {

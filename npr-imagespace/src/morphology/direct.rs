@@ -1,7 +1,7 @@
 //! A disc as the maximum of shifted rows: for small radii.
 //!
-//! For each row of the disc, 2 w + 1 pixels wide, the maxima over so many pixels of a picture's row; of these, each from its
-//! own row, the maximum. All of it is bytes compared side by side.
+//! For each row of the disc, 2 w + 1 pixels wide, the maxima over so many pixels of a picture's row; of these, each
+//! from its own row, the maximum. All of it is bytes compared side by side.
 
 use super::disc::{LINE, root};
 
@@ -32,7 +32,8 @@ fn lines(to: &mut [u8], ink: &[u8]) {
 pub(super) fn dilate(ink: &[u8], width: usize, square: u32, rows: &mut Vec<u8>, out: &mut [u8]) {
     let most = root(square);
     let height = ink.len() / width;
-    // For each row in use, its maxima over 1, 3, .. 2 most + 1 pixels, each with paper at both ends; and a row of paper.
+    // For each row in use, its maxima over 1, 3, .. 2 most + 1 pixels, each with paper at both ends; and a row of
+    // paper.
     let (window, kinds) = (2 * most + 1, most + 1);
     let padded = width + 2 * most;
     rows.clear();

@@ -3,8 +3,8 @@
 //! Line pixels are those with ink 128 and more. d is the distance of a pixel's centre from the nearest line pixel's.
 //!
 //! - Hard: ink where d ≤ r, all of it.
-//! - Antialiased: clamp(r + 1 − d, 0, 1). A line pixel is itself a pixel wide, so that a line of one pixel becomes 2 r + 1
-//!   wide, a radius of 0 changes nothing, and the hard disc is what is ink in full.
+//! - Antialiased: clamp(r + 1 − d, 0, 1). A line pixel is itself a pixel wide, so that a line of one pixel becomes 2
+//!   r + 1 wide, a radius of 0 changes nothing, and the hard disc is what is ink in full.
 //!
 //! # How
 //!
@@ -15,11 +15,12 @@
 //! sweeps compute exactly, as they do any L1 distance, with nothing but bytes compared side by side. A pixel is
 //! covered if a reach has got to it.
 //!
-//! Antialiased, two such pairs of sweeps, for r and for r + 1, single out the pixels between the two, and for these alone
-//! the distance is searched for along their column, 2 r + 3 rows, 16 columns side by side. Since what discs of
-//! radius r make up has about 2 / r of its area within a pixel of its border, this too costs about the same at any radius.
+//! Antialiased, two such pairs of sweeps, for r and for r + 1, single out the pixels between the two, and for these
+//! alone the distance is searched for along their column, 2 r + 3 rows, 16 columns side by side. Since what discs of
+//! radius r make up has about 2 / r of its area within a pixel of its border, this too costs about the same at any
+//! radius.
 //!
-//! Up to a radius of [`DIRECT_MOST`] the hard disc is the maximum of shifted rows, which is cheaper still.
+//! Up to a whole radius of [`DIRECT_MOST`] the hard disc is the maximum of shifted rows, which is cheaper still.
 //!
 //! Distances by two passes over the axes: Saito & Toriwaki 1994, "New algorithms for Euclidean distance transformation
 //! of an n-dimensional digitized picture with applications".

@@ -1,16 +1,17 @@
-//! The disc in passes that a GPU runs: every pixel learns which line pixel is nearest, by asking pixels ever closer, or ever
-//! farther, that have asked others.
+//! The disc in passes that a GPU runs: every pixel learns which line pixel is nearest, by asking pixels ever closer,
+//! or ever farther, that have asked others.
 //!
 //! A texel of `R32Uint` holds the step from the pixel to the nearest line pixel known so far, 0 for none
 //! ([`ink_flood_seed`]). A pass reads some texels at a distance, adds the way there, and keeps the shortest
-//! ([`ink_flood_take`]); the last turns the distance into ink ([`ink_flood_resolve`]). All but that is done on integers.
+//! ([`ink_flood_take`]); the last turns the distance into ink ([`ink_flood_resolve`]). All but that is done on
+//! integers.
 //!
-//! Jump flooding in the plane (Rong & Tan 2006, "Jump flooding in GPU with applications to Voronoi diagram and distance
-//! transform") reads eight neighbours a pass ([`FloodPlan::square`]). Here the axes are done one after the other
-//! ([`FloodPlan::separable`]): along a row the nearest line pixel is found exactly, whatever the steps, since every pixel
-//! on the way to it has the same nearest one; along columns the sites compete with unequal
-//! heads, and one can lose on the way to a pixel that it would have won. Both may therefore miss: never in
-//! calling far what is near by less than it is, only the other way. [`flood`] runs the very same passes on the CPU.
+//! Jump flooding in the plane (Rong & Tan 2006, "Jump flooding in GPU with applications to Voronoi diagram and
+//! distance transform") reads eight neighbours a pass ([`FloodPlan::square`]). Here the axes are done one after the
+//! other ([`FloodPlan::separable`]): along a row the nearest line pixel is found exactly, whatever the steps, since
+//! every pixel on the way to it has the same nearest one; along columns the sites compete with unequal heads, and one
+//! can lose on the way to a pixel that it would have won. Both may therefore miss: never in calling far what is near
+//! by less than it is, only the other way. [`flood`] runs the very same passes on the CPU.
 
 use crate::ImageSpaceError;
 use crate::morphology::disc::{Disc, LINE, RADIUS_MOST_PX};
@@ -57,9 +58,7 @@ impl FloodPlan {
     /// Passes along x, then along y, that read `fan` texels to each side: fewer passes with more taps the larger it is.
     pub fn separable(disc: &Disc, fan: u32) -> Self {
         let steps = steps(reach_px(disc), fan.max(1));
-        let pass = |along_x: bool| {
-            move |&step: &u32| FloodPass { step, fan: fan.max(1), along_x, along_y: !along_x }
-        };
+        let pass = |along_x: bool| move |&step: &u32| FloodPass { step, fan: fan.max(1), along_x, along_y: !along_x };
         Self { passes: steps.iter().map(pass(true)).chain(steps.iter().map(pass(false))).collect() }
     }
 
@@ -125,10 +124,8 @@ pub fn ink_flood_resolve(site: u32, radius_px: f32, antialias: bool) -> f32 {
 /// One pass over a picture.
 fn run_pass(from: &[u32], size: IVec2, pass: &FloodPass, to: &mut Vec<u32>) {
     to.clear();
-    let (fan_x, fan_y) = (
-        if pass.along_x { pass.fan as i32 } else { 0 },
-        if pass.along_y { pass.fan as i32 } else { 0 },
-    );
+    let (fan_x, fan_y) =
+        (if pass.along_x { pass.fan as i32 } else { 0 }, if pass.along_y { pass.fan as i32 } else { 0 });
     for y in 0..size.y {
         for x in 0..size.x {
             let mut best = from[(y * size.x + x) as usize];

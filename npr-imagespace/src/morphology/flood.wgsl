@@ -1,4 +1,5 @@
-// The disc in passes: every pixel learns its nearest line pixel. The twin of `flood.rs`. No bindings and no entry points.
+// The disc in passes: every pixel learns its nearest line pixel. The twin of `flood.rs`. No bindings and no entry
+// points.
 //
 // A texel of r32uint holds the step to the nearest line pixel known so far. A pass reads texels at +-step, +-2 step ..
 // +-fan step and takes the nearest; a tap outside the picture is INK_FLOOD_NONE.
