@@ -138,7 +138,7 @@ fn regions_are_never_background_and_pairs_stay_apart() {
     // A shadowed region differs from every lit one: the fault of negated normals is that they do not.
     let lit: Vec<u32> = (0..50).map(|region| ink_region_in_shadow(region, false)).collect();
     let dark: Vec<u32> = (0..50).map(|region| ink_region_in_shadow(region, true)).collect();
-    assert_eq!((lit[0], dark[0]), (0, 0));
+    assert_eq!((lit[0], dark[0], lit[1], dark[1]), (0, 0, 1, 2));
     assert!(dark[1..].iter().all(|region| *region != 0 && !lit.contains(region)));
     assert!((1..50).all(|region| lit[region..].iter().filter(|&&other| other == lit[region]).count() == 1));
 }

@@ -40,6 +40,7 @@ fn the_printed_alpha_test_kills_the_lines() {
     let printed = Composite::AlphaTested(AlphaTest::PRINTED);
     assert_eq!(over(255, &printed), GRAY, "the line is not drawn");
     assert!(ink_alpha_passes(0.0, AlphaTest::PRINTED), "the paper is");
+    assert!(ink_alpha_passes(0.99, AlphaTest::PRINTED), "(DWORD) 0.5f is 0: all that is not quite a line is");
     // The comparison alone: with 127, the 0.5 that was meant, soft lines pass and full ones do not.
     let meant = AlphaTest { less: false, reference: 127 };
     assert!(!ink_alpha_passes(1.0, meant) && ink_alpha_passes(0.2, meant));

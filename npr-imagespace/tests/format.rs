@@ -206,6 +206,8 @@ fn only_positive_finite_depths_are_surfaces() {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
     #[test]
     fn texels_hold_what_was_packed(
         x in -1f32..1.0, y in -1f32..1.0, z in -1f32..1.0, region in 0u32.., depth in 0.1f32..1e4,
@@ -257,7 +259,7 @@ fn depth_codes_span_their_range_and_fold_keeps_neighbours_apart() {
             assert_eq!((ink_depth_code(0.1, &code), ink_depth_code(1e9, &code)), (most, 0), "clamped");
             for depth in [0.7f32, 2.0, 30.0, 90.0] {
                 let again = code.depth(ink_depth_code(depth, &code));
-                let inverse_step = 2.0 * if code.parallel != 0 { 1.0 } else { f64::from(depth).powi(2) };
+                let inverse_step = 0.51 * if code.parallel != 0 { 1.0 } else { f64::from(depth).powi(2) };
                 let allowed = inverse_step / f64::from(code.scale.abs()) + 4e-7 * f64::from(depth).powi(2);
                 assert!((again - f64::from(depth)).abs() <= allowed, "{layout:?} {depth} {again}");
             }

@@ -69,21 +69,22 @@ fn functions_have_the_names_of_the_rust_ones() {
     }
     let helpers = [
         "ink_any",
-        "ink_bend_excess",
         "ink_bytes",
         "ink_depth_decode",
         "ink_depth_fraction",
         "ink_depth_join2",
         "ink_depth_join4",
         "ink_depth_pair",
-        "ink_depth_soft",
         "ink_depth_step_tap",
-        "ink_dot",
         "ink_normal_tap",
         "ink_oct_decode",
-        "ink_step_excess",
         "ink_tap_cross",
         "ink_tap_diagonal",
+        "ink_taps_bends",
+        "ink_taps_depth_soft",
+        "ink_taps_depth_thresholds",
+        "ink_taps_normals_differ",
+        "ink_taps_normals_soft",
     ];
     for (_, function) in validated(WGSL).functions.iter() {
         let name = function.name.as_deref().unwrap();
@@ -115,18 +116,7 @@ fn uniforms_have_the_layout_of_the_shader() {
     assert_layout!(
         "InkFilter",
         FilterUniform,
-        [
-            asked,
-            normal_cos2,
-            normal_shift,
-            depth_slack,
-            depth_base,
-            depth_step,
-            depth_shift,
-            weight,
-            normal_cos,
-            softness
-        ]
+        [asked, normal_cos2, depth_slack, depth_base, depth_step, depth_shift, weight, normal_cos, softness]
     );
     assert_layout!("InkInker", InkerUniform, [form, normal_cos, normal_fall, depth_delta, softness]);
     assert_layout!("InkComposite", CompositeUniform, [line, form, alpha_less, alpha_reference]);

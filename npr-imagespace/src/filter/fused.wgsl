@@ -4,9 +4,8 @@
 struct InkFilter {
     // Of the INK_ASKED_ bits.
     asked: u32,
-    // t^2 * 2^16.
-    normal_cos2: u32,
-    normal_shift: u32,
+    // t^2.
+    normal_cos2: f32,
     // The threshold on depth codes: max(slack, base + step * code).
     depth_slack: u32,
     depth_base: u32,
@@ -20,6 +19,7 @@ struct InkFilter {
     softness: f32,
     padding0: u32,
     padding1: u32,
+    padding2: u32,
 }
 
 const INK_ASKED_NORMAL: u32 = 1u;
@@ -27,60 +27,28 @@ const INK_ASKED_BEND: u32 = 2u;
 const INK_ASKED_STEP: u32 = 4u;
 const INK_ASKED_REGION: u32 = 8u;
 
-fn ink_dot(a: vec3<i32>, b: vec3<i32>) -> i32 {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
+// The four taps side by side: for each whether, or by how much, it lies across. Only the uniform's wishes are branched on.
+
+// Which normals differ from the centre's; zero is no normal. Dot products of whole numbers are exact, and no sum
+// follows the products, so that nothing can be fused into something else.
+fn ink_taps_normals_differ(what: InkFilter, centre: vec3<f32>, lengths2: vec4<f32>, dots: vec4<f32>) -> vec4<bool> {
+    let own2 = dot(centre, centre);
+    let none = (lengths2 == vec4<f32>(0.0)) != vec4<bool>(own2 == 0.0);
+    return none | (dots < vec4<f32>(0.0)) | (dots * dots < (own2 * lengths2) * what.normal_cos2);
 }
 
-// Whether two normals differ; zero is no normal.
-fn ink_tap_normal_differs(what: InkFilter, a: vec3<i32>, b: vec3<i32>) -> bool {
-    let aa = ink_dot(a, a);
-    let bb = ink_dot(b, b);
-    if aa == 0 || bb == 0 {
-        return aa != bb;
-    }
-    let cos = ink_dot(a, b);
-    let lengths2 = u32(aa * bb) >> what.normal_shift;
-    return cos < 0 || (u32(cos * cos) << (16u - what.normal_shift)) < lengths2 * what.normal_cos2;
+// The thresholds on differences of depth codes of which `nearest` are the largest.
+fn ink_taps_depth_thresholds(what: InkFilter, nearest: vec4<i32>) -> vec4<i32> {
+    let growth = ((vec4<u32>(nearest) >> vec4<u32>(what.depth_shift)) * what.depth_step)
+        >> vec4<u32>(16u - what.depth_shift);
+    return vec4<i32>(max(vec4<u32>(what.depth_slack), what.depth_base + growth));
 }
 
-// The threshold on differences of depth codes of which `nearest` is the largest.
-fn ink_tap_depth_threshold(what: InkFilter, nearest: i32) -> i32 {
-    let growth = ((u32(nearest) >> what.depth_shift) * what.depth_step) >> (16u - what.depth_shift);
-    return i32(max(what.depth_slack, what.depth_base + growth));
-}
-
-// By how much the plain depth test is exceeded, and its threshold.
-fn ink_step_excess(what: InkFilter, a: i32, b: i32) -> vec2<i32> {
-    let threshold = ink_tap_depth_threshold(what, max(a, b));
-    return vec2<i32>(abs(a - b) - threshold, threshold);
-}
-
-// Whether a tap lies across a border.
-fn ink_tap_across(what: InkFilter, centre: InkTap, tap: InkTap) -> bool {
-    if centre.region == 0u || tap.region == 0u {
-        return centre.region != tap.region;
-    }
-    if (what.asked & INK_ASKED_REGION) != 0u && centre.region != tap.region {
-        return true;
-    }
-    if (what.asked & INK_ASKED_STEP) != 0u && ink_step_excess(what, centre.depth, tap.depth).x > 0 {
-        return true;
-    }
-    return (what.asked & INK_ASKED_NORMAL) != 0u && ink_tap_normal_differs(what, centre.normal, tap.normal);
-}
-
-// By how much a pair's bend exceeds its threshold, and the threshold; negative beside the background.
-fn ink_bend_excess(what: InkFilter, a: InkTap, centre: InkTap, b: InkTap) -> vec2<i32> {
-    if (what.asked & INK_ASKED_BEND) == 0u || a.region == 0u || centre.region == 0u || b.region == 0u {
-        return vec2<i32>(-0x40000000, 0);
-    }
-    let threshold = ink_tap_depth_threshold(what, max(max(a.depth, centre.depth), b.depth));
-    return vec2<i32>(abs(a.depth - centre.depth - (centre.depth - b.depth)) - threshold, threshold);
-}
-
-// Whether the depth bends between opposite taps.
-fn ink_tap_bends(what: InkFilter, a: InkTap, centre: InkTap, b: InkTap) -> bool {
-    return ink_bend_excess(what, a, centre, b).x > 0;
+// |q0 - 2 q + q2| and |q1 - 2 q + q3|, and their thresholds.
+fn ink_taps_bends(what: InkFilter, centre: i32, depths: vec4<i32>) -> vec4<i32> {
+    let nearest = max(max(depths.xy, depths.zw), vec2<i32>(centre));
+    let bends = abs(depths.xy - centre - (centre - depths.zw));
+    return vec4<i32>(bends, ink_taps_depth_thresholds(what, nearest.xyxy).xy);
 }
 
 // Whether a pixel is a line.
@@ -92,46 +60,53 @@ fn ink_fused_hard(
     tap2: InkTap,
     tap3: InkTap,
 ) -> bool {
-    return ink_tap_across(what, centre, tap0) || ink_tap_across(what, centre, tap1)
-        || ink_tap_across(what, centre, tap2) || ink_tap_across(what, centre, tap3)
-        || ink_tap_bends(what, tap0, centre, tap2) || ink_tap_bends(what, tap1, centre, tap3);
-}
-
-// The soft form of `ink_tap_normal_differs`.
-fn ink_tap_normal_soft(what: InkFilter, a: vec3<i32>, b: vec3<i32>) -> f32 {
-    let aa = ink_dot(a, a);
-    let bb = ink_dot(b, b);
-    if aa == 0 || bb == 0 {
-        return select(0.0, 1.0, aa != bb);
+    let regions = vec4<u32>(tap0.region, tap1.region, tap2.region, tap3.region);
+    let depths = vec4<i32>(tap0.depth, tap1.depth, tap2.depth, tap3.depth);
+    let surface = vec4<bool>(centre.region != 0u);
+    let surfaces = regions != vec4<u32>(0u);
+    var across = surfaces != surface;
+    if (what.asked & INK_ASKED_REGION) != 0u {
+        across = regions != vec4<u32>(centre.region);
     }
-    let cos = f32(ink_dot(a, b)) * inverseSqrt(f32(aa * bb));
-    return ink_ramp(what.normal_cos - cos, what.softness);
-}
-
-// The soft form of an excess over a threshold.
-fn ink_depth_soft(what: InkFilter, excess: vec2<i32>) -> f32 {
-    return ink_ramp(f32(excess.x), what.softness * f32(excess.y));
-}
-
-// The soft form of `ink_tap_across`.
-fn ink_tap_soft(what: InkFilter, centre: InkTap, tap: InkTap) -> f32 {
-    if centre.region == 0u || tap.region == 0u {
-        return select(0.0, 1.0, centre.region != tap.region);
-    }
-    if (what.asked & INK_ASKED_REGION) != 0u && centre.region != tap.region {
-        return 1.0;
-    }
-    var ink = 0.0;
     if (what.asked & INK_ASKED_STEP) != 0u {
-        ink = ink_depth_soft(what, ink_step_excess(what, centre.depth, tap.depth));
+        let thresholds = ink_taps_depth_thresholds(what, max(depths, vec4<i32>(centre.depth)));
+        across = across | (surfaces & surface & (abs(depths - centre.depth) > thresholds));
     }
     if (what.asked & INK_ASKED_NORMAL) != 0u {
-        ink = max(ink, ink_tap_normal_soft(what, centre.normal, tap.normal));
+        let own = centre.normal;
+        let lengths2 = vec4<f32>(
+            dot(tap0.normal, tap0.normal),
+            dot(tap1.normal, tap1.normal),
+            dot(tap2.normal, tap2.normal),
+            dot(tap3.normal, tap3.normal),
+        );
+        let dots = vec4<f32>(dot(own, tap0.normal), dot(own, tap1.normal), dot(own, tap2.normal), dot(own, tap3.normal));
+        across = across | (surfaces & surface & ink_taps_normals_differ(what, own, lengths2, dots));
     }
-    return ink;
+    if (what.asked & INK_ASKED_BEND) != 0u {
+        let bends = ink_taps_bends(what, centre.depth, depths);
+        let bent = surfaces.xy & surfaces.zw & surface.xy & (bends.xy > bends.zw);
+        across = across | bent.xyxy;
+    }
+    return any(across);
 }
 
-// Ink of a pixel, 0..1.
+// The soft form of a difference above a threshold, both in codes.
+fn ink_taps_depth_soft(what: InkFilter, differences: vec4<i32>, thresholds: vec4<i32>) -> vec4<f32> {
+    return saturate(vec4<f32>(differences - thresholds) / (what.softness * vec4<f32>(thresholds)) + 0.5);
+}
+
+// The soft form of normals that differ.
+fn ink_taps_normals_soft(what: InkFilter, centre: vec3<f32>, lengths2: vec4<f32>, dots: vec4<f32>) -> vec4<f32> {
+    let own2 = dot(centre, centre);
+    let products = own2 * lengths2;
+    let cosines = dots * inverseSqrt(max(products, vec4<f32>(1.0)));
+    let ink = saturate((what.normal_cos - cosines) / what.softness + 0.5);
+    let none = select(vec4<f32>(0.0), vec4<f32>(1.0), (lengths2 == vec4<f32>(0.0)) != vec4<bool>(own2 == 0.0));
+    return select(ink, none, products == vec4<f32>(0.0));
+}
+
+// Ink of a pixel, 0..1; the softness is above 0.
 fn ink_fused_soft(
     what: InkFilter,
     centre: InkTap,
@@ -140,11 +115,40 @@ fn ink_fused_soft(
     tap2: InkTap,
     tap3: InkTap,
 ) -> f32 {
-    let across = ink_tap_soft(what, centre, tap0) + ink_tap_soft(what, centre, tap1)
-        + ink_tap_soft(what, centre, tap2) + ink_tap_soft(what, centre, tap3);
-    let bends = ink_depth_soft(what, ink_bend_excess(what, tap0, centre, tap2))
-        + ink_depth_soft(what, ink_bend_excess(what, tap1, centre, tap3));
-    return min(what.weight * max(across, bends), 1.0);
+    let regions = vec4<u32>(tap0.region, tap1.region, tap2.region, tap3.region);
+    let depths = vec4<i32>(tap0.depth, tap1.depth, tap2.depth, tap3.depth);
+    let surface = vec4<bool>(centre.region != 0u);
+    let surfaces = regions != vec4<u32>(0u);
+    let paper = vec4<f32>(0.0);
+    var ink = paper;
+    if (what.asked & INK_ASKED_STEP) != 0u {
+        let thresholds = ink_taps_depth_thresholds(what, max(depths, vec4<i32>(centre.depth)));
+        ink = ink_taps_depth_soft(what, abs(depths - centre.depth), thresholds);
+    }
+    if (what.asked & INK_ASKED_NORMAL) != 0u {
+        let own = centre.normal;
+        let lengths2 = vec4<f32>(
+            dot(tap0.normal, tap0.normal),
+            dot(tap1.normal, tap1.normal),
+            dot(tap2.normal, tap2.normal),
+            dot(tap3.normal, tap3.normal),
+        );
+        let dots = vec4<f32>(dot(own, tap0.normal), dot(own, tap1.normal), dot(own, tap2.normal), dot(own, tap3.normal));
+        ink = max(ink, ink_taps_normals_soft(what, own, lengths2, dots));
+    }
+    ink = select(paper, ink, surfaces & surface);
+    var across = surfaces != surface;
+    if (what.asked & INK_ASKED_REGION) != 0u {
+        across = regions != vec4<u32>(centre.region);
+    }
+    ink = select(ink, vec4<f32>(1.0), across);
+    var bent = vec2<f32>(0.0);
+    if (what.asked & INK_ASKED_BEND) != 0u {
+        let bends = ink_taps_bends(what, centre.depth, depths);
+        bent = ink_taps_depth_soft(what, bends.xyxy, bends.zwzw).xy;
+        bent = select(vec2<f32>(0.0), bent, surfaces.xy & surfaces.zw & surface.xy);
+    }
+    return min(what.weight * max(ink.x + ink.y + (ink.z + ink.w), bent.x + bent.y), 1.0);
 }
 
 // Ink of a pixel, 0..1, hard or soft as the filter says.

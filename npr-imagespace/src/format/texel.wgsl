@@ -13,8 +13,8 @@ struct InkDepthCode {
 
 // What a filter knows of a pixel.
 struct InkTap {
-    // |x| + |y| + |z| = 15 in one word, 127 in two; zero for no normal.
-    normal: vec3<i32>,
+    // Whole numbers, |x| + |y| + |z| = 15 in one word, 127 in two; zero for no normal.
+    normal: vec3<f32>,
     // 0 is background.
     region: u32,
     // Larger is nearer.
