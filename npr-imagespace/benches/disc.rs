@@ -81,9 +81,17 @@ fn distances(ink: &[u8], width: usize, out: &mut Vec<u8>, radius: f32) {
     }
 }
 
-fn main() {
-    let size = UVec2::new(1920, 1080);
-    let ink = drawing(size);
+/// Pixels here and there, with no order that a cache or a branch could learn.
+fn noise(size: UVec2, share: f64) -> Vec<u8> {
+    let mut state = 1u64;
+    let mut next = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 40) as f64 / 16_777_216.0
+    };
+    (0..size.x * size.y).map(|_| if next() < share { 255 } else { 0 }).collect()
+}
+
+fn bench(name: &str, ink: &[u8], size: UVec2) {
     let inked = ink.iter().filter(|&&ink| ink > 0).count() as f64 / ink.len() as f64;
     let radii = [1.0, 2.0, 3.0, 4.0, 6.0, 9.0, 16.0, 64.0];
     let (mut hard, mut soft) = ([f64::INFINITY; 8], [f64::INFINITY; 8]);
@@ -91,24 +99,24 @@ fn main() {
     let (mut buffers, mut out) = (DiscBuffers::default(), vec![0; ink.len()]);
     for round in 0..12 {
         time_ms(&mut copy, || {
-            out.copy_from_slice(black_box(&ink));
+            out.copy_from_slice(black_box(ink));
             black_box(&out);
         });
-        time_ms(&mut square, || dilate(black_box(&ink), size, Kernel::Square, &mut out).expect("it fits"));
+        time_ms(&mut square, || dilate(black_box(ink), size, Kernel::Square, &mut out).expect("it fits"));
         if round < 3 {
-            time_ms(&mut envelope, || distances(black_box(&ink), size.x as usize, &mut out, 16.0));
+            time_ms(&mut envelope, || distances(black_box(ink), size.x as usize, &mut out, 16.0));
         }
         for (times, antialias) in [(&mut hard, false), (&mut soft, true)] {
             for (time, radius_px) in times.iter_mut().zip(radii) {
                 let disc = Disc { radius_px, antialias };
                 time_ms(time, || {
-                    dilate_disc(black_box(&ink), size, &disc, &mut buffers, &mut out).expect("it fits");
+                    dilate_disc(black_box(ink), size, &disc, &mut buffers, &mut out).expect("it fits");
                     black_box(&out);
                 });
             }
         }
     }
-    println!("{} × {} px, {:.1} % ink", size.x, size.y, 100.0 * inked);
+    println!("{name}, {} × {} px, {:.1} % ink", size.x, size.y, 100.0 * inked);
     println!("  copy                       {copy:7.2} ms  {:6.2}", copy / square);
     println!("  3 × 3 dilation             {square:7.2} ms    1.00");
     println!("  distance, lower envelope   {envelope:7.2} ms  {:6.2}", envelope / square);
@@ -121,4 +129,11 @@ fn main() {
             soft[i] / square
         );
     }
+}
+
+fn main() {
+    let size = UVec2::new(1920, 1080);
+    bench("lines", &drawing(size), size);
+    bench("specks", &noise(size, 0.001), size);
+    bench("noise", &noise(size, 0.5), size);
 }
