@@ -43,12 +43,35 @@ fn picture() -> impl Strategy<Value = (UVec2, Vec<u8>)> {
     })
 }
 
+/// Each row with its own share of line pixels, from none to half.
+fn wide_picture() -> impl Strategy<Value = (UVec2, Vec<u8>)> {
+    (100u32..400, prop::collection::vec(prop::sample::select(vec![2u32, 12, 60, 300, 100_000]), 1..9)).prop_flat_map(
+        |(width, rarities)| {
+            let height = rarities.len() as u32;
+            let draws = prop::collection::vec(any::<u32>(), (width * height) as usize);
+            draws.prop_map(move |draws| {
+                let ink = |(i, draw): (usize, u32)| u8::from(draw % rarities[i / width as usize] == 0) * 255;
+                (UVec2::new(width, height), draws.into_iter().enumerate().map(ink).collect())
+            })
+        },
+    )
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn a_disc_is_exact((size, ink) in picture(), radius_px in 0f32..30.0, whole: bool, antialias: bool) {
         let radius_px = if whole { radius_px.floor() } else { radius_px };
+        let disc = Disc { radius_px, antialias };
+        prop_assert_eq!(dilated(&ink, size, &disc), brute_disc(&ink, size, &disc), "{:?}", disc);
+    }
+
+    /// Rows long enough for gaps wider than the disc, beside rows full of borders.
+    #[test]
+    fn a_disc_is_exact_in_wide_pictures(
+        (size, ink) in wide_picture(), radius_px in 0f32..30.0, antialias: bool,
+    ) {
         let disc = Disc { radius_px, antialias };
         prop_assert_eq!(dilated(&ink, size, &disc), brute_disc(&ink, size, &disc), "{:?}", disc);
     }
