@@ -2,7 +2,7 @@
 //!
 //! - [`normal`], [`depth`], [`region`]: the filters of 2002, each alone and on decoded values or bytes, as printed and
 //!   corrected.
-//! - [`fused`]: the three at once over the packed texels of [`crate::format::texel`], decided on integers. The default.
+//! - [`fused`]: the three at once over the packed texels of [`crate::format::texel`], decided on whole numbers. The default.
 //! - [`inker`]: the filter of four taps that compares opposite pixels.
 //!
 //! All return *ink*: 1 a line, 0 paper. The listings output the complement, white paper and black lines.

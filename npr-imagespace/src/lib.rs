@@ -43,7 +43,7 @@
 //!
 //! # What is exact
 //!
-//! A decision on packed texels or on bytes is one of integers, and the same on every machine: [`filter::fused`],
+//! A decision on packed texels or on bytes is one of whole numbers, and the same on every machine: [`filter::fused`],
 //! hard; the filters on bytes; the steps of [`morphology`] and all but the last of [`morphology::flood`]. Soft ink is
 //! the same within 1/255. Decisions on floats may differ where an input is within a rounding of its threshold.
 //!

@@ -1,4 +1,4 @@
-//! The three filters at once over packed texels, decided on integers: the same pixels on every machine.
+//! The three filters at once over packed texels, decided on whole numbers: the same pixels on every machine.
 //!
 //! For a pixel c and its taps 0–3 (0 opposite 2, 1 opposite 3), each with a normal a of integers, a region r and a
 //! depth code q that is linear on the screen ([`crate::format::texel`]), a tap i lies *across* a border if

@@ -1,5 +1,5 @@
-// The three filters at once over packed texels, decided on integers. The twin of `fused.rs`. No bindings and no entry
-// points.
+// The three filters at once over packed texels, decided on whole numbers. The twin of `fused.rs`. No bindings and no
+// entry points.
 
 struct InkFilter {
     // Of the INK_ASKED_ bits.
@@ -27,7 +27,8 @@ const INK_ASKED_BEND: u32 = 2u;
 const INK_ASKED_STEP: u32 = 4u;
 const INK_ASKED_REGION: u32 = 8u;
 
-// The four taps side by side: for each whether, or by how much, it lies across. Only the uniform's wishes are branched on.
+// The four taps side by side: for each whether, or by how much, it lies across. Only the uniform's wishes are
+// branched on.
 
 // Which normals differ from the centre's; zero is no normal. Dot products of whole numbers are exact, and no sum
 // follows the products, so that nothing can be fused into something else.
