@@ -1,0 +1,142 @@
+//! Lines over a picture.
+//!
+//! - [`ink_multiply`]: Card & Mitchell 2002 multiply the frame buffer with the edge image, white paper and black
+//!   lines, so that several passes add up: c · (1 − ink).
+//! - [`ink_alpha_tested`]: the same with the alpha test that spares the frame buffer the white pixels. The edge image
+//!   has its value in alpha, too, 255 on paper and 0 on a line. What was wrong in print: `D3DCMP_GREATER` keeps what
+//!   is greater than the reference, that is the paper, and kills the lines; and the reference `(DWORD) 0.5f` is 0, of
+//!   0–255 ([`AlphaTest::PRINTED`]): the picture stays as it was, at the cost of writing all of it. Right is LESS and
+//!   128 ([`AlphaTest::CORRECTED`]).
+//! - [`ink_over`]: a line of any colour, by its coverage: c + opacity · ink · (line − c). The default. With a black
+//!   opaque line it is the multiplication.
+//!
+//! Colours are display-referred, and coverage blends in display space.
+
+use crate::ImageSpaceError;
+use crate::picture::ink_store;
+use bytemuck::{Pod, Zeroable};
+use glam::{DVec3, Vec3};
+
+/// WGSL of this module: no bindings, no entry points.
+pub const COMPOSITE_WGSL: &str = include_str!("composite.wgsl");
+
+/// How ink comes over a picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Composite {
+    /// c · (1 − ink).
+    Multiply,
+    /// [`Composite::Multiply`] where a test is passed.
+    AlphaTested(AlphaTest),
+    /// A line of a colour.
+    Over {
+        /// Display-referred RGB.
+        color: Vec3,
+        /// 0..=1.
+        opacity: f32,
+    },
+}
+
+impl Default for Composite {
+    fn default() -> Self {
+        Self::Over { color: Vec3::ZERO, opacity: 1.0 }
+    }
+}
+
+/// What an alpha lets through.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct AlphaTest {
+    /// Through passes what is less than the reference, or else what is greater.
+    pub less: bool,
+    /// 0–255.
+    pub reference: u8,
+}
+
+impl AlphaTest {
+    /// GREATER and `(DWORD) 0.5f`.
+    pub const PRINTED: Self = Self { less: false, reference: 0 };
+    /// LESS and 128.
+    pub const CORRECTED: Self = Self { less: true, reference: 128 };
+}
+
+/// c · (1 − ink).
+pub fn ink_multiply(color: DVec3, ink: f64) -> DVec3 {
+    color * (1.0 - ink)
+}
+
+/// Whether the edge image's pixel, as 8 bits of alpha, passes.
+pub fn ink_alpha_passes(ink: f64, test: AlphaTest) -> bool {
+    let alpha = 255 - ink_store(ink as f32);
+    if test.less { alpha < test.reference } else { alpha > test.reference }
+}
+
+/// [`ink_multiply`] where the test is passed, and else the colour as it was.
+pub fn ink_alpha_tested(color: DVec3, ink: f64, test: AlphaTest) -> DVec3 {
+    if ink_alpha_passes(ink, test) { ink_multiply(color, ink) } else { color }
+}
+
+/// c + opacity · ink · (line − c).
+pub fn ink_over(color: DVec3, ink: f64, line: DVec3, opacity: f64) -> DVec3 {
+    color + (line - color) * (opacity * ink)
+}
+
+/// A pixel under a line.
+pub fn ink_composite(color: DVec3, ink: f64, how: &Composite) -> DVec3 {
+    match *how {
+        Composite::Multiply => ink_multiply(color, ink),
+        Composite::AlphaTested(test) => ink_alpha_tested(color, ink, test),
+        Composite::Over { color: line, opacity } => ink_over(color, ink, line.as_dvec3(), f64::from(opacity)),
+    }
+}
+
+/// A picture of 8-bit RGBA under lines; its alpha stays.
+///
+/// # Errors
+/// If there is not one ink for each pixel.
+pub fn composite_picture(pixels: &mut [[u8; 4]], ink: &[u8], how: &Composite) -> Result<(), ImageSpaceError> {
+    if pixels.len() != ink.len() {
+        return Err(ImageSpaceError::Pixels { pixels: pixels.len(), ink: ink.len() });
+    }
+    for (pixel, &ink) in pixels.iter_mut().zip(ink) {
+        // Nothing changes on paper, whatever the form.
+        if ink == 0 {
+            continue;
+        }
+        let color = DVec3::new(f64::from(pixel[0]), f64::from(pixel[1]), f64::from(pixel[2])) / 255.0;
+        let mixed = ink_composite(color, f64::from(ink) / 255.0, how);
+        pixel[..3].copy_from_slice(&mixed.to_array().map(|c| ink_store(c as f32)));
+    }
+    Ok(())
+}
+
+/// A [`Composite`] as `InkComposite` of the WGSL, 32 bytes.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct CompositeUniform {
+    /// The line's colour, and its opacity.
+    pub line: [f32; 4],
+    /// 0 multiply, 1 alpha-tested, 2 over.
+    pub form: u32,
+    /// 1: LESS.
+    pub alpha_less: u32,
+    /// 0–255.
+    pub alpha_reference: u32,
+    /// Unused, 0.
+    pub padding: u32,
+}
+
+impl From<&Composite> for CompositeUniform {
+    fn from(how: &Composite) -> Self {
+        match *how {
+            Composite::Multiply => Self::zeroed(),
+            Composite::AlphaTested(test) => Self {
+                form: 1,
+                alpha_less: u32::from(test.less),
+                alpha_reference: u32::from(test.reference),
+                ..Self::zeroed()
+            },
+            Composite::Over { color, opacity } => {
+                Self { line: color.extend(opacity).to_array(), form: 2, ..Self::zeroed() }
+            }
+        }
+    }
+}

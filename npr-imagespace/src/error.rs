@@ -1,0 +1,67 @@
+//! What can be wrong with what this crate is given.
+
+use glam::UVec2;
+
+/// A rule that the input breaks.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ImageSpaceError {
+    /// A slice does not have one element for each pixel.
+    #[error("{len} elements for a picture of {} × {} px", size_px.x, size_px.y)]
+    Length {
+        /// How many there are.
+        len: usize,
+        /// Of the picture.
+        size_px: UVec2,
+    },
+    /// A picture and its ink differ in size.
+    #[error("{pixels} pixels and {ink} of ink")]
+    Pixels {
+        /// How many there are.
+        pixels: usize,
+        /// How many there are.
+        ink: usize,
+    },
+    /// The nearest and farthest depth of a range are not `0 < near < far`.
+    #[error(
+        "depths from {near} to {far}: they must be 0 < near < far, and far may be infinite only where 1/z is stored"
+    )]
+    DepthRange {
+        /// Eye-space depth.
+        near: f32,
+        /// Eye-space depth.
+        far: f32,
+    },
+    /// The cosine under which two normals are told apart is not within 0..=1.
+    #[error("a normal threshold of {cos}: a cosine within 0..=1 is needed")]
+    NormalThreshold {
+        /// What was asked for.
+        cos: f32,
+    },
+    /// A depth step that is negative or not finite.
+    #[error("a depth step of {step}: it must be finite and not negative")]
+    DepthStep {
+        /// What was asked for.
+        step: f32,
+    },
+    /// A width of the transition from paper to line that is negative or not finite.
+    #[error("a softness of {softness}: it must be finite and not negative")]
+    Softness {
+        /// What was asked for.
+        softness: f32,
+    },
+    /// A radius that is negative, not finite or larger than 32766 px.
+    #[error("a radius of {radius_px} px: it must be within 0..=32766")]
+    Radius {
+        /// What was asked for.
+        radius_px: f32,
+    },
+    /// A pair of adjacent faces names a face that there is not.
+    #[error("a face {face} of {faces}")]
+    Face {
+        /// What was named.
+        face: u32,
+        /// How many there are.
+        faces: usize,
+    },
+}

@@ -1,0 +1,36 @@
+//! Lines where neighbouring pixels differ.
+//!
+//! - [`normal`], [`depth`], [`region`]: the filters of 2002, each alone and on decoded values or bytes, as printed and
+//!   corrected.
+//! - [`fused`]: the three at once over the packed texels of [`crate::format::texel`], decided on whole numbers. The default.
+//! - [`inker`]: the filter of four taps that compares opposite pixels.
+//!
+//! All return *ink*: 1 a line, 0 paper. The listings output the complement, white paper and black lines.
+//!
+//! # Soft lines
+//!
+//! The slides of 2002 say that the filters can be made fuzzy, and not how. Here a comparison `x > t` becomes clamp((x
+//! − t) / width + 1/2, 0, 1) ([`ink_ramp`]), and the four taps are added and weighted
+//! ([`crate::picture::Taps::weight`]) so that a straight border is a full line and its outer corners are paler. A
+//! softness of 0 is hard.
+
+pub mod depth;
+pub mod fused;
+pub mod inker;
+pub mod normal;
+pub mod region;
+
+/// WGSL of the modules in this one: no bindings, no entry points. Needs [`crate::format::FORMAT_WGSL`].
+pub const FILTER_WGSL: &str = concat!(
+    include_str!("filter.wgsl"),
+    include_str!("filter/normal.wgsl"),
+    include_str!("filter/depth.wgsl"),
+    include_str!("filter/region.wgsl"),
+    include_str!("filter/fused.wgsl"),
+    include_str!("filter/inker.wgsl"),
+);
+
+/// The soft form of `excess > 0`, which it is where `width` is 0.
+pub fn ink_ramp(excess: f64, width: f64) -> f64 {
+    if width > 0.0 { (excess / width + 0.5).clamp(0.0, 1.0) } else { f64::from(u8::from(excess > 0.0)) }
+}

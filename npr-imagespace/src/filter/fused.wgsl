@@ -1,0 +1,161 @@
+// The three filters at once over packed texels, decided on whole numbers. The twin of `fused.rs`. No bindings and no
+// entry points.
+
+struct InkFilter {
+    // Of the INK_ASKED_ bits.
+    asked: u32,
+    // t^2.
+    normal_cos2: f32,
+    // The threshold on depth codes: max(slack, base + step * code).
+    depth_slack: u32,
+    depth_base: u32,
+    // * 2^16.
+    depth_step: u32,
+    depth_shift: u32,
+    // Ink of one tap across, where lines are soft.
+    weight: f32,
+    normal_cos: f32,
+    // 0 for hard lines.
+    softness: f32,
+    padding0: u32,
+    padding1: u32,
+    padding2: u32,
+}
+
+const INK_ASKED_NORMAL: u32 = 1u;
+const INK_ASKED_BEND: u32 = 2u;
+const INK_ASKED_STEP: u32 = 4u;
+const INK_ASKED_REGION: u32 = 8u;
+
+// The four taps side by side: for each whether, or by how much, it lies across. Only the uniform's wishes are
+// branched on.
+
+// Which normals differ from the centre's; zero is no normal. Dot products of whole numbers are exact, and no sum
+// follows the products, so that nothing can be fused into something else.
+fn ink_taps_normals_differ(what: InkFilter, centre: vec3<f32>, lengths2: vec4<f32>, dots: vec4<f32>) -> vec4<bool> {
+    let own2 = dot(centre, centre);
+    let none = (lengths2 == vec4<f32>(0.0)) != vec4<bool>(own2 == 0.0);
+    return none | (dots < vec4<f32>(0.0)) | (dots * dots < (own2 * lengths2) * what.normal_cos2);
+}
+
+// The thresholds on differences of depth codes of which `nearest` are the largest.
+fn ink_taps_depth_thresholds(what: InkFilter, nearest: vec4<i32>) -> vec4<i32> {
+    let growth = ((vec4<u32>(nearest) >> vec4<u32>(what.depth_shift)) * what.depth_step)
+        >> vec4<u32>(16u - what.depth_shift);
+    return vec4<i32>(max(vec4<u32>(what.depth_slack), what.depth_base + growth));
+}
+
+// |q0 - 2 q + q2| and |q1 - 2 q + q3|, and their thresholds.
+fn ink_taps_bends(what: InkFilter, centre: i32, depths: vec4<i32>) -> vec4<i32> {
+    let nearest = max(max(depths.xy, depths.zw), vec2<i32>(centre));
+    let bends = abs(depths.xy - centre - (centre - depths.zw));
+    return vec4<i32>(bends, ink_taps_depth_thresholds(what, nearest.xyxy).xy);
+}
+
+// Whether a pixel is a line.
+fn ink_fused_hard(
+    what: InkFilter,
+    centre: InkTap,
+    tap0: InkTap,
+    tap1: InkTap,
+    tap2: InkTap,
+    tap3: InkTap,
+) -> bool {
+    let regions = vec4<u32>(tap0.region, tap1.region, tap2.region, tap3.region);
+    let depths = vec4<i32>(tap0.depth, tap1.depth, tap2.depth, tap3.depth);
+    let surface = vec4<bool>(centre.region != 0u);
+    let surfaces = regions != vec4<u32>(0u);
+    var across = surfaces != surface;
+    if (what.asked & INK_ASKED_REGION) != 0u {
+        across = regions != vec4<u32>(centre.region);
+    }
+    if (what.asked & INK_ASKED_STEP) != 0u {
+        let thresholds = ink_taps_depth_thresholds(what, max(depths, vec4<i32>(centre.depth)));
+        across = across | (surfaces & surface & (abs(depths - centre.depth) > thresholds));
+    }
+    if (what.asked & INK_ASKED_NORMAL) != 0u {
+        let own = centre.normal;
+        let lengths2 = vec4<f32>(
+            dot(tap0.normal, tap0.normal),
+            dot(tap1.normal, tap1.normal),
+            dot(tap2.normal, tap2.normal),
+            dot(tap3.normal, tap3.normal),
+        );
+        let dots = vec4<f32>(dot(own, tap0.normal), dot(own, tap1.normal), dot(own, tap2.normal), dot(own, tap3.normal));
+        across = across | (surfaces & surface & ink_taps_normals_differ(what, own, lengths2, dots));
+    }
+    if (what.asked & INK_ASKED_BEND) != 0u {
+        let bends = ink_taps_bends(what, centre.depth, depths);
+        let bent = surfaces.xy & surfaces.zw & surface.xy & (bends.xy > bends.zw);
+        across = across | bent.xyxy;
+    }
+    return any(across);
+}
+
+// The soft form of a difference above a threshold, both in codes.
+fn ink_taps_depth_soft(what: InkFilter, differences: vec4<i32>, thresholds: vec4<i32>) -> vec4<f32> {
+    return saturate(vec4<f32>(differences - thresholds) / (what.softness * vec4<f32>(thresholds)) + 0.5);
+}
+
+// The soft form of normals that differ.
+fn ink_taps_normals_soft(what: InkFilter, centre: vec3<f32>, lengths2: vec4<f32>, dots: vec4<f32>) -> vec4<f32> {
+    let own2 = dot(centre, centre);
+    let products = own2 * lengths2;
+    let cosines = dots * inverseSqrt(max(products, vec4<f32>(1.0)));
+    let ink = saturate((what.normal_cos - cosines) / what.softness + 0.5);
+    let none = select(vec4<f32>(0.0), vec4<f32>(1.0), (lengths2 == vec4<f32>(0.0)) != vec4<bool>(own2 == 0.0));
+    return select(ink, none, products == vec4<f32>(0.0));
+}
+
+// Ink of a pixel, 0..1; the softness is above 0.
+fn ink_fused_soft(
+    what: InkFilter,
+    centre: InkTap,
+    tap0: InkTap,
+    tap1: InkTap,
+    tap2: InkTap,
+    tap3: InkTap,
+) -> f32 {
+    let regions = vec4<u32>(tap0.region, tap1.region, tap2.region, tap3.region);
+    let depths = vec4<i32>(tap0.depth, tap1.depth, tap2.depth, tap3.depth);
+    let surface = vec4<bool>(centre.region != 0u);
+    let surfaces = regions != vec4<u32>(0u);
+    let paper = vec4<f32>(0.0);
+    var ink = paper;
+    if (what.asked & INK_ASKED_STEP) != 0u {
+        let thresholds = ink_taps_depth_thresholds(what, max(depths, vec4<i32>(centre.depth)));
+        ink = ink_taps_depth_soft(what, abs(depths - centre.depth), thresholds);
+    }
+    if (what.asked & INK_ASKED_NORMAL) != 0u {
+        let own = centre.normal;
+        let lengths2 = vec4<f32>(
+            dot(tap0.normal, tap0.normal),
+            dot(tap1.normal, tap1.normal),
+            dot(tap2.normal, tap2.normal),
+            dot(tap3.normal, tap3.normal),
+        );
+        let dots = vec4<f32>(dot(own, tap0.normal), dot(own, tap1.normal), dot(own, tap2.normal), dot(own, tap3.normal));
+        ink = max(ink, ink_taps_normals_soft(what, own, lengths2, dots));
+    }
+    ink = select(paper, ink, surfaces & surface);
+    var across = surfaces != surface;
+    if (what.asked & INK_ASKED_REGION) != 0u {
+        across = regions != vec4<u32>(centre.region);
+    }
+    ink = select(ink, vec4<f32>(1.0), across);
+    var bent = vec2<f32>(0.0);
+    if (what.asked & INK_ASKED_BEND) != 0u {
+        let bends = ink_taps_bends(what, centre.depth, depths);
+        bent = ink_taps_depth_soft(what, bends.xyxy, bends.zwzw).xy;
+        bent = select(vec2<f32>(0.0), bent, surfaces.xy & surfaces.zw & surface.xy);
+    }
+    return min(what.weight * max(ink.x + ink.y + (ink.z + ink.w), bent.x + bent.y), 1.0);
+}
+
+// Ink of a pixel, 0..1, hard or soft as the filter says.
+fn ink_fused(what: InkFilter, centre: InkTap, tap0: InkTap, tap1: InkTap, tap2: InkTap, tap3: InkTap) -> f32 {
+    if what.softness > 0.0 {
+        return ink_fused_soft(what, centre, tap0, tap1, tap2, tap3);
+    }
+    return select(0.0, 1.0, ink_fused_hard(what, centre, tap0, tap1, tap2, tap3));
+}

@@ -1,0 +1,34 @@
+//! What a geometry pass writes for the filters to read, encoded and decoded.
+//!
+//! - [`printed`]: the one RGBA8 target of Card & Mitchell 2002.
+//! - [`depth`]: linear eye-space depth in six formats, and the smallest gap that each tells apart.
+//! - [`normal`]: normals in four formats.
+//! - [`texel`]: normal, region and depth packed into one or two words: what the fused filter reads in one load.
+//!
+//! # What is no surface
+//!
+//! A depth that is NaN, infinite, zero or negative is background ([`ink_is_surface`]); so is whatever no surface was
+//! drawn on. Background is a surface of its own: it differs from every other and not from itself. A
+//! direction that is zero or not finite is no normal, and *no normal* differs from every normal and not from itself.
+
+pub mod depth;
+pub mod half;
+pub mod normal;
+pub mod printed;
+pub mod texel;
+
+/// WGSL of this module and those in it: no bindings, no entry points.
+pub const FORMAT_WGSL: &str = concat!(
+    include_str!("format.wgsl"),
+    include_str!("format/printed.wgsl"),
+    include_str!("format/depth.wgsl"),
+    include_str!("format/normal.wgsl"),
+    include_str!("format/texel.wgsl"),
+);
+
+/// Whether an eye-space depth is one that a surface can have: positive, finite and a number.
+///
+/// Decided on its bits, since a shader compiler may take it that there is no NaN.
+pub fn ink_is_surface(depth: f32) -> bool {
+    depth.to_bits().wrapping_sub(1) < 0x7f7f_ffff
+}

@@ -1,0 +1,81 @@
+// Normal, region and depth of a pixel in one word or two. The twin of `texel.rs`. No bindings and no entry points.
+
+struct InkDepthCode {
+    // Codes per unit of v, which is 1/z, or z in a parallel view.
+    scale: f32,
+    // The code at v = 0.
+    bias: f32,
+    // The largest code.
+    most: f32,
+    // 1: v is z.
+    parallel: u32,
+}
+
+// What a filter knows of a pixel.
+struct InkTap {
+    // Whole numbers, |x| + |y| + |z| = 15 in one word, 127 in two; zero for no normal.
+    normal: vec3<f32>,
+    // 0 is background.
+    region: u32,
+    // Larger is nearer.
+    depth: i32,
+}
+
+const INK_NARROW_REGION_MOST: u32 = 255u;
+const INK_WIDE_REGION_MOST: u32 = 16777215u;
+
+// The code of 1/z, or of z in a parallel view. In a fragment shader `position.w` is 1/z as the rasteriser has it.
+fn ink_depth_code_of(v: f32, code: InkDepthCode) -> u32 {
+    return u32(round(clamp(v * code.scale + code.bias, 0.0, code.most)));
+}
+
+fn ink_depth_code(depth: f32, code: InkDepthCode) -> u32 {
+    return ink_depth_code_of(select(1.0 / depth, depth, code.parallel != 0u), code);
+}
+
+// 0, background, stays 0; others go to 1 .. most.
+fn ink_fold_region(region: u32, most: u32) -> u32 {
+    return select(1u + (region - 1u) % most, 0u, region == 0u);
+}
+
+// The region that a texture's colour stands for, sampled without filtering.
+fn ink_region_of_color(rgb: vec3<f32>) -> u32 {
+    let bytes = vec3<u32>(rgb * 255.0 + 0.5);
+    return (bytes.x | (bytes.y << 8u) | (bytes.z << 16u)) + 1u;
+}
+
+// A region in the light and in shadow: two numbers.
+fn ink_region_in_shadow(region: u32, shadowed: bool) -> u32 {
+    return select(2u * region - select(1u, 0u, shadowed), 0u, region == 0u);
+}
+
+// One word, for an r32uint target. Region 0, and a depth that no surface has, give background.
+fn ink_narrow_pack(normal: vec3<f32>, region: u32, depth: f32, code: InkDepthCode) -> u32 {
+    if region == 0u || !ink_is_surface(depth) {
+        return 0u;
+    }
+    let oct = ink_oct_encode(normal, INK_OCT5_MOST);
+    let folded = ink_fold_region(region, INK_NARROW_REGION_MOST);
+    return ink_depth_code(depth, code) | (folded << 14u) | (oct.x << 22u) | (oct.y << 27u);
+}
+
+fn ink_narrow_tap(word: u32) -> InkTap {
+    let oct = vec2<u32>((word >> 22u) & 31u, word >> 27u);
+    return InkTap(ink_oct_load(oct, INK_OCT5_MOST), (word >> 14u) & 255u, i32(word & 0x3fffu));
+}
+
+// Two words, for an rg32uint target. Region 0, and a depth that no surface has, give background.
+fn ink_wide_pack(normal: vec3<f32>, region: u32, depth: f32, code: InkDepthCode) -> vec2<u32> {
+    if region == 0u || !ink_is_surface(depth) {
+        return vec2<u32>(0u);
+    }
+    let oct = ink_oct_encode(normal, INK_OCT8_MOST);
+    let folded = ink_fold_region(region, INK_WIDE_REGION_MOST);
+    return vec2<u32>(ink_depth_code(depth, code) | (folded << 24u), oct.x | (oct.y << 8u) | ((folded >> 8u) << 16u));
+}
+
+fn ink_wide_tap(words: vec2<u32>) -> InkTap {
+    let oct = vec2<u32>(words.y & 255u, (words.y >> 8u) & 255u);
+    let region = (words.x >> 24u) | ((words.y >> 16u) << 8u);
+    return InkTap(ink_oct_load(oct, INK_OCT8_MOST), region, i32(words.x & 0xffffffu));
+}

@@ -1,0 +1,98 @@
+//! Lines found in the image: what a geometry pass writes for it, the filters, thicker lines, and how they come over
+//! the picture.
+//!
+//! ```
+//! use glam::{UVec2, Vec3};
+//! use npr_imagespace::filter::fused::{FilterUniform, FusedFilter, ink_fused};
+//! use npr_imagespace::format::texel::{DepthCode, TexelLayout, ink_wide_pack, ink_wide_tap};
+//! use npr_imagespace::morphology::disc::{Disc, DiscBuffers, dilate_disc};
+//! use npr_imagespace::picture::filter_picture;
+//!
+//! // A surface 4 away, and from the eighth column on another, 5 away: what a geometry pass would write.
+//! let size_px = UVec2::new(16, 9);
+//! let code = DepthCode::perspective(1.0, f32::INFINITY, TexelLayout::Wide)?;
+//! let depth = |i: u32| if i % 16 < 8 { 4.0 } else { 5.0 };
+//! let texels: Vec<_> = (0..16 * 9).map(|i| ink_wide_pack(Vec3::Z, 1, depth(i), &code)).collect();
+//!
+//! let filter = FusedFilter::default();
+//! let uniform = FilterUniform::new(&filter, TexelLayout::Wide, &code)?;
+//! let ink = filter_picture(&texels, size_px, filter.taps, |centre, taps| {
+//!     ink_fused(&uniform, &ink_wide_tap(centre), &taps.map(ink_wide_tap)) as f32
+//! })?;
+//! assert_eq!(ink[16..32], [0, 0, 0, 0, 0, 0, 0, 255, 255, 0, 0, 0, 0, 0, 0, 0]);
+//!
+//! let (brush, mut thick) = (Disc { radius_px: 1.5, antialias: true }, Vec::new());
+//! dilate_disc(&ink, size_px, &brush, &mut DiscBuffers::default(), &mut thick)?;
+//! assert_eq!(thick[64..80], [0, 0, 0, 0, 0, 128, 255, 255, 255, 255, 128, 0, 0, 0, 0, 0]);
+//! # Ok::<(), npr_imagespace::ImageSpaceError>(())
+//! ```
+//!
+//! The half of outline drawing that works on any primitive, well-formed or not: what interpenetrates, is cut by a clip
+//! plane or tessellated on the way has its lines where its pictures differ.
+//!
+//! 1. [`mod@format`]: normal, region and depth of a pixel as a G-buffer holds them, encoded and decoded.
+//! 2. [`region`], [`artist`]: what else than the surface's own normals draws lines: numbers of regions, and directions
+//!    that no visible surface has.
+//! 3. [`filter`]: where neighbouring pixels differ there is ink.
+//! 4. [`morphology`]: thicker, thinner, opened and closed.
+//! 5. [`composite`]: ink over a picture.
+//!
+//! The same functions under the same names, `ink_`, stand here twice: in Rust, the reference, and in [`WGSL`], over
+//! values already loaded. What the papers got wrong is told where it is mended, and kept under a name that says
+//! `printed` where it can run.
+//!
+//! # What is exact
+//!
+//! A decision on packed texels or on bytes is one of whole numbers, and the same on every machine: [`filter::fused`],
+//! hard; the filters on bytes; the steps of [`morphology`] and all but the last of [`morphology::flood`]. Soft ink is
+//! the same within 1/255. Decisions on floats may differ where an input is within a rounding of its threshold.
+//!
+//! # Colours
+//!
+//! Display-referred: what is mixed is what is shown.
+//!
+//! # Sources
+//!
+//! - D. Card, J. L. Mitchell: *Non-Photorealistic Rendering with Pixel and Vertex Shaders*, in *Direct3D ShaderX*,
+//!   2002, "Image Space Techniques", listings 8–10.
+//! - J. L. Mitchell, C. Brennan, D. Card: *Real-Time Image-Space Outlining for Non-Photorealistic Rendering*,
+//!   SIGGRAPH 2002 sketch (slides).
+//! - *The Evolution of a Cartoon Renderer*, GDNet: the inker, artists' lines, listings 3–5.
+//! - T. Saito, T. Takahashi: *Comprehensible Rendering of 3-D Shapes*, SIGGRAPH 1990: the G-buffer that all of these go
+//!   back to.
+#![warn(missing_docs)]
+
+pub mod artist;
+pub mod composite;
+mod error;
+pub mod filter;
+pub mod format;
+pub mod morphology;
+pub mod picture;
+pub mod region;
+
+pub use error::ImageSpaceError;
+
+/// The functions of this crate in WGSL: no bindings, no entry points, every name begins with `ink_`, `INK_` or `Ink`.
+///
+/// It is all parts in a row: [`picture::PICTURE_WGSL`], [`format::FORMAT_WGSL`], [`filter::FILTER_WGSL`],
+/// [`morphology::MORPHOLOGY_WGSL`], [`composite::COMPOSITE_WGSL`] and [`artist::ARTIST_WGSL`]. Each stands alone, but
+/// for the filters, which need the formats.
+pub const WGSL: &str = concat!(
+    include_str!("picture.wgsl"),
+    include_str!("format.wgsl"),
+    include_str!("format/printed.wgsl"),
+    include_str!("format/depth.wgsl"),
+    include_str!("format/normal.wgsl"),
+    include_str!("format/texel.wgsl"),
+    include_str!("filter.wgsl"),
+    include_str!("filter/normal.wgsl"),
+    include_str!("filter/depth.wgsl"),
+    include_str!("filter/region.wgsl"),
+    include_str!("filter/fused.wgsl"),
+    include_str!("filter/inker.wgsl"),
+    include_str!("morphology.wgsl"),
+    include_str!("morphology/flood.wgsl"),
+    include_str!("composite.wgsl"),
+    include_str!("artist.wgsl"),
+);

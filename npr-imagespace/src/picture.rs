@@ -1,0 +1,90 @@
+//! Pictures as slices in row order, their borders, and the taps of a filter.
+//!
+//! # Borders
+//!
+//! In the first and the last column a filter takes no step to the side, in the first and the last row none up or
+//! down. Every tap then lies in the picture, opposite taps stay opposite (a second difference over them means
+//! something), and nothing that is not in the picture is compared with anything. So a picture of one pixel has no
+//! line, one of 1 × n is filtered along its length, and a border between the outermost two columns is drawn on the
+//! inner one. The papers do not say what lies outside.
+
+use crate::ImageSpaceError;
+use glam::{IVec2, UVec2};
+
+/// WGSL of this module: no bindings, no entry points.
+pub const PICTURE_WGSL: &str = include_str!("picture.wgsl");
+
+/// Where a filter reads besides the pixel itself. Taps 0 and 2 are opposite, and 1 and 3.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Taps {
+    /// Down right, down left, up left, up right: Card & Mitchell 2002, the slides of SIGGRAPH 2002, the inker.
+    #[default]
+    Diagonal,
+    /// Right, down, left, up.
+    Cross,
+}
+
+impl Taps {
+    /// The four steps in px, x to the right and y down.
+    pub fn offsets(self) -> [IVec2; 4] {
+        match self {
+            Self::Diagonal => [IVec2::ONE, IVec2::new(-1, 1), IVec2::NEG_ONE, IVec2::new(1, -1)],
+            Self::Cross => [IVec2::X, IVec2::Y, IVec2::NEG_X, IVec2::NEG_Y],
+        }
+    }
+
+    /// How much of a full line one tap across a border is worth where lines are soft: a straight border has two
+    /// diagonal taps across it, but only one of a cross.
+    pub fn weight(self) -> f32 {
+        match self {
+            Self::Diagonal => 0.5,
+            Self::Cross => 1.0,
+        }
+    }
+}
+
+/// How far a filter at a pixel steps along x and y: 1, or 0 where a step to either side would leave the picture.
+pub fn ink_reach(pixel: UVec2, size_px: UVec2) -> IVec2 {
+    let along = |at: u32, size: u32| i32::from(at > 0 && at + 1 < size);
+    IVec2::new(along(pixel.x, size_px.x), along(pixel.y, size_px.y))
+}
+
+/// The number of pixels, if the slice has as many elements.
+pub(crate) fn checked_len(len: usize, size_px: UVec2) -> Result<usize, ImageSpaceError> {
+    if size_px.x as usize * size_px.y as usize == len {
+        return Ok(len);
+    }
+    Err(ImageSpaceError::Length { len, size_px })
+}
+
+/// Runs a filter over a picture, from the pixel and its four taps to ink within 0..=1, and stores the ink as an 8-bit
+/// unorm target does.
+///
+/// # Errors
+/// If `texels` does not have one element for each pixel.
+pub fn filter_picture<T: Copy>(
+    texels: &[T],
+    size_px: UVec2,
+    taps: Taps,
+    filter: impl Fn(T, [T; 4]) -> f32,
+) -> Result<Vec<u8>, ImageSpaceError> {
+    let len = checked_len(texels.len(), size_px)?;
+    let mut ink = Vec::with_capacity(len);
+    let offsets = taps.offsets();
+    for y in 0..size_px.y {
+        for x in 0..size_px.x {
+            let reach = ink_reach(UVec2::new(x, y), size_px);
+            let at = |offset: IVec2| {
+                let pixel = IVec2::new(x as i32, y as i32) + offset * reach;
+                texels[pixel.y as usize * size_px.x as usize + pixel.x as usize]
+            };
+            ink.push(ink_store(filter(at(IVec2::ZERO), offsets.map(at))));
+        }
+    }
+    Ok(ink)
+}
+
+/// 0..=1 as an 8-bit unorm target stores it; what is no number becomes 0.
+pub fn ink_store(value: f32) -> u8 {
+    (value.clamp(0.0, 1.0) * 255.0 + 0.5) as u8
+}

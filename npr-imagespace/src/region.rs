@@ -1,0 +1,81 @@
+//! Region numbers: what the region filter draws borders between. 0 is background, so numbers start at 1.
+//!
+//! By material, by mesh, by smooth-connected patch, by a texture's colours, in shadow and out of it, and any of them
+//! together. They are numbers of any size here; [`crate::format::texel`] folds them to what a texel has room for.
+
+use crate::ImageSpaceError;
+use std::collections::HashMap;
+
+/// A number for each material or mesh index.
+pub fn region_of_index(index: u32) -> u32 {
+    index.wrapping_add(1).max(1)
+}
+
+/// The regions of faces that are connected by smooth edges, numbered in the order of their first faces.
+///
+/// - `faces`: how many there are;
+/// - `smooth_pairs`: faces that share an edge over which the surface is smooth. Whether it is, is the caller's to
+///   say: by the dihedral angle, by normals that are the same on both sides, by material.
+///
+/// With these the borders of patches are the creases, exactly, while smooth normals that are interpolated have none.
+///
+/// # Errors
+/// If a pair names a face that there is not.
+pub fn region_of_patches(faces: usize, smooth_pairs: &[[u32; 2]]) -> Result<Vec<u32>, ImageSpaceError> {
+    let mut parent: Vec<u32> = (0..faces as u32).collect();
+    fn root(parent: &mut [u32], mut face: u32) -> u32 {
+        while parent[face as usize] != face {
+            // Every second one is hung up higher, so that chains stay short.
+            parent[face as usize] = parent[parent[face as usize] as usize];
+            face = parent[face as usize];
+        }
+        face
+    }
+    for &[a, b] in smooth_pairs {
+        if let Some(&face) = [a, b].iter().find(|&&face| face as usize >= faces) {
+            return Err(ImageSpaceError::Face { face, faces });
+        }
+        let (a, b) = (root(&mut parent, a), root(&mut parent, b));
+        // The lower face stays the root, which makes the numbers independent of the pairs' order.
+        parent[a.max(b) as usize] = a.min(b);
+    }
+    let mut regions = vec![0; faces];
+    let mut count = 0;
+    for face in 0..faces {
+        let first = root(&mut parent, face as u32) as usize;
+        if first == face {
+            count += 1;
+            regions[face] = count;
+        } else {
+            regions[face] = regions[first];
+        }
+    }
+    Ok(regions)
+}
+
+/// A number for pairs of numbers, such as mesh and patch: equal pairs have equal ones, counted from 1 by first
+/// appearance. A pair with a 0 in it is background and stays 0.
+pub fn region_of_pairs(pairs: impl IntoIterator<Item = [u32; 2]>) -> Vec<u32> {
+    let mut known = HashMap::new();
+    pairs
+        .into_iter()
+        .map(|pair| {
+            let next = known.len() as u32 + 1;
+            if pair.contains(&0) { 0 } else { *known.entry(pair).or_insert(next) }
+        })
+        .collect()
+}
+
+/// The region that a texture's colour stands for, alpha not looked at: the colour as a number, and 1. Sample without
+/// filtering: a mean of two regions is a third.
+pub fn ink_region_of_color(rgb: [u8; 3]) -> u32 {
+    u32::from_le_bytes([rgb[0], rgb[1], rgb[2], 0]) + 1
+}
+
+/// A region in the light and in shadow: two numbers, so that the shadow's outline is a border of regions.
+///
+/// The papers negate the normals in shadow. A shadowed surface with normal n is then like a lit one with −n, the line
+/// between the two vanishes, and negated depth does not fit an unsigned format; a bit has neither fault.
+pub fn ink_region_in_shadow(region: u32, shadowed: bool) -> u32 {
+    if region == 0 { 0 } else { 2 * region - u32::from(!shadowed) }
+}

@@ -1,0 +1,406 @@
+//! Filters on hand-computed taps, against their definitions, on borders of the picture and on what is no number.
+
+use glam::{DVec3, IVec2, IVec3, UVec2, Vec3};
+use npr_imagespace::ImageSpaceError;
+use npr_imagespace::filter::depth::*;
+use npr_imagespace::filter::fused::*;
+use npr_imagespace::filter::ink_ramp;
+use npr_imagespace::filter::inker::*;
+use npr_imagespace::filter::normal::*;
+use npr_imagespace::filter::region::*;
+use npr_imagespace::format::printed::{CLEAR, CLEAR_PRINTED, ink_printed_encode};
+use npr_imagespace::format::texel::*;
+use npr_imagespace::picture::*;
+use proptest::prelude::*;
+
+fn tilted(angle_deg: f64) -> DVec3 {
+    let (sin, cos) = angle_deg.to_radians().sin_cos();
+    DVec3::new(sin, 0.0, cos)
+}
+
+#[test]
+fn taps_lie_in_the_picture_and_opposite_ones_stay_opposite() {
+    for size in [UVec2::new(1, 1), UVec2::new(1, 7), UVec2::new(2, 3), UVec2::new(5, 4)] {
+        for taps in [Taps::Diagonal, Taps::Cross] {
+            for y in 0..size.y {
+                for x in 0..size.x {
+                    let reach = ink_reach(UVec2::new(x, y), size);
+                    let offsets = taps.offsets().map(|offset| offset * reach);
+                    assert_eq!((offsets[0], offsets[1]), (-offsets[2], -offsets[3]));
+                    for offset in offsets {
+                        let at = IVec2::new(x as i32, y as i32) + offset;
+                        assert!(at.cmpge(IVec2::ZERO).all() && at.cmplt(size.as_ivec2()).all(), "{size} {x} {y}");
+                    }
+                }
+            }
+        }
+    }
+    assert_eq!(ink_reach(UVec2::new(0, 1), UVec2::new(1, 3)), IVec2::Y);
+    assert_eq!(ink_reach(UVec2::new(2, 0), UVec2::new(4, 3)), IVec2::X);
+}
+
+#[test]
+fn odd_pictures_are_filtered_to_their_borders() {
+    let edge = |centre: u32, taps: [u32; 4]| ink_region(centre, taps, false, 0.5) as f32;
+    let filtered = |regions: &[u32], width, height| {
+        filter_picture(regions, UVec2::new(width, height), Taps::Diagonal, edge).unwrap()
+    };
+    assert_eq!(filtered(&[3], 1, 1), [0]);
+    assert_eq!(filtered(&[], 0, 5), []);
+    // A row and a column: the border between the second and the third.
+    assert_eq!(filtered(&[1, 1, 2, 2, 2], 5, 1), [0, 255, 255, 0, 0]);
+    assert_eq!(filtered(&[1, 1, 2, 2, 2], 1, 5), [0, 255, 255, 0, 0]);
+    // A border beside the outermost column lies on the inner one, and in the corners there is nothing.
+    assert_eq!(filtered(&[1, 2, 2, 1, 2, 2, 1, 2, 2], 3, 3), [0, 255, 0, 0, 255, 0, 0, 255, 0]);
+    assert_eq!(
+        filter_picture(&[1u32; 5], UVec2::new(2, 2), Taps::Cross, edge),
+        Err(ImageSpaceError::Length { len: 5, size_px: UVec2::new(2, 2) })
+    );
+    assert_eq!([ink_store(f32::NAN), ink_store(-1.0), ink_store(0.5), ink_store(7.0)], [0, 0, 128, 255]);
+}
+
+#[test]
+fn normals_at_the_two_thresholds() {
+    let flat = [DVec3::Z; 4];
+    for (cos, angle_deg) in [(COS_CM, 31.7), (COS_OS, 36.8)] {
+        let cos = f64::from(cos);
+        let with = |tap: DVec3, i: usize| {
+            let mut taps = flat;
+            taps[i] = tap;
+            ink_normal(DVec3::Z, taps, cos, 0.0, 0.5)
+        };
+        for i in 0..4 {
+            assert_eq!(with(tilted(angle_deg), i), 0.0);
+            assert_eq!(with(tilted(angle_deg + 0.2), i), 1.0);
+            assert_eq!(with(DVec3::ZERO, i), 1.0, "no normal differs from every normal");
+        }
+    }
+    assert_eq!(ink_normal(DVec3::ZERO, [DVec3::ZERO; 4], 0.8, 0.0, 0.5), 0.0, "and not from itself");
+    assert_eq!(ink_normal_printed(DVec3::ZERO, [DVec3::ZERO; 4], 0.8), 1.0, "which the printed form says it does");
+    // Exactly at the threshold: white in print.
+    assert_eq!(ink_normal_printed(DVec3::Z, [DVec3::new(0.6, 0.0, 0.8); 4], 0.8), 0.0);
+}
+
+#[test]
+fn soft_normals_rise_from_paper_to_a_line() {
+    let soft = |cos_tap: f64, across: usize| {
+        let tap = DVec3::new((1.0 - cos_tap * cos_tap).sqrt(), 0.0, cos_tap);
+        let taps = std::array::from_fn(|i| if i < across { tap } else { DVec3::Z });
+        ink_normal(DVec3::Z, taps, 0.8, 0.1, 0.5)
+    };
+    assert_eq!([soft(0.86, 2), soft(0.74, 2), soft(0.74, 1), soft(0.74, 4)], [0.0, 1.0, 0.5, 1.0]);
+    assert!((soft(0.8, 2) - 0.5).abs() < 1e-9 && (soft(0.825, 2) - 0.25).abs() < 1e-9);
+    assert_eq!([ink_ramp(1e-9, 0.0), ink_ramp(0.0, 0.0), ink_ramp(0.0, 2.0)], [1.0, 0.0, 0.5]);
+}
+
+#[test]
+fn bytes_are_compared_as_integers() {
+    let threshold = normal_bytes_threshold(COS_CM);
+    assert_eq!(threshold, 55272);
+    let encode = |normal: DVec3| {
+        let [x, y, z, _] = ink_printed_encode(normal.as_vec3(), 1.0);
+        [x, y, z]
+    };
+    let with = |tap: [u8; 3]| ink_normal_bytes_edge(encode(DVec3::Z), [tap; 4], threshold);
+    assert!(!with(encode(tilted(31.0))) && with(encode(tilted(33.0))));
+    assert_eq!(ink_normal_bytes_dot([128, 128, 255], [128, 0, 255]), 1 - 255 + 65025);
+    let clear = |texel: [u8; 4]| [texel[0], texel[1], texel[2]];
+    assert!(with(clear(CLEAR)));
+    assert!(!ink_normal_bytes_edge(clear(CLEAR), [clear(CLEAR); 4], threshold));
+    // What faces the eye of a right-handed view has no normal edge against the printed clear colour.
+    assert!(!with(clear(CLEAR_PRINTED)));
+    let printed = |a: [u8; 3], b: [u8; 3]| ink_normal_bytes_edge_printed(a, [b; 4], threshold);
+    assert!(!printed(encode(DVec3::Z), clear(CLEAR_PRINTED)));
+    assert!(!printed(encode(DVec3::splat(-0.577)), clear(CLEAR)), "and no clear colour mends the printed filter");
+}
+
+#[test]
+fn listing_10_counts_two_of_four() {
+    // One neighbour 5 steps of 8 bits away is below 0.02, six are above.
+    let threshold = depth_code_threshold(SUM_CM, 255);
+    assert_eq!(threshold, 6);
+    for i in 0..4 {
+        let taps = |away: u32| std::array::from_fn(|j| if i == j { 100 + away } else { 100 });
+        let edge = |form, away| ink_depth_plain_codes(100, taps(away), form, threshold);
+        assert!(edge(DepthPlain::Sum, 6) && !edge(DepthPlain::Sum, 5), "tap {i}");
+        assert_eq!(edge(DepthPlain::SumPrinted, 200 - 100), i == 0 || i == 3, "tap {i}");
+        assert!(ink_depth_plain_codes(100, taps(3), DepthPlain::Any, depth_code_threshold(ANY_OS, 255)));
+        assert!(!ink_depth_plain_codes(100, taps(2), DepthPlain::Any, depth_code_threshold(ANY_OS, 255)));
+    }
+    // Two steps each are eight together, and none alone is three.
+    assert!(ink_depth_plain_codes(100, [98, 102, 98, 102], DepthPlain::Sum, threshold));
+    assert!(!ink_depth_plain_codes(100, [98, 102, 98, 102], DepthPlain::SumPrinted, threshold));
+    assert_eq!(ink_depth_plain(0.5, [0.5, 0.5, 0.5, 0.52], DepthPlain::Any, 0.01, 0.0), 1.0);
+    assert_eq!(ink_depth_plain(0.5, [0.5, 0.51, 0.51, 0.5], DepthPlain::SumPrinted, 0.01, 0.0), 0.0);
+    assert!((ink_depth_plain(0.5, [0.505, 0.505, 0.505, 0.5], DepthPlain::Sum, 0.02, 0.02) - 0.25).abs() < 1e-9);
+    assert_eq!(ink_depth_plain(f64::NAN, [0.5; 4], DepthPlain::Sum, 0.02, 0.0), 0.0);
+    assert_eq!(ink_depth_plain(0.5, [f64::NAN; 4], DepthPlain::Any, 0.02, 0.0), 0.0);
+}
+
+#[test]
+fn bends_are_found_and_slopes_and_what_is_no_depth_are_not() {
+    let bend = |centre, taps| ink_depth_bend(centre, taps, 0.01, false, 0.0, 0.5);
+    // 1/z falls by 30% from pixel to pixel: a plane, and no line.
+    let z = |inverse: f32| 1.0 / inverse;
+    assert_eq!(bend(z(1.0), [z(0.7), z(1.3), z(1.3), z(0.7)]), 0.0);
+    assert_eq!(bend(z(1.0), [z(0.7), z(1.3), z(1.32), z(0.7)]), 1.0);
+    assert!(ink_depth_step(z(1.0), [z(0.7), z(1.3), z(1.3), z(0.7)], 0.01), "the plain test");
+    // A step by 2% and one by ½%, on either side of it.
+    assert_eq!([bend(10.0, [10.0, 10.0, 10.2, 10.2]), bend(10.2, [10.2, 10.2, 10.0, 10.0])], [1.0, 1.0]);
+    assert_eq!(bend(10.0, [10.0, 10.0, 10.05, 10.05]), 0.0);
+    // Background differs from surfaces and not from itself; it has many names.
+    for none in [f32::INFINITY, f32::NAN, 0.0, -1.0, f32::NEG_INFINITY] {
+        assert_eq!(bend(none, [f32::INFINITY, f32::NAN, 0.0, -2.0]), 0.0);
+        assert_eq!(bend(none, [f32::INFINITY, 5.0, none, none]), 1.0);
+        assert_eq!(bend(5.0, [5.0, 5.0, 5.0, none]), 1.0);
+        assert!(ink_depth_step(5.0, [5.0, 5.0, 5.0, none], 0.01) && !ink_depth_step(none, [none; 4], 0.01));
+        assert_eq!(ink_depth_bend(5.0, [5.0, 5.0, 5.0, none], 0.01, false, 0.5, 0.5), 0.5);
+    }
+    // Parallel: z itself, in units.
+    let parallel = |taps| ink_depth_bend(10.0, taps, 0.5, true, 0.0, 0.5);
+    assert_eq!(parallel([4.0, 10.0, 16.0, 10.0]), 0.0);
+    assert_eq!(parallel([4.0, 10.0, 16.6, 10.0]), 1.0);
+}
+
+#[test]
+fn signed_sums_take_red_for_green() {
+    let printed = |a, b| ink_region_printed(a, [b; 4], f64::from(SUM_OS));
+    assert_eq!(printed(DVec3::X, DVec3::Y), 0.0);
+    assert_eq!(printed(DVec3::X, DVec3::ZERO), 1.0);
+    assert_eq!(ink_region(7, [7, 7, 9, 7], false, 0.5), 1.0);
+    assert_eq!([ink_region(7, [7, 7, 9, 7], true, 0.5), ink_region(7, [7, 8, 9, 7], true, 0.5)], [0.5, 1.0]);
+    assert_eq!(ink_region(7, [7; 4], true, 0.5), 0.0);
+}
+
+#[test]
+fn the_inker_and_its_two_faults() {
+    let with = |form| Inker { form, ..Default::default() };
+    let flat = [DVec3::Z; 4];
+    let ink = |form, depths| ink_inker(&with(form), flat, depths);
+    // d1 is signed: the same step is ink one way and not the other.
+    let far = 0.5;
+    assert_eq!(ink(InkerForm::Printed, [far, far + 0.3, far, far]), 1.0);
+    assert_eq!(ink(InkerForm::Printed, [far, far, far, far + 0.3]), 0.0);
+    // Repaired: the least difference is ink.
+    assert_eq!(ink(InkerForm::Repaired, [far; 4]), 0.0);
+    assert_eq!(ink(InkerForm::Repaired, [far, far, far + 1e-4, far]), 1.0);
+    // Flat and near: ink below 0.03 as printed and below 0.1 repaired, and never with thresholds of their own.
+    let n = |z: f64| ink_inker_alike(&Inker::default(), flat, z);
+    assert!((n(0.0) - 0.64).abs() < 1e-6 && (n(0.05) - 0.81).abs() < 1e-6 && n(0.1001) == 1.0);
+    for (z, printed, repaired) in [(0.02, 1.0, 1.0), (0.04, 0.0, 1.0), (0.09, 0.0, 1.0), (0.11, 0.0, 0.0)] {
+        assert_eq!(ink(InkerForm::Printed, [z; 4]), printed, "{z}");
+        assert_eq!(ink(InkerForm::Repaired, [z; 4]), repaired, "{z}");
+        assert_eq!(ink(InkerForm::Explicit, [z; 4]), 0.0, "{z}");
+    }
+    // Explicit: steps from √(1/512) on, in both directions and either pair.
+    for (step, expected) in [(0.044, 0.0), (0.0443, 1.0), (-0.0443, 1.0)] {
+        assert_eq!(ink(InkerForm::Explicit, [far, far, far + step, far]), expected);
+        assert_eq!(ink(InkerForm::Explicit, [far, far + step, far, far]), expected);
+    }
+    // The normal threshold falls with depth, and a fold that is ink near by is none far away.
+    let folded = [DVec3::Z, DVec3::Z, tilted(45.0), DVec3::Z];
+    let at = |z: f64| ink_inker(&Inker::default(), folded, [z; 4]);
+    assert_eq!([at(0.2), at(1.0)], [1.0, 0.0]);
+    let soft = Inker { softness: 0.5, ..Default::default() };
+    assert_eq!(ink_inker(&soft, flat, [far; 4]), 0.0);
+    let half = ink_inker(&soft, flat, [far, far, far + f64::from(DEPTH_DELTA), far]);
+    assert!((half - 0.5).abs() < 1e-6, "{half}");
+}
+
+fn uniform(filter: &FusedFilter, layout: TexelLayout) -> FilterUniform {
+    FilterUniform::new(filter, layout, &DepthCode::perspective(1.0, 50.0, layout).unwrap()).unwrap()
+}
+
+fn tap(normal: Vec3, region: u32, depth: f32, layout: TexelLayout) -> Tap {
+    let code = DepthCode::perspective(1.0, 50.0, layout).unwrap();
+    match layout {
+        TexelLayout::Narrow => ink_narrow_tap(ink_narrow_pack(normal, region, depth, &code)),
+        TexelLayout::Wide => ink_wide_tap(ink_wide_pack(normal, region, depth, &code)),
+    }
+}
+
+#[test]
+fn each_part_of_the_fused_filter_alone_and_none() {
+    let none = FusedFilter { normal_cos: None, depth: None, regions: false, ..Default::default() };
+    let normals = FusedFilter { normal_cos: Some(COS_OS), ..none };
+    let depth = FusedFilter { depth: Some(DepthTest::default()), ..none };
+    let plain = FusedFilter { depth: Some(DepthTest { plain: true, ..Default::default() }), ..none };
+    let regions = FusedFilter { regions: true, ..none };
+    for layout in [TexelLayout::Narrow, TexelLayout::Wide] {
+        let surface = |normal, region, depth| tap(normal, region, depth, layout);
+        let centre = surface(Vec3::Z, 3, 10.0);
+        let folded = surface(Vec3::new(0.8, 0.0, 0.6), 3, 10.0);
+        let behind = surface(Vec3::Z, 3, 10.5);
+        let other = surface(Vec3::Z, 4, 10.0);
+        let background = surface(Vec3::Z, 0, 10.0);
+        for (filter, expected) in [
+            (none, [false, false, false, true]),
+            (normals, [true, false, false, true]),
+            (depth, [false, true, false, true]),
+            (plain, [false, true, false, true]),
+            (regions, [false, false, true, true]),
+            (FusedFilter::default(), [true; 4]),
+        ] {
+            let uniform = uniform(&filter, layout);
+            for (i, differing) in [folded, behind, other, background].into_iter().enumerate() {
+                for place in 0..4 {
+                    let mut taps = [centre; 4];
+                    taps[place] = differing;
+                    assert_eq!(ink_fused_hard(&uniform, &centre, &taps), expected[i], "{filter:?} {layout:?} {i}");
+                    let soft = FilterUniform { softness: 0.1, ..uniform };
+                    let ink = ink_fused(&soft, &centre, &taps);
+                    assert_eq!(ink, if expected[i] { 0.5 } else { 0.0 }, "{filter:?} {layout:?} {i}");
+                }
+            }
+            for same in [centre, background] {
+                assert!(!ink_fused_hard(&uniform, &same, &[same; 4]));
+                assert_eq!(ink_fused_soft(&FilterUniform { softness: 0.1, ..uniform }, &same, &[same; 4]), 0.0);
+            }
+        }
+    }
+}
+
+#[test]
+fn thresholds_out_of_range_are_refused() {
+    let code = DepthCode::perspective(1.0, 50.0, TexelLayout::Wide).unwrap();
+    let refused = |filter| FilterUniform::new(&filter, TexelLayout::Wide, &code).unwrap_err();
+    let usual = FusedFilter::default();
+    for cos in [-0.1, 1.1, f32::NAN] {
+        let error = refused(FusedFilter { normal_cos: Some(cos), ..usual });
+        assert!(matches!(error, ImageSpaceError::NormalThreshold { .. }));
+    }
+    for step in [-1.0, f32::INFINITY, f32::NAN] {
+        let error = refused(FusedFilter { depth: Some(DepthTest { step, plain: false }), ..usual });
+        assert!(matches!(error, ImageSpaceError::DepthStep { .. }));
+    }
+    assert!(matches!(refused(FusedFilter { softness: -1.0, ..usual }), ImageSpaceError::Softness { .. }));
+    // No overflow at the ends.
+    for step in [0.0, 1.0, 1e30] {
+        for layout in [TexelLayout::Narrow, TexelLayout::Wide] {
+            let filter = FusedFilter { normal_cos: Some(1.0), depth: Some(DepthTest { step, plain: true }), ..usual };
+            let uniform = uniform(&filter, layout);
+            let (near, far) = (tap(Vec3::Z, 1, 1.0, layout), tap(Vec3::NEG_Z, 1, 50.0, layout));
+            ink_fused_hard(&uniform, &near, &[far; 4]);
+            ink_fused_soft(&uniform, &near, &[far; 4]);
+            assert!(ink_tap_depth_threshold(&uniform, layout.depth_most() as i32) >= layout.depth_slack() as i32);
+        }
+    }
+}
+
+fn any_tap(most: i32, depth_most: i32) -> impl Strategy<Value = Tap> {
+    (-most..=most, -most..=most, 0u32..3, 0..=depth_most, 0..8).prop_map(move |(x, y, region, depth, none)| {
+        let oct = npr_imagespace::format::normal::ink_oct_vector(IVec2::new(x, y), most);
+        Tap { normal: if none == 0 { IVec3::ZERO } else { oct }, region, depth }
+    })
+}
+
+/// The threshold is a share of the nearer side's distance wherever the range ends.
+#[test]
+fn depth_thresholds_follow_the_distance_in_finite_and_infinite_ranges() {
+    for far in [60.0, 200.0, f32::INFINITY] {
+        for layout in [TexelLayout::Narrow, TexelLayout::Wide] {
+            let code = DepthCode::perspective(1.0, far, layout).unwrap();
+            let test = FusedFilter { normal_cos: None, ..Default::default() };
+            let uniform = FilterUniform::new(&test, layout, &code).unwrap();
+            for depth in [1.5, 4.0, 12.0, 45.0] {
+                // 14 bits of an infinite range do not part 1% at 45.
+                if layout == TexelLayout::Narrow && depth > 40.0 {
+                    continue;
+                }
+                let tap = |depth: f32| Tap { normal: IVec3::Z, region: 1, depth: ink_depth_code(depth, &code) as i32 };
+                let bends = |share: f32| {
+                    let (near, behind) = (tap(depth), tap(depth * (1.0 + share)));
+                    ink_tap_bends(&uniform, &near, &near, &behind) && ink_tap_bends(&uniform, &near, &behind, &behind)
+                };
+                assert!(bends(0.016) && !bends(0.005), "{layout:?} to {far} at {depth}");
+            }
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// The integers decide what the cosine does, but for a margin that the rounding of t² explains.
+    #[test]
+    fn integer_normals_agree_with_the_cosine(
+        a in any_tap(127, 9), b in any_tap(127, 9), c in any_tap(15, 9), d in any_tap(15, 9), cos in 0f32..=1.0,
+    ) {
+        for (layout, a, b) in [(TexelLayout::Wide, a.normal, b.normal), (TexelLayout::Narrow, c.normal, d.normal)] {
+            let uniform = uniform(&FusedFilter { normal_cos: Some(cos), ..Default::default() }, layout);
+            if a == IVec3::ZERO || b == IVec3::ZERO {
+                prop_assert_eq!(ink_tap_normal_differs(&uniform, a, b), a != b);
+                continue;
+            }
+            let exact = a.as_dvec3().normalize().dot(b.as_dvec3().normalize());
+            let (decided, limit) = (ink_tap_normal_differs(&uniform, a, b), f64::from(cos));
+            // Three roundings of f32, and that of the cosine's square.
+            if exact < 0.0 || (exact * exact - limit * limit).abs() > 4e-7 {
+                prop_assert_eq!(decided, exact < limit, "{} {}", exact, limit);
+            }
+            prop_assert_eq!(decided, ink_tap_normal_differs(&uniform, b, a));
+        }
+    }
+
+    /// The definition of the module's documentation, in wider integers.
+    #[test]
+    fn the_fused_filter_is_its_formula(
+        centre in any_tap(127, 0x00ff_ffff), taps in prop::array::uniform4(any_tap(127, 0x00ff_ffff)),
+        near in prop::array::uniform4(-200_000i32..200_000), close: bool, asked in 0u32..16, step in 0f32..0.1,
+    ) {
+        let mut taps = taps;
+        if close {
+            taps.iter_mut().zip(near).for_each(|(tap, near)| {
+                tap.depth = (centre.depth + near).clamp(0, 0x00ff_ffff);
+                (tap.region, tap.normal) = (centre.region, centre.normal);
+            });
+        }
+        let filter = FusedFilter { depth: Some(DepthTest { step, plain: false }), ..Default::default() };
+        let uniform = FilterUniform { asked, ..uniform(&filter, TexelLayout::Wide) };
+        let threshold = |nearest: i32| {
+            let growth = (i64::from(nearest) / 256) * i64::from(uniform.depth_step) / 256;
+            i64::from(uniform.depth_slack).max(i64::from(uniform.depth_base) + growth)
+        };
+        let mut ink = false;
+        for tap in &taps {
+            ink |= (tap.region == 0) != (centre.region == 0);
+            if tap.region == 0 || centre.region == 0 {
+                continue;
+            }
+            ink |= asked & ASKED_REGION != 0 && tap.region != centre.region;
+            ink |= asked & ASKED_STEP != 0
+                && i64::from((tap.depth - centre.depth).abs()) > threshold(tap.depth.max(centre.depth));
+            ink |= asked & ASKED_NORMAL != 0 && ink_tap_normal_differs(&uniform, tap.normal, centre.normal);
+        }
+        for (a, b) in [(taps[0], taps[2]), (taps[1], taps[3])] {
+            let surfaces = a.region != 0 && b.region != 0 && centre.region != 0;
+            let bend = i64::from(a.depth) - 2 * i64::from(centre.depth) + i64::from(b.depth);
+            let nearest = a.depth.max(b.depth).max(centre.depth);
+            ink |= asked & ASKED_BEND != 0 && surfaces && bend.abs() > threshold(nearest);
+        }
+        // What is neither background nor asked for leaves paper.
+        prop_assert_eq!(ink_fused_hard(&uniform, &centre, &taps), ink);
+        let soft = ink_fused_soft(&FilterUniform { softness: 1e-6, ..uniform }, &centre, &taps);
+        prop_assert!((0.0..=1.0).contains(&soft));
+        // Exactly at a threshold there is half of what there is above it.
+        if soft % 0.5 == 0.0 {
+            prop_assert_eq!(soft > 0.0, ink, "{}", soft);
+        }
+    }
+
+    /// Three points of a plane never exceed the slack, whatever its slope.
+    #[test]
+    fn rounding_on_a_plane_stays_within_the_slack(
+        middle in 0.03f64..0.97, slope in -0.03f64..0.03, far in 2f32..1e5, infinite: bool,
+    ) {
+        let far = if infinite { f32::INFINITY } else { far };
+        for layout in [TexelLayout::Narrow, TexelLayout::Wide] {
+            let code = DepthCode::perspective(1.0, far, layout).unwrap();
+            let [a, b, c] = [-1.0, 0.0, 1.0].map(|x| {
+                let inverse = 1.0 / f64::from(far) + (1.0 - 1.0 / f64::from(far)) * (middle + slope * x);
+                ink_depth_code((1.0 / inverse) as f32, &code) as i32
+            });
+            prop_assert!((a - 2 * b + c).abs() <= layout.depth_slack() as i32, "{:?} {} {} {}", layout, a, b, c);
+        }
+    }
+}

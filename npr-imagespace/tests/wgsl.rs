@@ -1,0 +1,165 @@
+//! The WGSL is valid, and the uniforms lie in memory as naga lays them out.
+
+use naga::valid::{Capabilities, ValidationFlags, Validator};
+use naga::{Module, TypeInner};
+use npr_imagespace::WGSL;
+use npr_imagespace::artist::ARTIST_WGSL;
+use npr_imagespace::composite::{COMPOSITE_WGSL, CompositeUniform};
+use npr_imagespace::filter::FILTER_WGSL;
+use npr_imagespace::filter::fused::FilterUniform;
+use npr_imagespace::filter::inker::InkerUniform;
+use npr_imagespace::format::FORMAT_WGSL;
+use npr_imagespace::format::texel::DepthCode;
+use npr_imagespace::morphology::MORPHOLOGY_WGSL;
+use npr_imagespace::picture::PICTURE_WGSL;
+use std::mem::{offset_of, size_of};
+
+fn validated(source: &str) -> Module {
+    let module = naga::front::wgsl::parse_str(source).unwrap_or_else(|e| panic!("{}", e.emit_to_string(source)));
+    Validator::new(ValidationFlags::all(), Capabilities::empty())
+        .validate(&module)
+        .unwrap_or_else(|e| panic!("{}", e.emit_to_string(source)));
+    module
+}
+
+#[test]
+fn is_a_library() {
+    let module = validated(WGSL);
+    assert!(module.entry_points.is_empty());
+    assert!(module.global_variables.is_empty());
+    assert!(module.overrides.is_empty());
+    for (_, function) in module.functions.iter() {
+        let name = function.name.as_deref().unwrap();
+        assert!(name.starts_with("ink_"), "{name}");
+    }
+    for (_, constant) in module.constants.iter() {
+        let name = constant.name.as_deref().unwrap();
+        assert!(name.starts_with("INK_"), "{name}");
+    }
+    for (_, kind) in module.types.iter() {
+        if let Some(name) = kind.name.as_deref() {
+            assert!(name.starts_with("Ink"), "{name}");
+        }
+    }
+}
+
+#[test]
+fn the_parts_stand_alone_and_are_the_whole() {
+    let parts = [PICTURE_WGSL, FORMAT_WGSL, FILTER_WGSL, MORPHOLOGY_WGSL, COMPOSITE_WGSL, ARTIST_WGSL];
+    assert_eq!(parts.concat(), WGSL);
+    for part in [PICTURE_WGSL, FORMAT_WGSL, MORPHOLOGY_WGSL, COMPOSITE_WGSL, ARTIST_WGSL] {
+        validated(part);
+    }
+    validated(&[FORMAT_WGSL, FILTER_WGSL].concat());
+}
+
+/// Every function of the WGSL stands in the Rust files, but for helpers of the WGSL that have no Rust form.
+#[test]
+fn functions_have_the_names_of_the_rust_ones() {
+    let mut rust = String::new();
+    let mut folders = vec![std::path::PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/src"))];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+            if entry.is_dir() {
+                folders.push(entry);
+            } else if entry.extension().is_some_and(|extension| extension == "rs") {
+                rust += &std::fs::read_to_string(entry).unwrap();
+            }
+        }
+    }
+    let helpers = [
+        "ink_any",
+        "ink_bytes",
+        "ink_depth_decode",
+        "ink_depth_fraction",
+        "ink_depth_join2",
+        "ink_depth_join4",
+        "ink_depth_pair",
+        "ink_depth_step_tap",
+        "ink_normal_tap",
+        "ink_oct_decode",
+        "ink_tap_cross",
+        "ink_tap_diagonal",
+        "ink_taps_bends",
+        "ink_taps_depth_soft",
+        "ink_taps_depth_thresholds",
+        "ink_taps_normals_differ",
+        "ink_taps_normals_soft",
+    ];
+    for (_, function) in validated(WGSL).functions.iter() {
+        let name = function.name.as_deref().unwrap();
+        let known = rust.contains(&format!("fn {name}(")) || rust.contains(&format!("fn {name}<"));
+        assert!(known != helpers.contains(&name), "{name}");
+    }
+}
+
+fn layout(name: &str) -> (Vec<(String, usize)>, usize) {
+    let module = validated(WGSL);
+    let (_, found) = module.types.iter().find(|(_, t)| t.name.as_deref() == Some(name)).unwrap();
+    let TypeInner::Struct { members, span } = &found.inner else { panic!("{name} is no struct") };
+    let members = members.iter().map(|m| (m.name.clone().unwrap(), m.offset as usize)).collect();
+    (members, *span as usize)
+}
+
+macro_rules! assert_layout {
+    ($wgsl:literal, $rust:ty, [$($field:ident),*]) => {{
+        let (members, span) = layout($wgsl);
+        let members: Vec<_> = members.into_iter().filter(|(name, _)| !name.starts_with("padding")).collect();
+        assert_eq!(members, [$((stringify!($field).to_owned(), offset_of!($rust, $field))),*]);
+        assert_eq!(span, size_of::<$rust>());
+    }};
+}
+
+#[test]
+fn uniforms_have_the_layout_of_the_shader() {
+    assert_layout!("InkDepthCode", DepthCode, [scale, bias, most, parallel]);
+    assert_layout!(
+        "InkFilter",
+        FilterUniform,
+        [asked, normal_cos2, depth_slack, depth_base, depth_step, depth_shift, weight, normal_cos, softness]
+    );
+    assert_layout!("InkInker", InkerUniform, [form, normal_cos, normal_fall, depth_delta, softness]);
+    assert_layout!("InkComposite", CompositeUniform, [line, form, alpha_less, alpha_reference]);
+}
+
+#[test]
+fn serves_a_pass() {
+    let shader = "
+        @group(0) @binding(0) var<uniform> u_filter: InkFilter;
+        @group(0) @binding(1) var<uniform> u_composite: InkComposite;
+        @group(0) @binding(2) var g_buffer: texture_2d<u32>;
+        @group(0) @binding(3) var painted: texture_2d<f32>;
+        fn tap(at: vec2<i32>) -> InkTap {
+            return ink_wide_tap(textureLoad(g_buffer, at, 0).xy);
+        }
+        @fragment
+        fn fs_lines(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+            let at = vec2<i32>(position.xy);
+            let reach = ink_reach(vec2<u32>(at), textureDimensions(g_buffer));
+            let ink = ink_fused(
+                u_filter, tap(at), tap(at + ink_tap_diagonal(0u, reach)), tap(at + ink_tap_diagonal(1u, reach)),
+                tap(at + ink_tap_diagonal(2u, reach)), tap(at + ink_tap_diagonal(3u, reach)));
+            let color = textureLoad(painted, at, 0);
+            return vec4(ink_composite(color.rgb, ink, u_composite), color.a);
+        }
+        @group(1) @binding(0) var<uniform> u_code: InkDepthCode;
+        @fragment
+        fn fs_surface(@builtin(position) position: vec4<f32>, @location(0) normal: vec3<f32>) -> @location(0) vec2<u32> {
+            return ink_wide_pack(normal, 7u, 1.0 / position.w, u_code);
+        }
+        @group(2) @binding(0) var sites: texture_2d<u32>;
+        @fragment
+        fn fs_flood(@builtin(position) position: vec4<f32>) -> @location(0) u32 {
+            let at = vec2<i32>(position.xy);
+            let size = vec2<i32>(textureDimensions(sites));
+            var best = textureLoad(sites, at, 0).x;
+            for (var side = -1; side <= 1; side += 2) {
+                let offset = vec2<i32>(4 * side, 0);
+                let inside = all(at + offset >= vec2<i32>(0)) && all(at + offset < size);
+                let site = textureLoad(sites, clamp(at + offset, vec2<i32>(0), size - 1), 0).x;
+                best = ink_flood_take(best, select(INK_FLOOD_NONE, site, inside), offset);
+            }
+            return best;
+        }";
+    assert_eq!(validated(&format!("{WGSL}{shader}")).entry_points.len(), 3);
+}
