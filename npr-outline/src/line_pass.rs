@@ -214,7 +214,7 @@ impl LinePass {
         positions: &[Vec3],
     ) -> Result<EdgesOnDevice, OutlineError> {
         let pipelines = self.on_device.as_ref().expect("the pass was made for lines found on the device");
-        let limit = device.limits().max_storage_buffer_binding_size.min(device.limits().max_buffer_size);
+        let limit = storage_limit(device);
         let bytes = (size_of_val(&contours.planes[..]).max(size_of_val(positions))) as u64;
         if bytes > limit {
             return Err(OutlineError::TooManyEdges { bytes, limit });
@@ -288,13 +288,7 @@ impl LinePass {
             contents: bytemuck::bytes_of(&uniform),
             usage: wgpu::BufferUsages::UNIFORM,
         });
-        let group = |layout, resources: &[wgpu::BindingResource<'_>]| {
-            let entries: Vec<_> = (0u32..)
-                .zip(resources)
-                .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource: resource.clone() })
-                .collect();
-            device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("outline"), layout, entries: &entries })
-        };
+        let group = |layout, resources: &[_]| bind_group(device, "outline", layout, resources);
         let view_group = group(&self.view_layout, &[uniform.as_entire_binding()]);
         let picture = [targets.depth, targets.painted].map(wgpu::BindingResource::TextureView);
         let picture_group = group(&self.picture_layout, &picture);
@@ -412,6 +406,25 @@ pub(crate) fn workgroups(invocations: u32) -> (u32, u32) {
     let groups = invocations.div_ceil(64).max(1);
     let rows = groups.div_ceil(65_535);
     (groups.div_ceil(rows), rows)
+}
+
+/// The most bytes that a storage buffer can have.
+pub(crate) fn storage_limit(device: &wgpu::Device) -> u64 {
+    device.limits().max_storage_buffer_binding_size.min(device.limits().max_buffer_size)
+}
+
+/// A group of resources, bound in their order.
+pub(crate) fn bind_group(
+    device: &wgpu::Device,
+    label: &str,
+    layout: &wgpu::BindGroupLayout,
+    resources: &[wgpu::BindingResource<'_>],
+) -> wgpu::BindGroup {
+    let entries: Vec<_> = (0u32..)
+        .zip(resources)
+        .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource: resource.clone() })
+        .collect();
+    device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
 }
 
 pub(crate) fn shader(device: &wgpu::Device, label: &str, parts: &[&str]) -> wgpu::ShaderModule {

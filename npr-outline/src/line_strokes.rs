@@ -4,7 +4,7 @@
 //! where the line has a dozen pixels of ink. Here eight invocations, a vector register's worth, share a line and take
 //! its columns in turn. As in [`crate::line_pass`] a pixel's ink is that of the line that covers most of it, whatever
 //! their order: an atomic maximum keeps its coverage, and whoever comes first to a pixel puts it on a list. A second
-//! dispatch lays the ink on the listed pixels. So nothing is copied or cleared that no line touches; on the bunny at
+//! dispatch mixes the listed pixels' colours, a third lays them down. So nothing is copied or cleared that no line touches; on the bunny at
 //! 1280 × 720 this takes two thirds of the line pass's instructions there.
 //!
 //! Formulas and pictures are those of the line pass. Needs compute shaders and a picture that can be written as a
@@ -12,7 +12,10 @@
 
 use crate::OutlineError;
 use crate::line_look::LineLook;
-use crate::line_pass::{INK_WGSL, LineRecord, OutlineUniform, WGSL, buffer_entry, shader, texture_entry, workgroups};
+use crate::line_pass::{
+    INK_WGSL, LineRecord, OutlineUniform, WGSL, bind_group, buffer_entry, shader, storage_limit, texture_entry,
+    workgroups,
+};
 use crate::segment::LineView;
 use wgpu::util::DeviceExt;
 
@@ -24,7 +27,7 @@ pub const STROKE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 /// Invocations that share a line; `SHARERS` of the shader.
 const SHARERS: u32 = 8;
 
-/// What a picture's pixels need between the two dispatches: 12 bytes a pixel. For one frame at a time.
+/// What a picture's pixels need between the dispatches: 12 bytes a pixel. For one frame at a time.
 #[derive(Debug)]
 pub struct StrokeBuffers {
     greatest: wgpu::Buffer,
@@ -120,7 +123,7 @@ impl LineStrokes {
     /// [`OutlineError::PictureTooLarge`] where a buffer would be larger than the device allows.
     pub fn buffers(&self, device: &wgpu::Device, size_px: [u32; 2]) -> Result<StrokeBuffers, OutlineError> {
         let pixels = u64::from(size_px[0]) * u64::from(size_px[1]);
-        let limit = device.limits().max_storage_buffer_binding_size.min(device.limits().max_buffer_size);
+        let limit = storage_limit(device);
         if 8 * pixels > limit || pixels == 0 {
             return Err(OutlineError::PictureTooLarge { bytes: 8 * pixels, limit });
         }
@@ -163,7 +166,7 @@ impl LineStrokes {
         if records.is_empty() {
             return Ok(());
         }
-        let limit = device.limits().max_storage_buffer_binding_size.min(device.limits().max_buffer_size);
+        let limit = storage_limit(device);
         let bytes = size_of_val(records) as u64;
         if bytes > limit || records.len() > (u32::MAX / SHARERS) as usize {
             return Err(OutlineError::TooManyEdges { bytes, limit });
@@ -176,13 +179,7 @@ impl LineStrokes {
         };
         let uniform = buffer("stroke view", bytemuck::bytes_of(&uniform), wgpu::BufferUsages::UNIFORM);
         let records = buffer("stroke records", bytemuck::cast_slice(records), wgpu::BufferUsages::STORAGE);
-        let group = |layout, resources: &[wgpu::BindingResource<'_>]| {
-            let entries: Vec<_> = (0u32..)
-                .zip(resources)
-                .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource: resource.clone() })
-                .collect();
-            device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("strokes"), layout, entries: &entries })
-        };
+        let group = |layout, resources: &[_]| bind_group(device, "strokes", layout, resources);
         let view_group = group(&self.view_layout, &[uniform.as_entire_binding()]);
         let read_group =
             group(&self.read_layout, &[targets.depth, targets.picture].map(wgpu::BindingResource::TextureView));
