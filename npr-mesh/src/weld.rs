@@ -12,7 +12,7 @@ use glam::Vec3;
 /// Most vertices of most files are alone at their place, and a bit for each hash value tells so without a look at any
 /// other position: only vertices that share a bit go into a table. Memory: at most 8 bytes a vertex besides the
 /// result, 24 where many share a place. Expected time is linear. On half a million vertices of which a thousand are
-/// doubled this takes a third of the time of putting all into the table.
+/// doubled this takes half of the time of putting all into the table.
 pub fn weld_exact(positions: &[Vec3]) -> Vec<u32> {
     let mut representative: Vec<u32> = (0..positions.len() as u32).collect();
     // At least eight bits for each vertex.
