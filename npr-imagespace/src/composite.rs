@@ -15,7 +15,7 @@
 use crate::ImageSpaceError;
 use crate::picture::ink_store;
 use bytemuck::{Pod, Zeroable};
-use glam::{DVec3, Vec3};
+use glam::{DVec3, DVec4, Vec3};
 
 /// WGSL of this module: no bindings, no entry points.
 pub const COMPOSITE_WGSL: &str = include_str!("composite.wgsl");
@@ -85,6 +85,16 @@ pub fn ink_composite(color: DVec3, ink: f64, how: &Composite) -> DVec3 {
         Composite::Multiply => ink_multiply(color, ink),
         Composite::AlphaTested(test) => ink_alpha_tested(color, ink, test),
         Composite::Over { color: line, opacity } => ink_over(color, ink, line.as_dvec3(), f64::from(opacity)),
+    }
+}
+
+/// What a blend unit lays over a picture to the same end as [`ink_composite`]: the line's colour times its opacity,
+/// and the opacity a. The picture becomes rgb + (1 − a) · c.
+pub fn ink_premultiplied(ink: f64, how: &Composite) -> DVec4 {
+    match *how {
+        Composite::Multiply => DVec3::ZERO.extend(ink),
+        Composite::AlphaTested(test) => DVec3::ZERO.extend(if ink_alpha_passes(ink, test) { ink } else { 0.0 }),
+        Composite::Over { color, opacity } => color.as_dvec3().extend(1.0) * (f64::from(opacity) * ink),
     }
 }
 

@@ -44,3 +44,13 @@ fn ink_composite(color: vec3<f32>, ink: f32, how: InkComposite) -> vec3<f32> {
     }
     return ink_over(color, ink, how.line.rgb, how.line.a);
 }
+
+// What a blend unit lays over a picture to the same end: the line's colour times its opacity, and the opacity.
+// c' = rgb + (1 - a) c.
+fn ink_premultiplied(ink: f32, how: InkComposite) -> vec4<f32> {
+    if how.form == INK_COMPOSITE_OVER {
+        return vec4<f32>(how.line.rgb, 1.0) * (how.line.a * ink);
+    }
+    let kept = how.form == INK_COMPOSITE_MULTIPLY || ink_alpha_passes(ink, how.alpha_less, how.alpha_reference);
+    return vec4<f32>(0.0, 0.0, 0.0, select(0.0, ink, kept));
+}

@@ -68,6 +68,8 @@ mod error;
 pub mod filter;
 pub mod format;
 pub mod morphology;
+#[cfg(feature = "wgpu")]
+pub mod pass;
 pub mod picture;
 pub mod region;
 

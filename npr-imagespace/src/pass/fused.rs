@@ -1,0 +1,71 @@
+//! The fused filter over packed texels: see [`crate::filter::fused`] for what it decides.
+
+use super::fullscreen::{Bound, Fullscreen, uniform};
+use super::{InkTarget, Onto};
+use crate::ImageSpaceError;
+use crate::filter::fused::{FilterUniform, FusedFilter};
+use crate::format::texel::{DepthCode, TexelLayout};
+use crate::picture::Taps;
+
+const FUSED_WGSL: &str = include_str!("fused.wgsl");
+
+/// The format of a texture of packed texels. It is to be cleared to 0, which is background.
+pub fn texel_format(layout: TexelLayout) -> wgpu::TextureFormat {
+    match layout {
+        TexelLayout::Narrow => wgpu::TextureFormat::R32Uint,
+        TexelLayout::Wide => wgpu::TextureFormat::Rg32Uint,
+    }
+}
+
+/// The filter's pipeline, for a layout, and hard or soft lines.
+#[derive(Debug)]
+pub struct FusedPass {
+    draw: Fullscreen,
+    layout: TexelLayout,
+    taps: Taps,
+    soft: bool,
+}
+
+impl FusedPass {
+    /// Makes the pipeline for a filter's taps, hard if its softness is 0.
+    pub fn new(device: &wgpu::Device, filter: &FusedFilter, layout: TexelLayout, target: InkTarget) -> Self {
+        let soft = filter.softness > 0.0;
+        let constant = |name, is: bool| (name, f64::from(u8::from(is)));
+        let constants = [
+            constant("narrow", layout == TexelLayout::Narrow),
+            constant("cross_taps", filter.taps == Taps::Cross),
+            constant("soft", soft),
+        ];
+        let bound = [Bound::Uniform, Bound::Whole];
+        Self {
+            draw: Fullscreen::new(device, "fused", FUSED_WGSL, &bound, &constants, target),
+            layout,
+            taps: filter.taps,
+            soft,
+        }
+    }
+
+    /// Records filtering `texels`, [`texel_format`], of the target's size.
+    ///
+    /// # Errors
+    /// If a threshold is out of its range.
+    ///
+    /// # Panics
+    /// If the filter's taps are others than the pass was made for, or it is soft and the pass hard or the reverse.
+    pub fn record(
+        &self,
+        device: &wgpu::Device,
+        encoder: &mut wgpu::CommandEncoder,
+        filter: &FusedFilter,
+        code: &DepthCode,
+        texels: &wgpu::TextureView,
+        onto: &Onto<'_>,
+    ) -> Result<(), ImageSpaceError> {
+        let what = FilterUniform::new(filter, self.layout, code)?;
+        assert_eq!((filter.taps, filter.softness > 0.0), (self.taps, self.soft), "a pass for another filter");
+        let what = uniform(device, bytemuck::bytes_of(&what));
+        let resources = [what.as_entire_binding(), wgpu::BindingResource::TextureView(texels)];
+        self.draw.record(device, encoder, &resources, onto);
+        Ok(())
+    }
+}
