@@ -194,6 +194,28 @@ impl Camera {
         }
     }
 
+    /// The part of a picture in which a box is seen, with so many px around it: left, top, width and height. All of the
+    /// picture if some of the box is nearer than the near plane.
+    pub fn area(&self, (low, high): (Vec3, Vec3), (width, height): (u32, u32), around_px: u32) -> [u32; 4] {
+        let size_px = DVec2::new(width.into(), height.into());
+        let clip_from_world = self.clip_from_world(size_px.x / size_px.y);
+        let mut bounds = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        for corner in 0..8u8 {
+            let end = |bit: u8| if corner & bit == 0 { low } else { high };
+            let corner = Vec3::new(end(1).x, end(2).y, end(4).z).as_dvec3();
+            let clip = clip_from_world * corner.extend(1.0);
+            if clip.z > clip.w {
+                return [0, 0, width, height];
+            }
+            let point = (DVec2::new(clip.x, -clip.y) / clip.w * 0.5 + 0.5) * size_px;
+            bounds = (bounds.0.min(point), bounds.1.max(point));
+        }
+        let around = f64::from(around_px);
+        let from = (bounds.0 - around).floor().clamp(DVec2::ZERO, size_px).as_uvec2();
+        let to = (bounds.1 + around).ceil().clamp(DVec2::ZERO, size_px).as_uvec2();
+        [from.x, from.y, to.x - from.x, to.y - from.y]
+    }
+
     /// What npr-outline needs to know.
     pub fn line_view(&self, size_px: DVec2) -> LineView {
         let px = 2.0 * self.half_extent(size_px.x / size_px.y).y / size_px.y;

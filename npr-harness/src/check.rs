@@ -227,7 +227,7 @@ impl Checker<'_> {
         progress: &dyn Fn(f64),
     ) -> Result<(), HarnessError> {
         for (number, (view, camera)) in views.iter().enumerate() {
-            for name_of_style in ["cartoon", "lines", "printed-fins"] {
+            for name_of_style in ["cartoon", "lines", "printed-fins", "ink-image"] {
                 let style = style(name_of_style).expect("a style of this crate");
                 self.picture(name, view, scene, camera, &style)?;
             }

@@ -4,6 +4,7 @@
 //! that is written as the formulas read. `samples` per pixel along each axis supersample the whole picture, lines
 //! included: that is the truth against which accuracy is measured.
 
+mod ink;
 mod lines;
 mod surface;
 
@@ -17,7 +18,6 @@ use crate::rays::Hit;
 use crate::scene::{Scene, key_light};
 use crate::style::{Lines, Style};
 use glam::{DVec2, DVec3, DVec4};
-use std::ops::Range;
 
 /// What is asked of a frame on the CPU.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,6 +49,8 @@ pub struct CpuFrame {
     pub color: Vec<DVec4>,
     /// Per pixel the depth buffer's value, 0 where there is nothing.
     pub depth: Vec<f64>,
+    /// Per pixel normal, region and depth, packed, while lines in the image are yet to be found; else empty.
+    texels: Vec<[u32; 2]>,
 }
 
 impl CpuFrame {
@@ -74,6 +76,8 @@ pub struct FrameContext<'a> {
     textures: &'a [crate::texture::MipMapped],
     shift_px: DVec2,
     plan: &'a Plan,
+    /// Whether surfaces get their colours.
+    painting: bool,
 }
 
 /// Renders a frame.
@@ -89,7 +93,7 @@ pub fn render(
     progress: &(dyn Fn(f64) + Sync),
 ) -> CpuFrame {
     let samples = options.samples.max(1);
-    let textures: Vec<_> = if plan.painted || plan.cut_out {
+    let textures: Vec<_> = if plan.painted || plan.cut_out || plan.image.as_ref().is_some_and(|i| i.ink.artist) {
         scene.model.textures.iter().map(crate::texture::MipMapped::new).collect()
     } else {
         Vec::new()
@@ -103,16 +107,32 @@ pub fn render(
         textures: &textures,
         shift_px: options.shift_px * f64::from(samples),
         plan,
+        painting: plan.painted,
     };
     let mut fine = context.trace(width * samples, height * samples, options.threads, progress);
+    let shared_texels = std::mem::take(&mut fine.texels);
     match &style.lines {
         Some(Lines::Fins(look)) => draw_lines(&context, &mut fine, look, f64::from(samples)),
         Some(Lines::Printed { width_px, ink }) => {
             lines::draw_printed(&context, &mut fine, f64::from(*width_px) * f64::from(samples), *ink);
         }
-        None => {}
+        Some(Lines::Image(_)) | None => {}
     }
-    if samples == 1 { fine } else { averaged(&fine, width, height, samples) }
+    let mut frame = if samples == 1 { fine } else { averaged(&fine, width, height, samples) };
+    if let Some(image) = &plan.image {
+        let (ink_width, ink_height) = image.ink.scale.size((width, height));
+        let texels = if (ink_width, ink_height) == (width, height) && samples == 1 {
+            shared_texels
+        } else {
+            // One sample for each pixel of the ink, whatever the picture has: lines are as wide as on a device.
+            let size_px = DVec2::new(ink_width.into(), ink_height.into());
+            let shift_px = options.shift_px * size_px / DVec2::new(width.into(), height.into());
+            let context = FrameContext { size_px, shift_px, painting: false, ..context };
+            context.trace(ink_width, ink_height, options.threads, &|_| {}).texels
+        };
+        ink::draw_ink(image, &texels, &mut frame);
+    }
+    frame
 }
 
 impl FrameContext<'_> {
@@ -121,35 +141,42 @@ impl FrameContext<'_> {
         let pixels = width as usize * height as usize;
         let mut color = vec![DVec4::ZERO; pixels];
         let mut depth = vec![0.0; pixels];
+        let mut texels = vec![[0; 2]; if self.plan.image.is_some() { pixels } else { 0 }];
         // Built before the threads ask for it, so that they do not wait for each other.
         self.scene.rays();
         let rows = std::sync::atomic::AtomicU32::new(0);
         let available = std::thread::available_parallelism().map_or(1, usize::from);
         let threads = if threads == 0 { available } else { threads };
         // Rows are handed out one by one, since the cost of a row depends on what is in it.
-        let work =
-            std::sync::Mutex::new(color.chunks_mut(width as usize).zip(depth.chunks_mut(width as usize)).enumerate());
+        let row = width as usize;
+        let rows_of_texels = texels.chunks_mut(row).map(Some).chain(std::iter::repeat_with(|| None));
+        let work = std::sync::Mutex::new(
+            color.chunks_mut(row).zip(depth.chunks_mut(row)).zip(rows_of_texels).enumerate(),
+        );
         std::thread::scope(|scope| {
             for _ in 0..threads.min(height as usize).max(1) {
                 scope.spawn(|| {
                     loop {
                         let next = work.lock().expect("no thread panics while it holds the lock").next();
-                        let Some((y, (color, depth))) = next else { break };
-                        self.trace_row(y as u32, 0..width, color, depth);
+                        let Some((y, ((color, depth), texels))) = next else { break };
+                        self.trace_row(y as u32, color, depth, texels);
                         let done = rows.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1;
                         progress(f64::from(done) / f64::from(height));
                     }
                 });
             }
         });
-        CpuFrame { width, height, color, depth }
+        CpuFrame { width, height, color, depth, texels }
     }
 
-    fn trace_row(&self, y: u32, columns: Range<u32>, color: &mut [DVec4], depth: &mut [f64]) {
-        for x in columns {
-            let (painted, at) = self.trace_pixel(x, y);
-            color[x as usize] = painted;
-            depth[x as usize] = at;
+    fn trace_row(&self, y: u32, color: &mut [DVec4], depth: &mut [f64], mut texels: Option<&mut [[u32; 2]]>) {
+        for (x, (color, depth)) in color.iter_mut().zip(depth).enumerate() {
+            let solid = self.first_solid(x as u32, y);
+            *color = self.trace_pixel(solid.as_ref(), x as u32, y);
+            *depth = solid.map_or(0.0, |hit| self.camera.buffer_depth(hit.t));
+            if let Some(texels) = &mut texels {
+                texels[x] = self.texel(solid.as_ref(), x as u32, y);
+            }
         }
     }
 
@@ -158,27 +185,30 @@ impl FrameContext<'_> {
         DVec2::new(x + 0.5, y + 0.5) + self.shift_px
     }
 
-    fn trace_pixel(&self, x: u32, y: u32) -> (DVec4, f64) {
+    /// What is seen through a pixel, but for what is blended over it.
+    fn first_solid(&self, x: u32, y: u32) -> Option<Hit> {
         let (origin, direction) = self.camera.ray(self.sample_point(f64::from(x), f64::from(y)), self.size_px);
-        let range = self.camera.depth_range();
-        let rays = self.scene.rays();
         let is_solid = |hit: &Hit| self.is_shown(hit) && !self.is_blended(hit) && !self.is_cut_out(hit, x, y);
-        let solid = rays.closest(origin, direction, range, is_solid);
+        self.scene.rays().closest(origin, direction, self.camera.depth_range(), is_solid)
+    }
+
+    fn trace_pixel(&self, solid: Option<&Hit>, x: u32, y: u32) -> DVec4 {
         let paper = self.style.paper.as_dvec3();
-        let mut color = match &solid {
-            Some(hit) if self.plan.painted => self.paint(hit, x, y).truncate(),
+        let mut color = match solid {
+            Some(hit) if self.painting => self.paint(hit, x, y).truncate(),
             _ => paper,
         };
-        if self.plan.blended {
+        if self.plan.blended && self.painting {
+            let (origin, direction) = self.camera.ray(self.sample_point(f64::from(x), f64::from(y)), self.size_px);
+            let range = self.camera.depth_range();
             let nearer = (range.0, solid.map_or(range.1, |hit| hit.t));
-            for hit in
-                rays.all(origin, direction, nearer, |hit| self.is_shown(hit) && self.is_blended(hit)).iter().rev()
-            {
+            let is_blended = |hit: &Hit| self.is_shown(hit) && self.is_blended(hit);
+            for hit in self.scene.rays().all(origin, direction, nearer, is_blended).iter().rev() {
                 let over = self.paint(hit, x, y);
                 color = color.lerp(over.truncate(), over.w);
             }
         }
-        (color.extend(1.0), solid.map_or(0.0, |hit| self.camera.buffer_depth(hit.t)))
+        color.extend(1.0)
     }
 }
 
@@ -198,5 +228,5 @@ fn averaged(fine: &CpuFrame, width: u32, height: u32, samples: u32) -> CpuFrame 
             depth.push(nearest);
         }
     }
-    CpuFrame { width, height, color, depth }
+    CpuFrame { width, height, color, depth, texels: Vec::new() }
 }

@@ -10,6 +10,9 @@ pub enum HarnessError {
     /// The lines.
     #[error(transparent)]
     Outline(#[from] npr_outline::OutlineError),
+    /// The lines in the image.
+    #[error(transparent)]
+    ImageSpace(#[from] npr_imagespace::ImageSpaceError),
     /// The bands.
     #[error(transparent)]
     Toon(#[from] npr_toon::ToonError),

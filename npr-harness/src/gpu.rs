@@ -5,6 +5,7 @@
 
 mod context;
 mod error;
+mod ink;
 mod scene;
 mod surface;
 mod targets;
@@ -26,7 +27,7 @@ use npr_outline::line_strokes::{LineStrokes, StrokeTargets};
 use npr_outline::normal_format::NormalFormat;
 use npr_toon::ToonUniform;
 use std::cell::{OnceCell, RefCell};
-use surface::{SurfacePass, SurfaceUniform};
+use surface::{SurfacePass, SurfaceTargets, SurfaceUniform};
 
 /// Renders frames. Pipelines are made when they are first needed, and kept.
 pub struct GpuRenderer<'a> {
@@ -35,6 +36,7 @@ pub struct GpuRenderer<'a> {
     lines: npr_outline::line_pass::LinePass,
     strokes: OnceCell<LineStrokes>,
     printed: OnceCell<FinPass>,
+    ink: ink::InkPasses,
     scratch: RefCell<(Vec<u32>, Vec<LineRecord>)>,
 }
 
@@ -51,6 +53,7 @@ impl<'a> GpuRenderer<'a> {
             ),
             strokes: OnceCell::new(),
             printed: OnceCell::new(),
+            ink: Default::default(),
             scratch: Default::default(),
         }
     }
@@ -129,7 +132,24 @@ impl<'a> GpuRenderer<'a> {
         };
         targets.begin();
         let mut encoder = device.create_command_encoder(&Default::default());
-        self.surface.record(device, &mut encoder, uploaded, scene, style, plan, camera, (&uniform, &toon), targets);
+        let ink = match &plan.image {
+            Some(image) => Some((image, targets.ink(self.context, &image.ink)?)),
+            None => None,
+        };
+        let uniforms = (&uniform, &toon);
+        let drawn = SurfaceTargets {
+            color: Some(&targets.color_view),
+            texels: ink.as_ref().filter(|(_, ink)| ink.depth.is_none()).map(|(_, ink)| &ink.texels),
+            depth: &targets.depth_view,
+        };
+        self.surface.record(device, &mut encoder, uploaded, scene, style, plan, camera, uniforms, &drawn);
+        if let Some((image, ink)) = &ink {
+            if let Some(depth) = &ink.depth {
+                let drawn = SurfaceTargets { color: None, texels: Some(&ink.texels), depth };
+                self.surface.record(device, &mut encoder, uploaded, scene, style, plan, camera, uniforms, &drawn);
+            }
+            self.ink.record(self.context, &mut encoder, scene, image, camera, ink, targets)?;
+        }
         if let (Some(Lines::Fins(look)), Some(contours)) = (&style.lines, &plan.contours) {
             let mut scratch = self.scratch.borrow_mut();
             let (lines, records) = &mut *scratch;

@@ -11,6 +11,7 @@ pub mod executor;
 pub mod gallery;
 #[cfg(feature = "gpu")]
 pub mod gpu;
+pub mod image_ink;
 pub mod inspect;
 pub mod line_truth;
 pub mod plan;

@@ -1,13 +1,16 @@
 //! Which passes a picture needs, and no more.
 
 use crate::camera::Camera;
+use crate::error::HarnessError;
+use crate::image_ink::{ImagePlan, InkScale};
 use crate::scene::Scene;
 use crate::style::{Lines, Shade, Style};
 use glam::DVec4;
+use npr_imagespace::artist::LineKind as InnerLines;
 use npr_mesh::AlphaMode;
 use npr_outline::contour::{ContourEdges, ContourOptions, contour_edges};
 use npr_outline::fin_printed::{PrintedFins, printed_fins};
-use npr_outline::{LineKind, OutlineError};
+use npr_outline::LineKind;
 use std::fmt;
 
 /// How lines are found and drawn on a device.
@@ -51,6 +54,8 @@ pub struct Plan {
     pub contours: Option<ContourEdges>,
     /// A fin for every edge, where the printed form is drawn.
     pub printed_fins: Option<PrintedFins>,
+    /// What lines in the image need, where they are asked for.
+    pub image: Option<ImagePlan>,
     /// Passes, in order.
     pub passes: Vec<Reason>,
     /// What was left out.
@@ -62,7 +67,7 @@ impl Plan {
     ///
     /// # Errors
     /// What is wrong with the style's lines.
-    pub fn new(scene: &Scene, style: &Style, camera: &Camera) -> Result<Self, OutlineError> {
+    pub fn new(scene: &Scene, style: &Style, camera: &Camera) -> Result<Self, HarnessError> {
         let model = &scene.model;
         let painted = style.shade != Shade::Paper;
         let used = |test: &dyn Fn(&npr_mesh::Material) -> bool| model.materials.iter().any(test);
@@ -102,6 +107,27 @@ impl Plan {
             "the style asks for the printed form",
             "only edges that are lines are sent",
         );
+        let image = if let Some(Lines::Image(ink)) = &style.lines { Some(ink) } else { None };
+        let one_pass = image.is_some_and(|ink| ink.scale == InkScale::One);
+        let another_size = image.is_some_and(|ink| ink.scale != InkScale::One);
+        add(
+            one_pass,
+            "normal, region and depth beside colour",
+            "lines are found in the image",
+            if another_size { "they are drawn at another size" } else { "no line is found in the image" },
+        );
+        add(
+            another_size,
+            "geometry: normal, region and depth",
+            "the ink has another size than the picture",
+            "the ink has the picture's size",
+        );
+        let in_one = one_pass && image.is_some_and(|ink| ink.brush.is_none());
+        add(in_one, "filter and composite in one", "nothing needs the ink in between", "the ink is no picture's own");
+        add(image.is_some() && !in_one, "filter", "the ink is worked on before it is laid", "see above");
+        let thick = image.is_some_and(|ink| ink.brush.is_some());
+        add(thick, "dilation by a disc", "the style has a brush", "lines are as wide as they are found");
+        add(image.is_some() && !in_one && !thick, "composite", "the ink has another size", "see above");
         add(false, "second light", "", "there is one light");
         add(false, "multisampling", "", "lines and band borders carry their own coverage");
         let contours = match &style.lines {
@@ -113,7 +139,17 @@ impl Plan {
             _ => None,
         };
         let printed_fins = printed.then(|| printed_fins(model, &scene.edges));
-        Ok(Self { painted, textured, cut_out, blended, cull_back, contours, printed_fins, passes, left_out })
+        let image = match &style.lines {
+            Some(Lines::Image(ink)) => Some(ImagePlan::new(scene, ink, style.crease_angle_rad, camera)?),
+            _ => None,
+        };
+        Ok(Self { painted, textured, cut_out, blended, cull_back, contours, printed_fins, image, passes, left_out })
+    }
+
+    /// Whether texture coordinates, textures or vertex colours are read at all.
+    pub fn looks_up(&self) -> bool {
+        let says_lines = |image: &ImagePlan| image.line_kinds.iter().any(|&kind| kind != InnerLines::Normals);
+        self.textured || self.cut_out || self.image.as_ref().is_some_and(says_lines)
     }
 
     /// The lines for an eye, and how many there are of each [`LineKind`].

@@ -4,6 +4,7 @@ use crate::camera::Camera;
 use crate::color::encode_rgb;
 use crate::rays::RayCaster;
 use glam::{DVec3, Vec3};
+use npr_imagespace::artist::LineKind;
 use npr_mesh::edges::{self, EdgeKind, EdgeOptions, Edges};
 use npr_mesh::{AlphaMode, Model};
 use std::sync::OnceLock;
@@ -20,6 +21,11 @@ pub struct Scene {
     pub material_colors: Vec<DVec3>,
     /// Whether every edge has two faces, wound alike, so that no back of a face can be seen from outside.
     pub closed: bool,
+    /// Per material where its inner lines come from, in styles that ask: [`ImageInk::artist`]. All from their normals
+    /// to begin with.
+    ///
+    /// [`ImageInk::artist`]: crate::image_ink::ImageInk::artist
+    pub line_kinds: Vec<LineKind>,
     rays: OnceLock<RayCaster>,
 }
 
@@ -39,7 +45,8 @@ impl Scene {
             && edges.edges.iter().all(|edge| edge.kind() == EdgeKind::TwoFace && !edge.wound_oppositely())
             && signed_volume(&model) > 0.0;
         let material_colors = model.materials.iter().map(|m| encode_rgb(m.base_color.truncate().as_dvec3())).collect();
-        Self { model, origin, edges, material_colors, closed, rays: OnceLock::new() }
+        let line_kinds = vec![LineKind::Normals; model.materials.len()];
+        Self { model, origin, edges, material_colors, closed, line_kinds, rays: OnceLock::new() }
     }
 
     /// The ray caster, built when it is first asked for.

@@ -1,6 +1,9 @@
 //! What a picture looks like, whatever it shows.
 
+use crate::image_ink::ImageInk;
 use glam::Vec3;
+use npr_imagespace::composite::Composite;
+use npr_imagespace::morphology::disc::Disc;
 use npr_outline::line_look::LineLook;
 use npr_toon::Bands;
 
@@ -30,6 +33,8 @@ pub enum Lines {
         /// Display-referred colour.
         ink: Vec3,
     },
+    /// Found in the image.
+    Image(ImageInk),
 }
 
 /// A style.
@@ -61,6 +66,11 @@ fn ink_lines(silhouette_px: f32, crease_px: f32) -> Option<Lines> {
     }))
 }
 
+fn image_lines(ink: ImageInk) -> Option<Lines> {
+    let [r, g, b, opacity] = INK;
+    Some(Lines::Image(ImageInk { composite: Composite::Over { color: Vec3::new(r, g, b), opacity }, ..ink }))
+}
+
 /// The styles there are; the first is the default.
 pub fn styles() -> Vec<Style> {
     let style = |name, about, shade, lines| Style {
@@ -78,6 +88,18 @@ pub fn styles() -> Vec<Style> {
         style("lines", "ink on paper, hidden lines removed", Shade::Paper, ink_lines(1.4, 1.0)),
         style("bold", "two tones and a heavy pen", Shade::Toon(Bands::hard_shading()), ink_lines(4.0, 2.0)),
         style("lambert", "plain diffuse light, no bands, no lines", Shade::Lambert { ambient: 0.25 }, None),
+        style(
+            "ink-image",
+            "banded light, lines found in the image",
+            Shade::Toon(Bands::default()),
+            image_lines(ImageInk::default()),
+        ),
+        style(
+            "ink-thick",
+            "the same lines, widened by a round brush",
+            Shade::Toon(Bands::default()),
+            image_lines(ImageInk { brush: Some(Disc { radius_px: 1.5, antialias: true }), ..ImageInk::default() }),
+        ),
         style(
             "printed-bands",
             "the three bands of the 2002 chapter's listing 3, aliased",

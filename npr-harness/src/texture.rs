@@ -80,6 +80,14 @@ impl MipMapped {
         self.texel(0, (uv.x * f64::from(*width)).floor(), (uv.y * f64::from(*height)).floor())
     }
 
+    /// The colour of the largest level's texel at a place, as it stands in the file.
+    pub fn nearest_bytes(&self, uv: DVec2) -> [u8; 3] {
+        let (width, height, texels) = &self.levels[0];
+        let (x, y) = ((uv.x * f64::from(*width)).floor(), (uv.y * f64::from(*height)).floor());
+        let at = 4 * (wrapped(y, *height, self.wrap[1]) * width + wrapped(x, *width, self.wrap[0])) as usize;
+        [texels[at], texels[at + 1], texels[at + 2]]
+    }
+
     fn bilinear(&self, level: usize, uv: DVec2) -> DVec4 {
         let (width, height, _) = &self.levels[level];
         let place = uv * DVec2::new(f64::from(*width), f64::from(*height)) - 0.5;

@@ -72,7 +72,7 @@ pub fn draw_printed(context: &FrameContext<'_>, frame: &mut CpuFrame, width_px: 
     for corner in triangles.iter_mut().flatten() {
         *corner += DVec4::new(moved.x, moved.y, 0.0, 0.0) * corner.w;
     }
-    let CpuFrame { width, height, color, depth } = frame;
+    let CpuFrame { width, height, color, depth, .. } = frame;
     let at = |x: u32, y: u32| y as usize * *width as usize + x as usize;
     let ink = ink.as_dvec3().extend(1.0);
     rasterise(&triangles, [*width, *height], |x, y| depth[at(x, y)], |x, y| color[at(x, y)] = ink);

@@ -5,12 +5,13 @@ use crate::color::encode_rgb;
 use crate::rays::Hit;
 use crate::style::Shade;
 use glam::{DVec2, DVec3, DVec4};
+use npr_imagespace::artist::LineKind;
 use npr_mesh::{AlphaMode, Material};
 use npr_toon::{toon_n_dot_h, toon_n_dot_l, toon_shade, toon_width};
 
 /// What is interpolated over a face.
-struct Surface {
-    normal: DVec3,
+pub(super) struct Surface {
+    pub(super) normal: DVec3,
     to_eye: DVec3,
 }
 
@@ -24,7 +25,7 @@ struct Footprint {
 }
 
 impl FrameContext<'_> {
-    fn material(&self, hit: &Hit) -> &Material {
+    pub(super) fn material(&self, hit: &Hit) -> &Material {
         &self.scene.model.materials[self.scene.model.face_material[hit.face as usize] as usize]
     }
 
@@ -66,7 +67,7 @@ impl FrameContext<'_> {
         Footprint { along_x, dx, along_y, dy }
     }
 
-    fn interpolate_uv(&self, hit: &Hit, weights: [f64; 3]) -> DVec2 {
+    pub(super) fn interpolate_uv(&self, hit: &Hit, weights: [f64; 3]) -> DVec2 {
         let model = &self.scene.model;
         if model.uvs.is_empty() {
             return DVec2::ZERO;
@@ -75,7 +76,7 @@ impl FrameContext<'_> {
         (0..3).map(|i| model.uvs[corners[i] as usize].as_dvec2() * weights[i]).sum()
     }
 
-    fn interpolate(&self, hit: &Hit, weights: [f64; 3]) -> Surface {
+    pub(super) fn interpolate(&self, hit: &Hit, weights: [f64; 3]) -> Surface {
         let model = &self.scene.model;
         let corners = model.faces[hit.face as usize];
         let sum =
@@ -88,25 +89,44 @@ impl FrameContext<'_> {
         }
     }
 
-    /// Linear colour and alpha: material × texture × vertex colour.
+    /// Linear colour and alpha: material × texture × vertex colour, without what says where lines are.
     fn base_color(&self, hit: &Hit, x: u32, y: u32) -> DVec4 {
-        let model = &self.scene.model;
-        let material = self.material(hit);
-        let mut color = material.base_color.as_dvec4();
-        if !model.colors.is_empty() {
-            let corners = model.faces[hit.face as usize];
-            let factor: DVec4 = (0..3).map(|i| model.colors[corners[i] as usize].as_dvec4() * hit.barycentric[i]).sum();
-            color *= factor;
+        let mut color = self.material(hit).base_color.as_dvec4();
+        let kind = self.line_kind(hit);
+        if kind != LineKind::VertexColor {
+            color *= self.vertex_color(hit);
         }
-        if let Some(texture) = material.texture {
-            let texture = &self.textures[texture as usize];
-            let Footprint { along_x, dx, along_y, dy } = self.footprint(hit, x, y);
-            let uv = self.interpolate_uv(hit, hit.barycentric);
-            let uv_dx = (self.interpolate_uv(hit, along_x) - uv) * dx;
-            let uv_dy = (self.interpolate_uv(hit, along_y) - uv) * dy;
-            color *= texture.sample(uv, texture.level(uv_dx, uv_dy));
+        if kind != LineKind::Texture {
+            color *= self.texture_color(hit, x, y);
         }
         color
+    }
+
+    /// Linear; white where there is none.
+    pub(super) fn vertex_color(&self, hit: &Hit) -> DVec4 {
+        let model = &self.scene.model;
+        if model.colors.is_empty() {
+            return DVec4::ONE;
+        }
+        let corners = model.faces[hit.face as usize];
+        (0..3).map(|i| model.colors[corners[i] as usize].as_dvec4() * hit.barycentric[i]).sum()
+    }
+
+    /// Linear, filtered; white where there is none.
+    pub(super) fn texture_color(&self, hit: &Hit, x: u32, y: u32) -> DVec4 {
+        let Some(texture) = self.material(hit).texture else { return DVec4::ONE };
+        let texture = &self.textures[texture as usize];
+        let Footprint { along_x, dx, along_y, dy } = self.footprint(hit, x, y);
+        let uv = self.interpolate_uv(hit, hit.barycentric);
+        let uv_dx = (self.interpolate_uv(hit, along_x) - uv) * dx;
+        let uv_dy = (self.interpolate_uv(hit, along_y) - uv) * dy;
+        texture.sample(uv, texture.level(uv_dx, uv_dy))
+    }
+
+    /// Where a material's inner lines come from.
+    pub(super) fn line_kind(&self, hit: &Hit) -> LineKind {
+        let material = self.scene.model.face_material[hit.face as usize] as usize;
+        self.plan.image.as_ref().map_or(LineKind::Normals, |image| image.line_kinds[material])
     }
 
     /// The display-referred colour of a hit, and its opacity.

@@ -47,6 +47,9 @@ pub enum GpuError {
     /// Lines that cannot be drawn.
     #[error(transparent)]
     Outline(#[from] npr_outline::OutlineError),
+    /// Lines in the image that cannot be found.
+    #[error(transparent)]
+    ImageSpace(#[from] npr_imagespace::ImageSpaceError),
     /// Bands that cannot be shaded.
     #[error(transparent)]
     Toon(#[from] npr_toon::ToonError),

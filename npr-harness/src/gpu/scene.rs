@@ -7,6 +7,7 @@ use crate::scene::Scene;
 use crate::texture::MipMapped;
 use glam::Vec4;
 use npr_mesh::{AlphaMode, Texture, Wrap};
+use std::collections::HashMap;
 use std::ops::Range;
 use wgpu::util::DeviceExt;
 
@@ -22,6 +23,8 @@ pub struct GpuScene {
     pub(super) vertices: wgpu::Buffer,
     /// Texture coordinate and colour, where any surface looks one up.
     pub(super) lookups: Option<wgpu::Buffer>,
+    /// Per vertex its region, where lines are found in the image.
+    pub(super) regions: Option<wgpu::Buffer>,
     /// Faces that are not blended, by material.
     pub(super) indices: Option<wgpu::Buffer>,
     pub(super) batches: Vec<Batch>,
@@ -54,11 +57,19 @@ impl GpuScene {
             let descriptor = wgpu::util::BufferInitDescriptor { label: Some(what), contents, usage };
             Ok(context.device.create_buffer_init(&descriptor))
         };
-        let vertices: Vec<[f32; 6]> =
-            model.positions.iter().zip(&model.normals).map(|(p, n)| [p.x, p.y, p.z, n.x, n.y, n.z]).collect();
+        let split = plan.image.as_ref().map(|image| split_by_region(&model.faces, &image.face_region, model.positions.len()));
+        let more: &[u32] = split.as_ref().map_or(&[], |split| &split.more);
+        // All vertices, and again those that stand in several regions.
+        let sources = || (0..model.positions.len()).chain(more.iter().map(|&vertex| vertex as usize));
+        let vertices: Vec<[f32; 6]> = sources()
+            .map(|i| {
+                let (p, n) = (model.positions[i], model.normals[i]);
+                [p.x, p.y, p.z, n.x, n.y, n.z]
+            })
+            .collect();
         let vertices = buffer("vertices", bytemuck::cast_slice(&vertices), wgpu::BufferUsages::VERTEX)?;
-        let lookups = if plan.textured || plan.cut_out {
-            let lookups: Vec<[f32; 6]> = (0..model.positions.len())
+        let lookups = if plan.looks_up() {
+            let lookups: Vec<[f32; 6]> = sources()
                 .map(|i| {
                     let uv = model.uvs.get(i).copied().unwrap_or_default();
                     let color = model.colors.get(i).copied().unwrap_or(Vec4::ONE);
@@ -69,7 +80,14 @@ impl GpuScene {
         } else {
             None
         };
-        let (indices, batches, blended_faces) = batches(scene);
+        let regions = match &split {
+            Some(split) => {
+                Some(buffer("regions", bytemuck::cast_slice(&split.regions), wgpu::BufferUsages::VERTEX)?)
+            }
+            None => None,
+        };
+        let faces = split.as_ref().map_or(&model.faces, |split| &split.faces);
+        let (indices, batches, blended_faces) = batches(scene, faces);
         let indices = if indices.is_empty() {
             None
         } else {
@@ -79,6 +97,7 @@ impl GpuScene {
         Ok(Self {
             vertices,
             lookups,
+            regions,
             indices,
             batches,
             blended_faces,
@@ -90,7 +109,42 @@ impl GpuScene {
     }
 }
 
-fn batches(scene: &Scene) -> (Vec<u32>, Vec<Batch>, Vec<u32>) {
+/// Faces whose vertices are each in one region.
+struct Split {
+    /// Of all vertices, the added ones included.
+    regions: Vec<u32>,
+    /// The vertices that are added, by what they repeat.
+    more: Vec<u32>,
+    faces: Vec<[u32; 3]>,
+}
+
+/// Gives each vertex the region of its first face, and the others' faces vertices of their own.
+fn split_by_region(faces: &[[u32; 3]], face_region: &[u32], vertices: usize) -> Split {
+    let mut split = Split { regions: vec![0; vertices], more: Vec::new(), faces: Vec::with_capacity(faces.len()) };
+    let mut added = HashMap::new();
+    for (face, &region) in faces.iter().zip(face_region) {
+        split.faces.push(face.map(|vertex| {
+            let first = &mut split.regions[vertex as usize];
+            if *first == 0 {
+                *first = region;
+            }
+            if *first == region {
+                return vertex;
+            }
+            *added.entry((vertex, region)).or_insert_with(|| {
+                split.more.push(vertex);
+                (vertices + split.more.len() - 1) as u32
+            })
+        }));
+    }
+    split.regions.resize(vertices + split.more.len(), 0);
+    for ((_, region), vertex) in added {
+        split.regions[vertex as usize] = region;
+    }
+    split
+}
+
+fn batches(scene: &Scene, faces: &[[u32; 3]]) -> (Vec<u32>, Vec<Batch>, Vec<u32>) {
     let model = &scene.model;
     let is_blended =
         |face: u32| model.materials[model.face_material[face as usize] as usize].alpha_mode == AlphaMode::Blend;
@@ -102,7 +156,7 @@ fn batches(scene: &Scene) -> (Vec<u32>, Vec<Batch>, Vec<u32>) {
     for face in solid {
         let material = model.face_material[face as usize] as usize;
         let start = indices.len() as u32;
-        indices.extend(model.faces[face as usize]);
+        indices.extend(faces[face as usize]);
         match batches.last_mut() {
             Some(batch) if batch.material == material => batch.indices.end += 3,
             _ => batches.push(Batch { material, indices: start..start + 3 }),
@@ -112,8 +166,7 @@ fn batches(scene: &Scene) -> (Vec<u32>, Vec<Batch>, Vec<u32>) {
 }
 
 fn materials(context: &GpuContext, pass: &SurfacePass, scene: &Scene, plan: &Plan) -> Vec<wgpu::BindGroup> {
-    let lookups_wanted = plan.textured || plan.cut_out;
-    let textures: Vec<_> = if lookups_wanted {
+    let textures: Vec<_> = if plan.looks_up() {
         scene.model.textures.iter().map(|texture| upload_texture(context, texture)).collect()
     } else {
         Vec::new()
@@ -145,6 +198,8 @@ fn materials(context: &GpuContext, pass: &SurfacePass, scene: &Scene, plan: &Pla
                 texture_size: *size,
                 last_level: (*levels - 1) as f32,
                 cutoff,
+                wrap: material.texture.map_or([0; 2], |t| scene.model.textures[t as usize].wrap.map(|wrap| wrap as u32)),
+                padding: [0; 2],
             };
             pass.material_group(&context.device, &uniform, view, sampler)
         })

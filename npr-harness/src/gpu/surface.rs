@@ -1,11 +1,15 @@
 //! The geometry pass.
 
 use super::scene::{Batch, GpuScene, is_looked_up};
-use super::targets::{COLOR_FORMAT, DEPTH_FORMAT, Targets};
+use super::targets::{COLOR_FORMAT, DEPTH_FORMAT};
 use crate::camera::Camera;
+use crate::image_ink::ImagePlan;
 use crate::plan::Plan;
 use crate::scene::Scene;
 use crate::style::{Shade, Style};
+use npr_imagespace::artist::LineKind;
+use npr_imagespace::format::texel::{DepthCode, TexelLayout};
+use npr_imagespace::pass::fused::texel_format;
 use npr_toon::ToonUniform;
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -30,14 +34,51 @@ pub(super) struct MaterialUniform {
     pub(super) texture_size: [f32; 2],
     pub(super) last_level: f32,
     pub(super) cutoff: f32,
+    pub(super) wrap: [u32; 2],
+    pub(super) padding: [u32; 2],
+}
+
+/// `SurfaceInk` of `surface.wgsl`.
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub(super) struct InkUniform {
+    code: DepthCode,
+    right: [f32; 4],
+    up: [f32; 4],
+    back: [f32; 4],
+}
+
+impl InkUniform {
+    fn new(image: &ImagePlan, camera: &Camera) -> Self {
+        let axis = |axis: glam::DVec3| axis.as_vec3().extend(0.0).to_array();
+        let [right, up, back] = camera.axes().map(axis);
+        Self { code: image.buffer_code(camera), right, up, back }
+    }
 }
 
 /// How a batch's fragments are shaded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum Paint {
-    Depth,
+    /// Not at all.
+    Nothing,
     Lambert,
     Toon,
+}
+
+/// What a fragment writes for lines in the image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+struct Inking {
+    layout: TexelLayout,
+    line_kind: LineKind,
+    region_of_texture: bool,
+}
+
+/// What the pass draws into: depth, and what of the others is there.
+#[derive(Clone, Copy)]
+pub(super) struct SurfaceTargets<'a> {
+    pub(super) color: Option<&'a wgpu::TextureView>,
+    pub(super) texels: Option<&'a wgpu::TextureView>,
+    pub(super) depth: &'a wgpu::TextureView,
 }
 
 /// What tells one pipeline from another.
@@ -50,6 +91,9 @@ struct Variant {
     /// How many tones.
     bands: u32,
     highlight: bool,
+    /// Whether there is a picture to paint, even if it is left as it is.
+    colored: bool,
+    inking: Option<Inking>,
 }
 
 /// The pipelines of the geometry pass.
@@ -65,7 +109,7 @@ const SURFACE_WGSL: &str = include_str!("surface.wgsl");
 
 /// The whole shader of the pass.
 pub(super) fn wgsl() -> String {
-    [npr_toon::WGSL, SURFACE_WGSL].concat()
+    [npr_toon::WGSL, npr_imagespace::format::FORMAT_WGSL, npr_imagespace::artist::ARTIST_WGSL, SURFACE_WGSL].concat()
 }
 
 impl SurfacePass {
@@ -95,7 +139,7 @@ impl SurfacePass {
         let layout = |label, entries: &[_]| {
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
         };
-        let view_layout = layout("surface view", &[uniform(0), uniform(1)]);
+        let view_layout = layout("surface view", &[uniform(0), uniform(1), uniform(2)]);
         let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
         let material_layout = layout("surface material", &[uniform(0), fragment(1, texture), fragment(2, sampler)]);
         Self {
@@ -145,11 +189,13 @@ impl SurfacePass {
         plan: &Plan,
         camera: &Camera,
         (uniform, toon_uniform): (&SurfaceUniform, &ToonUniform),
-        targets: &Targets,
+        targets: &SurfaceTargets<'_>,
     ) {
-        let (view, toon) = (
+        let ink = plan.image.as_ref().map_or_else(bytemuck::Zeroable::zeroed, |image| InkUniform::new(image, camera));
+        let (view, toon, ink) = (
             uniform_buffer(device, bytemuck::bytes_of(uniform)),
             uniform_buffer(device, bytemuck::bytes_of(toon_uniform)),
+            uniform_buffer(device, bytemuck::bytes_of(&ink)),
         );
         let view_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("surface view"),
@@ -157,14 +203,16 @@ impl SurfacePass {
             entries: &[
                 wgpu::BindGroupEntry { binding: 0, resource: view.as_entire_binding() },
                 wgpu::BindGroupEntry { binding: 1, resource: toon.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 2, resource: ink.as_entire_binding() },
             ],
         });
         let paint = match style.shade {
-            Shade::Paper => Paint::Depth,
+            _ if targets.color.is_none() => Paint::Nothing,
+            Shade::Paper => Paint::Nothing,
             Shade::Lambert { .. } => Paint::Lambert,
             Shade::Toon(_) => Paint::Toon,
         };
-        let blended = if plan.blended { back_to_front(scene, &uploaded.blended_faces, camera) } else { Vec::new() };
+        let blended = if plan.blended && paint != Paint::Nothing { back_to_front(scene, &uploaded.blended_faces, camera) } else { Vec::new() };
         let blended_indices = (!blended.is_empty()).then(|| {
             device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
                 label: Some("blended faces"),
@@ -176,16 +224,20 @@ impl SurfacePass {
         });
         let paper = style.paper.as_dvec3();
         let clear = wgpu::Color { r: paper.x, g: paper.y, b: paper.z, a: 1.0 };
+        let attachment = |view, clear| wgpu::RenderPassColorAttachment {
+            view,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations { load: wgpu::LoadOp::Clear(clear), store: wgpu::StoreOp::Store },
+        };
+        // Zeros are background.
+        let texels = targets.texels.map(|view| attachment(view, wgpu::Color::TRANSPARENT));
+        let attachments = [targets.color.map(|view| attachment(view, clear)), texels];
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("geometry"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &targets.color_view,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(clear), store: wgpu::StoreOp::Store },
-            })],
+            color_attachments: &attachments[..if targets.texels.is_some() { 2 } else { 1 }],
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: &targets.depth_view,
+                view: targets.depth,
                 depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Store }),
                 stencil_ops: None,
             }),
@@ -196,15 +248,32 @@ impl SurfacePass {
         if let Some(lookups) = &uploaded.lookups {
             pass.set_vertex_buffer(1, lookups.slice(..));
         }
+        if let Some(regions) = &uploaded.regions {
+            pass.set_vertex_buffer(2, regions.slice(..));
+        }
         let mut draw = |batch: &Batch, blended: bool| {
-            let double_sided = scene.model.materials[batch.material].double_sided;
+            let material = &scene.model.materials[batch.material];
+            let double_sided = material.double_sided;
+            let inking = plan.image.as_ref().filter(|_| targets.texels.is_some()).map(|image| {
+                let line_kind = image.line_kinds[batch.material];
+                Inking {
+                    layout: image.ink.layout,
+                    line_kind,
+                    region_of_texture: line_kind == LineKind::Regions && material.texture.is_some(),
+                }
+            });
+            let wanted = paint != Paint::Nothing
+                || plan.cut_out
+                || inking.is_some_and(|inking| inking.line_kind != LineKind::Normals);
             let variant = Variant {
                 paint,
-                looked_up: is_looked_up(scene, batch.material) && (paint != Paint::Depth || plan.cut_out),
+                looked_up: is_looked_up(scene, batch.material) && wanted,
                 cull_back: plan.cull_back || !double_sided,
                 blended,
                 bands: toon_uniform.count.max(1),
                 highlight: toon_uniform.highlight_strength > 0.0,
+                colored: targets.color.is_some(),
+                inking,
             };
             let mut pipelines = self.pipelines.borrow_mut();
             let pipeline = pipelines.entry(variant).or_insert_with(|| self.pipeline(device, variant));
@@ -228,14 +297,22 @@ impl SurfacePass {
     }
 
     fn pipeline(&self, device: &wgpu::Device, variant: Variant) -> wgpu::RenderPipeline {
-        let Variant { paint, looked_up, cull_back, blended, bands, highlight } = variant;
-        let (vertex, fragment) = match (paint, looked_up) {
-            (Paint::Depth, false) => ("vs_depth", None),
-            (Paint::Depth, true) => ("vs_textured", Some("fs_cut_out")),
-            (Paint::Lambert, false) => ("vs_plain", Some("fs_lambert")),
-            (Paint::Lambert, true) => ("vs_textured", Some("fs_lambert_textured")),
-            (Paint::Toon, false) => ("vs_plain", Some("fs_toon")),
-            (Paint::Toon, true) => ("vs_textured", Some("fs_toon_textured")),
+        let Variant { paint, looked_up, cull_back, blended, bands, highlight, colored, inking } = variant;
+        // A blended surface is no surface to lines in the image.
+        let inked = inking.is_some() && !blended;
+        let (vertex, fragment) = match (paint, looked_up, inked) {
+            (Paint::Nothing, false, false) => ("vs_depth", "fs_nothing"),
+            (Paint::Nothing, true, false) => ("vs_textured", "fs_cut_out"),
+            (Paint::Lambert, false, false) => ("vs_plain", "fs_lambert"),
+            (Paint::Lambert, true, false) => ("vs_textured", "fs_lambert_textured"),
+            (Paint::Toon, false, false) => ("vs_plain", "fs_toon"),
+            (Paint::Toon, true, false) => ("vs_textured", "fs_toon_textured"),
+            (Paint::Nothing, false, true) => ("vs_plain_inked", "fs_texels"),
+            (Paint::Nothing, true, true) => ("vs_textured_inked", "fs_texels_textured"),
+            (Paint::Lambert, false, true) => ("vs_plain_inked", "fs_lambert_inked"),
+            (Paint::Lambert, true, true) => ("vs_textured_inked", "fs_lambert_textured_inked"),
+            (Paint::Toon, false, true) => ("vs_plain_inked", "fs_toon_inked"),
+            (Paint::Toon, true, true) => ("vs_textured_inked", "fs_toon_textured_inked"),
         };
         let geometry = wgpu::VertexBufferLayout {
             array_stride: 24,
@@ -247,11 +324,16 @@ impl SurfacePass {
             step_mode: wgpu::VertexStepMode::Vertex,
             attributes: &wgpu::vertex_attr_array![2 => Float32x2, 3 => Float32x4],
         };
-        let buffers = [Some(geometry), Some(lookups)];
+        let regions = wgpu::VertexBufferLayout {
+            array_stride: 4,
+            step_mode: wgpu::VertexStepMode::Vertex,
+            attributes: &wgpu::vertex_attr_array![4 => Uint32],
+        };
+        let buffers = [Some(geometry), looked_up.then_some(lookups), inked.then_some(regions)];
         let target = wgpu::ColorTargetState {
             format: COLOR_FORMAT,
             blend: blended.then_some(wgpu::BlendState::ALPHA_BLENDING),
-            write_mask: if paint == Paint::Depth {
+            write_mask: if paint == Paint::Nothing {
                 wgpu::ColorWrites::empty()
             } else if blended {
                 wgpu::ColorWrites::ALL
@@ -260,6 +342,14 @@ impl SurfacePass {
                 wgpu::ColorWrites::COLOR
             },
         };
+        let texels = inking.map(|inking| wgpu::ColorTargetState {
+            format: texel_format(inking.layout),
+            blend: None,
+            write_mask: if inked { wgpu::ColorWrites::ALL } else { wgpu::ColorWrites::empty() },
+        });
+        let (narrow, line_kind, region_of_texture) = inking.map_or((false, LineKind::Normals, false), |inking| {
+            (inking.layout == TexelLayout::Narrow, inking.line_kind, inking.region_of_texture)
+        });
         device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some("surface"),
             layout: Some(&self.layout),
@@ -267,7 +357,7 @@ impl SurfacePass {
                 module: &self.module,
                 entry_point: Some(vertex),
                 compilation_options: Default::default(),
-                buffers: &buffers[..if looked_up { 2 } else { 1 }],
+                buffers: &buffers,
             },
             primitive: wgpu::PrimitiveState { cull_mode: cull_back.then_some(wgpu::Face::Back), ..Default::default() },
             depth_stencil: Some(wgpu::DepthStencilState {
@@ -280,17 +370,19 @@ impl SurfacePass {
             multisample: Default::default(),
             fragment: Some(wgpu::FragmentState {
                 module: &self.module,
-                // Without colour nothing but depth is written; the attachment is there all the same.
-                entry_point: Some(fragment.unwrap_or("fs_nothing")),
+                entry_point: Some(fragment),
                 compilation_options: wgpu::PipelineCompilationOptions {
                     // The loop over bands is unrolled for as many as there are.
                     constants: &[
                         (npr_toon::TOON_BANDS_OVERRIDE, f64::from(bands)),
                         ("surface_highlight", f64::from(u8::from(highlight))),
+                        ("surface_narrow", f64::from(u8::from(narrow))),
+                        ("surface_line_kind", f64::from(line_kind as u32)),
+                        ("surface_region_of_texture", f64::from(u8::from(region_of_texture))),
                     ],
                     ..Default::default()
                 },
-                targets: &[Some(target)],
+                targets: &[colored.then_some(target), texels][..if inking.is_some() { 2 } else { 1 }],
             }),
             multiview_mask: None,
             cache: None,
@@ -351,7 +443,16 @@ mod tests {
             ("texture_size", offset_of!(MaterialUniform, texture_size)),
             ("last_level", offset_of!(MaterialUniform, last_level)),
             ("cutoff", offset_of!(MaterialUniform, cutoff)),
+            ("wrap", offset_of!(MaterialUniform, wrap)),
+            ("padding", offset_of!(MaterialUniform, padding)),
         ];
         assert_eq!(layout("SurfaceMaterial"), ours(&material, size_of::<MaterialUniform>()));
+        let ink = [
+            ("code", offset_of!(InkUniform, code)),
+            ("right", offset_of!(InkUniform, right)),
+            ("up", offset_of!(InkUniform, up)),
+            ("back", offset_of!(InkUniform, back)),
+        ];
+        assert_eq!(layout("SurfaceInk"), ours(&ink, size_of::<InkUniform>()));
     }
 }

@@ -18,14 +18,34 @@ struct SurfaceMaterial {
     texture_size: vec2<f32>,
     last_level: f32,
     cutoff: f32,
+    // Of the texture outside 0..1, for u and v: 0 repeated, 1 mirrored, 2 clamped.
+    wrap: vec2<u32>,
+    padding: vec2<u32>,
+}
+
+// What lines in the image need.
+struct SurfaceInk {
+    // Of the depth buffer's value, whatever the projection.
+    code: InkDepthCode,
+    // Axes of view space in world space.
+    right: vec4<f32>,
+    up: vec4<f32>,
+    back: vec4<f32>,
 }
 
 // Whether the bands have a highlight. Known when the pipeline is made, since a software rasteriser runs through what it
 // branches around.
 override surface_highlight: bool = true;
+// Whether normal, region and depth are packed into one word.
+override surface_narrow: bool = false;
+// Where the material's inner lines come from: 0 its normals, 1 vertex colours, 2 its texture, 3 regions, 4 nowhere.
+override surface_line_kind: u32 = 0u;
+// Whether its texture's colours are its regions.
+override surface_region_of_texture: bool = false;
 
 @group(0) @binding(0) var<uniform> view: SurfaceView;
 @group(0) @binding(1) var<uniform> toon: ToonBands;
+@group(0) @binding(2) var<uniform> ink: SurfaceInk;
 @group(1) @binding(0) var<uniform> material: SurfaceMaterial;
 @group(1) @binding(1) var base_texture: texture_2d<f32>;
 @group(1) @binding(2) var base_sampler: sampler;
@@ -40,6 +60,31 @@ struct TexturedSurface {
     @location(0) normal: vec3<f32>,
     @location(1) uv: vec2<f32>,
     @location(2) color: vec4<f32>,
+}
+
+// With the region that lines in the image are drawn around.
+struct InkedSurface {
+    @builtin(position) position: vec4<f32>,
+    @location(0) normal: vec3<f32>,
+    @location(3) @interpolate(flat) region: u32,
+}
+
+struct InkedTexturedSurface {
+    @builtin(position) position: vec4<f32>,
+    @location(0) normal: vec3<f32>,
+    @location(1) uv: vec2<f32>,
+    @location(2) color: vec4<f32>,
+    @location(3) @interpolate(flat) region: u32,
+}
+
+// Colour, and normal, region and depth as one or two words.
+struct Inked {
+    @location(0) color: vec4<f32>,
+    @location(1) texel: vec2<u32>,
+}
+
+struct Texel {
+    @location(1) texel: vec2<u32>,
 }
 
 fn to_eye(position_px: vec2<f32>) -> vec3<f32> {
@@ -64,18 +109,45 @@ fn vs_textured(
     return TexturedSurface(view.clip_from_world * vec4<f32>(position, 1.0), normal, uv, color);
 }
 
+@vertex
+fn vs_plain_inked(
+    @location(0) position: vec3<f32>, @location(1) normal: vec3<f32>, @location(4) region: u32,
+) -> InkedSurface {
+    return InkedSurface(view.clip_from_world * vec4<f32>(position, 1.0), normal, region);
+}
+
+@vertex
+fn vs_textured_inked(
+    @location(0) position: vec3<f32>, @location(1) normal: vec3<f32>, @location(2) uv: vec2<f32>,
+    @location(3) color: vec4<f32>, @location(4) region: u32,
+) -> InkedTexturedSurface {
+    return InkedTexturedSurface(view.clip_from_world * vec4<f32>(position, 1.0), normal, uv, color, region);
+}
+
 fn encode_srgb(linear: vec3<f32>) -> vec3<f32> {
     let c = clamp(linear, vec3<f32>(0.0), vec3<f32>(1.0));
     return select(1.055 * pow(c, vec3<f32>(1.0 / 2.4)) - 0.055, c * 12.92, c <= vec3<f32>(0.0031308));
 }
 
-// Linear colour and alpha. In uniform control flow.
-fn base_color(uv: vec2<f32>, color: vec4<f32>) -> vec4<f32> {
+// The texture's linear colour and alpha. In uniform control flow.
+fn texture_color(uv: vec2<f32>) -> vec4<f32> {
     let along_x = dpdxFine(uv) * material.texture_size;
     let along_y = dpdyFine(uv) * material.texture_size;
     let longest = max(max(dot(along_x, along_x), dot(along_y, along_y)), 1e-30);
     let level = clamp(0.5 * log2(longest), 0.0, material.last_level);
-    return material.base_color * color * textureSampleLevel(base_texture, base_sampler, uv, level);
+    return textureSampleLevel(base_texture, base_sampler, uv, level);
+}
+
+// Linear colour and alpha, without what says where lines are. In uniform control flow.
+fn base_color(texel: vec4<f32>, color: vec4<f32>) -> vec4<f32> {
+    var base = material.base_color;
+    if surface_line_kind != 1u {
+        base *= color;
+    }
+    if surface_line_kind != 2u {
+        base *= texel;
+    }
+    return base;
 }
 
 fn lambert(base: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
@@ -123,7 +195,7 @@ fn fs_toon(in: Surface, @builtin(front_facing) front: bool) -> @location(0) vec4
 
 @fragment
 fn fs_lambert_textured(in: TexturedSurface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
-    let base = base_color(in.uv, in.color);
+    let base = base_color(texture_color(in.uv), in.color);
     if base.a < material.cutoff {
         discard;
     }
@@ -132,7 +204,7 @@ fn fs_lambert_textured(in: TexturedSurface, @builtin(front_facing) front: bool) 
 
 @fragment
 fn fs_toon_textured(in: TexturedSurface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
-    let base = base_color(in.uv, in.color);
+    let base = base_color(texture_color(in.uv), in.color);
     let shaded = banded(encode_srgb(base.rgb), facing(in.normal, front), to_eye(in.position.xy));
     if base.a < material.cutoff {
         discard;
@@ -142,11 +214,118 @@ fn fs_toon_textured(in: TexturedSurface, @builtin(front_facing) front: bool) -> 
 
 @fragment
 fn fs_cut_out(in: TexturedSurface) {
-    if base_color(in.uv, in.color).a < material.cutoff {
+    if base_color(texture_color(in.uv), in.color).a < material.cutoff {
         discard;
     }
 }
 
 @fragment
 fn fs_nothing() {
+}
+
+fn wrapped(texel: i32, size: i32, wrap: u32) -> i32 {
+    if wrap == 2u {
+        return clamp(texel, 0, size - 1);
+    }
+    let period = select(size, 2 * size, wrap == 1u);
+    let folded = ((texel % period) + period) % period;
+    return select(folded, 2 * size - 1 - folded, folded >= size);
+}
+
+// The region that the texel at a place stands for, not filtered.
+fn texture_region(uv: vec2<f32>) -> u32 {
+    let size = vec2<i32>(textureDimensions(base_texture));
+    let at = vec2<i32>(floor(uv * vec2<f32>(size)));
+    let texel = vec2<i32>(wrapped(at.x, size.x, material.wrap.x), wrapped(at.y, size.y, material.wrap.y));
+    return ink_region_of_color(encode_srgb(textureLoad(base_texture, texel, 0).rgb));
+}
+
+// One of the directions that no visible surface has, world space.
+fn artist_normal(index: u32, position_px: vec2<f32>) -> vec3<f32> {
+    let away = -to_eye(position_px);
+    let eye_to_point = vec3<f32>(dot(away, ink.right.xyz), dot(away, ink.up.xyz), dot(away, ink.back.xyz));
+    let direction = ink_artist_direction(index, eye_to_point);
+    return direction.x * ink.right.xyz + direction.y * ink.up.xyz + direction.z * ink.back.xyz;
+}
+
+fn inked_normal(normal: vec3<f32>, texel: vec4<f32>, color: vec4<f32>, position_px: vec2<f32>) -> vec3<f32> {
+    if surface_line_kind == 0u {
+        return normal;
+    }
+    if surface_line_kind >= 3u {
+        return vec3<f32>(0.0);
+    }
+    var index = ink_artist_index(encode_srgb(color.rgb));
+    if surface_line_kind == 2u {
+        index = ink_artist_texel(vec4<f32>(encode_srgb(texel.rgb), texel.a));
+    }
+    return artist_normal(index, position_px);
+}
+
+fn words(normal: vec3<f32>, region: u32, position: vec4<f32>) -> vec2<u32> {
+    let depth = ink_depth_code_of(position.z, ink.code);
+    if surface_narrow {
+        return vec2<u32>(ink_narrow_word(normal, region, depth), 0u);
+    }
+    return ink_wide_words(normal, region, depth);
+}
+
+fn plain_words(in: InkedSurface, front: bool) -> vec2<u32> {
+    return words(inked_normal(facing(in.normal, front), vec4<f32>(1.0), vec4<f32>(1.0), in.position.xy), in.region, in.position);
+}
+
+fn textured_words(in: InkedTexturedSurface, front: bool, texel: vec4<f32>) -> vec2<u32> {
+    var region = in.region;
+    if surface_region_of_texture {
+        region = texture_region(in.uv);
+    }
+    return words(inked_normal(facing(in.normal, front), texel, in.color, in.position.xy), region, in.position);
+}
+
+@fragment
+fn fs_lambert_inked(in: InkedSurface, @builtin(front_facing) front: bool) -> Inked {
+    let color = lambert(material.base_color.rgb, facing(in.normal, front));
+    return Inked(vec4<f32>(color, material.base_color.a), plain_words(in, front));
+}
+
+@fragment
+fn fs_toon_inked(in: InkedSurface, @builtin(front_facing) front: bool) -> Inked {
+    let color = banded(material.base_color.rgb, facing(in.normal, front), to_eye(in.position.xy));
+    return Inked(vec4<f32>(color, material.base_color.a), plain_words(in, front));
+}
+
+@fragment
+fn fs_lambert_textured_inked(in: InkedTexturedSurface, @builtin(front_facing) front: bool) -> Inked {
+    let texel = texture_color(in.uv);
+    let base = base_color(texel, in.color);
+    if base.a < material.cutoff {
+        discard;
+    }
+    let color = lambert(encode_srgb(base.rgb), facing(in.normal, front));
+    return Inked(vec4<f32>(color, base.a), textured_words(in, front, texel));
+}
+
+@fragment
+fn fs_toon_textured_inked(in: InkedTexturedSurface, @builtin(front_facing) front: bool) -> Inked {
+    let texel = texture_color(in.uv);
+    let base = base_color(texel, in.color);
+    let color = banded(encode_srgb(base.rgb), facing(in.normal, front), to_eye(in.position.xy));
+    if base.a < material.cutoff {
+        discard;
+    }
+    return Inked(vec4<f32>(color, base.a), textured_words(in, front, texel));
+}
+
+@fragment
+fn fs_texels(in: InkedSurface, @builtin(front_facing) front: bool) -> Texel {
+    return Texel(plain_words(in, front));
+}
+
+@fragment
+fn fs_texels_textured(in: InkedTexturedSurface, @builtin(front_facing) front: bool) -> Texel {
+    let texel = texture_color(in.uv);
+    if base_color(texel, in.color).a < material.cutoff {
+        discard;
+    }
+    return Texel(textured_words(in, front, texel));
 }

@@ -2,9 +2,12 @@
 
 use super::{GpuContext, GpuError};
 use crate::compare::Image;
+use crate::image_ink::{ImageInk, InkScale};
+use npr_imagespace::format::texel::TexelLayout;
+use npr_imagespace::pass::fused::texel_format;
 use npr_outline::line_pass::WINNER_FORMAT;
 use npr_outline::line_strokes::{LineStrokes, StrokeBuffers};
-use std::cell::{Cell, OnceCell};
+use std::cell::{Cell, OnceCell, Ref, RefCell};
 
 /// Display-referred values, so no encoding on store.
 pub(super) const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
@@ -26,28 +29,70 @@ pub struct Targets {
     pub(super) winner_view: wgpu::TextureView,
     /// Made when first needed; `None` where the device's buffers are too small for them.
     stroke_buffers: OnceCell<Option<StrokeBuffers>>,
+    /// Made when first needed, and anew for a style that needs others.
+    ink: RefCell<Option<InkTargets>>,
     /// Which of the two the last frame ended in.
     is_inked: Cell<bool>,
 }
 
+/// What lines in the image are found in.
+pub(super) struct InkTargets {
+    layout: TexelLayout,
+    scale: InkScale,
+    pub(super) size: (u32, u32),
+    pub(super) texels: wgpu::TextureView,
+    /// Where the ink has another size than the picture.
+    pub(super) depth: Option<wgpu::TextureView>,
+}
+
+impl InkTargets {
+    fn new(context: &GpuContext, ink: &ImageInk, picture: (u32, u32)) -> Result<Self, GpuError> {
+        let size = ink.scale.size(picture);
+        check_size(context, size)?;
+        let view = |label, format, usage| texture(context, label, format, usage, size).create_view(&Default::default());
+        let read = wgpu::TextureUsages::TEXTURE_BINDING;
+        Ok(Self {
+            layout: ink.layout,
+            scale: ink.scale,
+            size,
+            texels: view("normal, region and depth", texel_format(ink.layout), read),
+            depth: (ink.scale != InkScale::One)
+                .then(|| view("depth of the ink", DEPTH_FORMAT, wgpu::TextureUsages::empty())),
+        })
+    }
+}
+
+fn check_size(context: &GpuContext, (width, height): (u32, u32)) -> Result<(), GpuError> {
+    let limit = context.device.limits().max_texture_dimension_2d;
+    if width == 0 || height == 0 || width > limit || height > limit {
+        return Err(GpuError::TooLarge { width, height, limit });
+    }
+    Ok(())
+}
+
+fn texture(
+    context: &GpuContext,
+    label: &str,
+    format: wgpu::TextureFormat,
+    usage: wgpu::TextureUsages,
+    (width, height): (u32, u32),
+) -> wgpu::Texture {
+    context.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | usage,
+        view_formats: &[],
+    })
+}
+
 impl Targets {
     pub(super) fn new(context: &GpuContext, width: u32, height: u32) -> Result<Self, GpuError> {
-        let limit = context.device.limits().max_texture_dimension_2d;
-        if width == 0 || height == 0 || width > limit || height > limit {
-            return Err(GpuError::TooLarge { width, height, limit });
-        }
-        let texture = |label, format, usage| {
-            context.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some(label),
-                size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: wgpu::TextureUsages::RENDER_ATTACHMENT | usage,
-                view_formats: &[],
-            })
-        };
+        check_size(context, (width, height))?;
+        let texture = |label, format, usage| texture(context, label, format, usage, (width, height));
         let view = |texture: &wgpu::Texture| texture.create_view(&Default::default());
         let read = wgpu::TextureUsages::TEXTURE_BINDING;
         let stored =
@@ -65,8 +110,21 @@ impl Targets {
             inked,
             winner_view: view(&texture("greatest coverage", WINNER_FORMAT, wgpu::TextureUsages::empty())),
             stroke_buffers: OnceCell::new(),
+            ink: RefCell::default(),
             is_inked: Cell::new(false),
         })
+    }
+
+    /// What lines in the image need.
+    ///
+    /// # Errors
+    /// [`GpuError::TooLarge`].
+    pub(super) fn ink(&self, context: &GpuContext, ink: &ImageInk) -> Result<Ref<'_, InkTargets>, GpuError> {
+        let is_for = |targets: &InkTargets| targets.layout == ink.layout && targets.scale == ink.scale;
+        if !self.ink.borrow().as_ref().is_some_and(is_for) {
+            *self.ink.borrow_mut() = Some(InkTargets::new(context, ink, (self.width, self.height))?);
+        }
+        Ok(Ref::map(self.ink.borrow(), |targets| targets.as_ref().expect("it was just made")))
     }
 
     /// Says that the frame ends in the painted picture.

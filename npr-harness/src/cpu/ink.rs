@@ -1,0 +1,64 @@
+//! Lines in the image on the CPU: the texels that a geometry pass would write, and the ink over the picture.
+
+use super::{CpuFrame, FrameContext};
+use crate::color::encode_rgb;
+use crate::image_ink::ImagePlan;
+use crate::rays::Hit;
+use glam::{DMat3, DVec3, Vec3};
+use npr_imagespace::artist::{LineKind, ink_artist_direction, ink_artist_index, ink_artist_texel};
+use npr_imagespace::composite::ink_composite;
+use npr_imagespace::format::texel::{BACKGROUND, TexelLayout, ink_narrow_pack, ink_wide_pack};
+use npr_imagespace::region::ink_region_of_color;
+
+impl FrameContext<'_> {
+    /// What a geometry pass writes for a pixel.
+    pub(super) fn texel(&self, hit: Option<&Hit>, x: u32, y: u32) -> [u32; 2] {
+        let (Some(image), Some(hit)) = (&self.plan.image, hit) else { return BACKGROUND };
+        let kind = self.line_kind(hit);
+        let normal = self.texel_normal(hit, kind, x, y).as_vec3();
+        let region = match (kind, self.texture_bytes(hit, kind)) {
+            (LineKind::Regions, Some(rgb)) => ink_region_of_color(rgb),
+            _ => image.face_region[hit.face as usize],
+        };
+        match image.ink.layout {
+            TexelLayout::Narrow => [ink_narrow_pack(normal, region, hit.t as f32, &image.code), 0],
+            TexelLayout::Wide => ink_wide_pack(normal, region, hit.t as f32, &image.code),
+        }
+    }
+
+    /// World space, of any length; zero for no normal.
+    fn texel_normal(&self, hit: &Hit, kind: LineKind, x: u32, y: u32) -> DVec3 {
+        let index = match kind {
+            LineKind::Normals => return self.interpolate(hit, hit.barycentric).normal,
+            LineKind::Regions | LineKind::None => return DVec3::ZERO,
+            LineKind::VertexColor => ink_artist_index(encode_rgb(self.vertex_color(hit).truncate()).as_vec3()),
+            LineKind::Texture => {
+                let linear = self.texture_color(hit, x, y);
+                ink_artist_texel(encode_rgb(linear.truncate()).as_vec3().extend(linear.w as f32))
+            }
+        };
+        let world_from_view = DMat3::from_cols_array_2d(&self.camera.axes().map(|axis| axis.to_array()));
+        let direction = self.camera.ray(self.sample_point(f64::from(x), f64::from(y)), self.size_px).1;
+        let eye_to_point: Vec3 = (world_from_view.transpose() * direction).as_vec3();
+        world_from_view * ink_artist_direction(index, eye_to_point).as_dvec3()
+    }
+
+    /// The colour of the texel under a hit, not filtered, of materials whose regions a texture says.
+    fn texture_bytes(&self, hit: &Hit, kind: LineKind) -> Option<[u8; 3]> {
+        let texture = self.material(hit).texture?;
+        (kind == LineKind::Regions)
+            .then(|| self.textures[texture as usize].nearest_bytes(self.interpolate_uv(hit, hit.barycentric)))
+    }
+}
+
+/// Draws the frame's lines over it, from texels of the ink's size.
+pub(super) fn draw_ink(image: &ImagePlan, texels: &[[u32; 2]], frame: &mut CpuFrame) {
+    let size = image.ink.scale.size((frame.width, frame.height));
+    let ink = image.ink(texels, size);
+    for (color, ink) in frame.color.iter_mut().zip(ink) {
+        if ink > 0 {
+            let inked = ink_composite(color.truncate(), f64::from(ink) / 255.0, &image.ink.composite);
+            *color = inked.extend(color.w);
+        }
+    }
+}

@@ -1,0 +1,196 @@
+//! Lines that are found in the image: what a style asks for, and what a scene then needs.
+
+use crate::camera::{Camera, Projection};
+use crate::scene::Scene;
+use glam::{DVec3, UVec2};
+use npr_imagespace::ImageSpaceError;
+use npr_imagespace::artist::LineKind;
+use npr_imagespace::composite::Composite;
+use npr_imagespace::filter::fused::{FilterUniform, FusedFilter, ink_fused};
+use npr_imagespace::format::texel::{DepthCode, TexelLayout, ink_narrow_tap, ink_wide_tap};
+use npr_imagespace::morphology::disc::Disc;
+use npr_imagespace::morphology::flood::{FloodPlan, flood};
+use npr_imagespace::picture::filter_picture;
+use npr_imagespace::region::{region_of_index, region_of_pairs, region_of_patches};
+use npr_mesh::edges::EdgeKind;
+
+/// What a region is, between whose borders there are lines.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Regions {
+    /// All surfaces are one.
+    One,
+    /// What is made of one material.
+    Material,
+    /// What is connected by edges less sharp than the style's creases, and of one material: creases become borders,
+    /// whatever the shading normals are.
+    #[default]
+    Patch,
+}
+
+/// The size of the target in which lines are found. They are 1 to 2 of its pixels wide, so it decides on their width.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum InkScale {
+    /// Half the picture's: lines twice as wide.
+    Half,
+    /// The picture's. The surfaces are drawn once for both.
+    #[default]
+    One,
+    /// Twice the picture's: fine lines, antialiased.
+    Double,
+}
+
+impl InkScale {
+    /// The target's size for a picture's.
+    pub fn size(self, (width, height): (u32, u32)) -> (u32, u32) {
+        match self {
+            Self::Half => (width.div_ceil(2), height.div_ceil(2)),
+            Self::One => (width, height),
+            Self::Double => (2 * width, 2 * height),
+        }
+    }
+}
+
+/// How lines are found in the image and laid over it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ImageInk {
+    /// What is a line.
+    pub filter: FusedFilter,
+    /// How normal, region and depth of a pixel are packed.
+    pub layout: TexelLayout,
+    /// What a region is.
+    pub regions: Regions,
+    /// Whether materials say where their inner lines come from ([`Scene::line_kinds`]); else all from their normals.
+    pub artist: bool,
+    /// Thickens the lines.
+    pub brush: Option<Disc>,
+    /// Of the target in which they are found.
+    pub scale: InkScale,
+    /// How they come over the picture.
+    pub composite: Composite,
+}
+
+/// What image-space lines need of a scene seen by a camera.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ImagePlan {
+    /// What the style asks for.
+    pub ink: ImageInk,
+    /// How eye depth is packed: the scene's own range, as far as the near plane leaves it.
+    pub code: DepthCode,
+    /// Per face its region, from 1.
+    pub face_region: Vec<u32>,
+    /// Per material where its inner lines come from.
+    pub line_kinds: Vec<LineKind>,
+    /// The passes that thicken, where they are asked for.
+    pub flood: Option<FloodPlan>,
+}
+
+/// Texels to each side that a pass of the flood reads.
+const FLOOD_FAN: u32 = 3;
+
+impl ImagePlan {
+    /// # Errors
+    /// What is wrong with the thresholds or the brush.
+    pub fn new(
+        scene: &Scene,
+        ink: &ImageInk,
+        crease_angle_rad: f32,
+        camera: &Camera,
+    ) -> Result<Self, ImageSpaceError> {
+        let code = depth_code(scene, camera, ink.layout)?;
+        FilterUniform::new(&ink.filter, ink.layout, &code)?;
+        if let Some(disc) = ink.brush {
+            // Validates the radius.
+            flood(&[], UVec2::ZERO, &disc, &FloodPlan { passes: Vec::new() })?;
+        }
+        let materials = scene.model.materials.len();
+        Ok(Self {
+            ink: *ink,
+            code,
+            face_region: face_regions(scene, ink.regions, crease_angle_rad)?,
+            line_kinds: if ink.artist { scene.line_kinds.clone() } else { vec![LineKind::Normals; materials] },
+            flood: ink.brush.map(|disc| FloodPlan::separable(&disc, FLOOD_FAN)),
+        })
+    }
+
+    /// The code of what the depth buffer holds, for who has that at hand.
+    pub fn buffer_code(&self, camera: &Camera) -> DepthCode {
+        match camera.projection {
+            Projection::Perspective { .. } => self.code.of_buffer(0.0, 1.0 / camera.near),
+            Projection::Orthographic { far, .. } => self.code.of_buffer(far, camera.near - far),
+        }
+    }
+
+    /// Ink of a picture of texels, the reference: found, and thickened.
+    ///
+    /// - `texels`: of [`ImageInk::layout`]; in one word the second is not looked at.
+    ///
+    /// # Panics
+    /// If there is not one for each pixel.
+    pub fn ink(&self, texels: &[[u32; 2]], size: (u32, u32)) -> Vec<u8> {
+        let size_px = UVec2::from(size);
+        let filter = &self.ink.filter;
+        let uniform = FilterUniform::new(filter, self.ink.layout, &self.code).expect("it was checked");
+        let tap = |words: [u32; 2]| match self.ink.layout {
+            TexelLayout::Narrow => ink_narrow_tap(words[0]),
+            TexelLayout::Wide => ink_wide_tap(words),
+        };
+        let found = filter_picture(texels, size_px, filter.taps, |centre, taps| {
+            ink_fused(&uniform, &tap(centre), &taps.map(tap)) as f32
+        })
+        .expect("a texel for each pixel");
+        match (&self.ink.brush, &self.flood) {
+            (Some(disc), Some(plan)) => flood(&found, size_px, disc, plan).expect("the disc was checked"),
+            _ => found,
+        }
+    }
+}
+
+/// The range of eye depth in which the scene lies, before the camera.
+fn depth_range(scene: &Scene, camera: &Camera) -> (f64, f64) {
+    let back = camera.axes()[2];
+    let (low, high) = scene.model.bounds().map_or((DVec3::ZERO, DVec3::ZERO), |(l, h)| (l.as_dvec3(), h.as_dvec3()));
+    let depth = |corner: DVec3| (camera.eye - corner).dot(back);
+    let nearest = depth(DVec3::select(back.cmpgt(DVec3::ZERO), high, low));
+    let farthest = depth(DVec3::select(back.cmpgt(DVec3::ZERO), low, high));
+    // A thousandth to spare: the range's ends are clamped, and what is clamped bends.
+    let spare = 1e-3 * (farthest - nearest);
+    let near = (nearest - spare).max(camera.near * 0.999);
+    (near, (farthest + spare).max(near * 1.001))
+}
+
+fn depth_code(scene: &Scene, camera: &Camera, layout: TexelLayout) -> Result<DepthCode, ImageSpaceError> {
+    let (near, far) = depth_range(scene, camera);
+    match camera.projection {
+        Projection::Perspective { .. } => DepthCode::perspective(near as f32, far as f32, layout),
+        Projection::Orthographic { .. } => DepthCode::parallel(near as f32, far as f32, layout),
+    }
+}
+
+fn face_regions(scene: &Scene, by: Regions, crease_angle_rad: f32) -> Result<Vec<u32>, ImageSpaceError> {
+    let faces = scene.model.faces.len();
+    let material = || scene.model.face_material.iter().map(|&material| region_of_index(material));
+    match by {
+        Regions::One => Ok(vec![1; faces]),
+        Regions::Material => Ok(material().collect()),
+        Regions::Patch => {
+            let is_smooth = |edge: &npr_mesh::edges::Edge| {
+                edge.kind() == EdgeKind::TwoFace
+                    && scene.edges.dihedral_rad(edge).is_some_and(|angle| angle <= crease_angle_rad)
+            };
+            let diagonals = same_polygon(&scene.model.face_polygon);
+            let pairs: Vec<[u32; 2]> =
+                scene.edges.edges.iter().filter(|edge| is_smooth(edge)).map(|edge| edge.faces()).chain(diagonals).collect();
+            let patches = region_of_patches(faces, &pairs)?;
+            Ok(region_of_pairs(patches.into_iter().zip(material()).map(|(patch, material)| [patch, material])))
+        }
+    }
+}
+
+/// Neighbouring triangles of one polygon: the edge between them is none of the model's.
+fn same_polygon(face_polygon: &[u32]) -> impl Iterator<Item = [u32; 2]> + '_ {
+    face_polygon
+        .windows(2)
+        .zip(0u32..)
+        .filter(|(polygons, _)| polygons[0] == polygons[1])
+        .map(|(_, face)| [face, face + 1])
+}
