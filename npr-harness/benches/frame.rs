@@ -6,9 +6,11 @@
 
 use npr_harness::camera::{Camera, Framing};
 use npr_harness::gpu::{GpuContext, GpuRenderer};
+use npr_harness::image_ink::ImageInk;
 use npr_harness::plan::{LineMethod, Plan};
 use npr_harness::scene::Scene;
-use npr_harness::style::{Shade, Style, style};
+use npr_harness::style::{Lines, Shade, Style, style};
+use npr_imagespace::format::texel::TexelLayout;
 use std::path::Path;
 use std::time::Instant;
 
@@ -36,12 +38,24 @@ fn main() {
         other => other.clone(),
     };
     let lambert = Shade::Lambert { ambient: 0.25 };
-    let cases: [(&str, Style, LineMethod); 8] = [
+    let found = |layout| Some(Lines::Image(ImageInk { layout, ..ImageInk::default() }));
+    let cases: [(&str, Style, LineMethod); 11] = [
         ("Lambert", Style { shade: lambert.clone(), lines: None, ..base.clone() }, LineMethod::Rectangles),
         ("toon", Style { lines: None, ..base.clone() }, LineMethod::Rectangles),
         (
             "toon without highlight",
-            Style { shade: without_highlight, lines: None, ..base.clone() },
+            Style { shade: without_highlight.clone(), lines: None, ..base.clone() },
+            LineMethod::Rectangles,
+        ),
+        ("toon + image lines", Style { lines: found(TexelLayout::Wide), ..base.clone() }, LineMethod::Rectangles),
+        (
+            "toon + image lines, narrow texels",
+            Style { lines: found(TexelLayout::Narrow), ..base.clone() },
+            LineMethod::Rectangles,
+        ),
+        (
+            "the same without highlight",
+            Style { shade: without_highlight, lines: found(TexelLayout::Narrow), ..base.clone() },
             LineMethod::Rectangles,
         ),
         ("Lambert + lines as strokes", Style { shade: lambert, ..base.clone() }, LineMethod::Strokes),

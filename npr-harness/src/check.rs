@@ -2,6 +2,7 @@
 //!
 //! All tolerances of the project's pictures are here.
 
+mod image_lines;
 mod lines;
 
 use crate::camera::{Camera, Framing};
@@ -232,6 +233,7 @@ impl Checker<'_> {
                 self.picture(name, view, scene, camera, &style)?;
             }
             self.lines(name, view, scene, camera)?;
+            self.image_lines(name, view, scene, camera)?;
             #[cfg(feature = "gpu")]
             self.line_finder(name, view, scene, camera)?;
             progress((number + 1) as f64 / views.len() as f64);

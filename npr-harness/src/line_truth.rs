@@ -22,6 +22,7 @@
 //! count as whole. An edge is seen or hidden whatever its own faces are made of.
 
 use crate::camera::Camera;
+use crate::rays::Hit;
 use crate::scene::Scene;
 use glam::{DVec2, DVec3, DVec4};
 use npr_mesh::AlphaMode;
@@ -102,6 +103,20 @@ impl Plane {
 ///
 /// It takes a ray for every [`STEP_PX`] of line, hidden ones too. The result does not depend on the number of threads.
 pub fn true_lines(scene: &Scene, camera: &Camera, size: (u32, u32), crease_angle_rad: f64) -> TrueLines {
+    true_lines_of_steps(scene, camera, size, crease_angle_rad, 0.0)
+}
+
+/// The same, without those silhouettes and boundaries behind which the next surface is less than `least_step` deeper,
+/// world units: what a picture cannot show but by the normals there.
+///
+/// Creases stay, also where they are silhouettes or the borders of a third face.
+pub fn true_lines_of_steps(
+    scene: &Scene,
+    camera: &Camera,
+    size: (u32, u32),
+    crease_angle_rad: f64,
+    least_step: f64,
+) -> TrueLines {
     let planes = face_planes(scene);
     let eye = camera.homogeneous_eye();
     let lines: Vec<(u32, LineKind)> = (0u32..)
@@ -110,6 +125,10 @@ pub fn true_lines(scene: &Scene, camera: &Camera, size: (u32, u32), crease_angle
         .collect();
     let size_px = DVec2::new(size.0.into(), size.1.into());
     let sight = Sight { scene, camera, size_px };
+    let step_of = |number: u32, kind: LineKind| {
+        let edge = &scene.edges.edges[number as usize];
+        if kind == LineKind::Boundary || !is_crease(edge, &planes, crease_angle_rad) { least_step } else { 0.0 }
+    };
     // Built before the threads ask for it, so that they do not wait for each other.
     scene.rays();
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
@@ -117,7 +136,7 @@ pub fn true_lines(scene: &Scene, camera: &Camera, size: (u32, u32), crease_angle
     let segments = std::thread::scope(|scope| {
         let sight = &sight;
         let follow = |share: &[(u32, LineKind)]| -> Vec<TrueSegment> {
-            share.iter().flat_map(|&(edge, kind)| sight.visible_pieces(edge, kind)).collect()
+            share.iter().flat_map(|&(edge, kind)| sight.visible_pieces(edge, kind, step_of(edge, kind))).collect()
         };
         let running: Vec<_> = lines.chunks(share).map(|share| scope.spawn(move || follow(share))).collect();
         running.into_iter().flat_map(|thread| thread.join().expect("following lines does not panic")).collect()
@@ -196,16 +215,32 @@ fn line_kind(edge: &Edge, planes: &[Plane], eye: DVec4, crease_angle_rad: f64) -
     if second == NO_FACE {
         return Some(LineKind::Boundary);
     }
+    let [plane0, plane1] = wound_alike(edge, planes, [first, second]);
+    if plane0.faces(eye) != plane1.faces(eye) {
+        return Some(LineKind::Silhouette);
+    }
+    is_crease(edge, planes, crease_angle_rad).then_some(LineKind::Crease)
+}
+
+/// The planes of an edge's two faces, the second turned to be wound like the first.
+fn wound_alike(edge: &Edge, planes: &[Plane], [first, second]: [u32; 2]) -> [Plane; 2] {
     let (plane0, mut plane1) = (planes[first as usize], planes[second as usize]);
     if edge.kind() == EdgeKind::TwoFace && edge.wound_oppositely() {
         plane1.normal = -plane1.normal;
     }
-    if plane0.faces(eye) != plane1.faces(eye) {
-        return Some(LineKind::Silhouette);
+    [plane0, plane1]
+}
+
+/// Whether the surface turns by more than an angle at an edge, or a third face begins there.
+fn is_crease(edge: &Edge, planes: &[Plane], crease_angle_rad: f64) -> bool {
+    let faces = edge.faces();
+    if faces[1] == NO_FACE {
+        return false;
     }
+    let [plane0, plane1] = wound_alike(edge, planes, faces);
     // Well conditioned at any angle, and 0 where there is no normal.
     let turn_rad = plane0.normal.cross(plane1.normal).length().atan2(plane0.normal.dot(plane1.normal));
-    (edge.kind() == EdgeKind::NonManifold || turn_rad > crease_angle_rad).then_some(LineKind::Crease)
+    edge.kind() == EdgeKind::NonManifold || turn_rad > crease_angle_rad
 }
 
 /// A scene and from where it is seen.
@@ -216,7 +251,7 @@ struct Sight<'a> {
 }
 
 impl Sight<'_> {
-    fn visible_pieces(&self, number: u32, kind: LineKind) -> Vec<TrueSegment> {
+    fn visible_pieces(&self, number: u32, kind: LineKind, least_step: f64) -> Vec<TrueSegment> {
         let edge = &self.scene.edges.edges[number as usize];
         let ends = edge.ends.map(|v| self.scene.model.positions[v as usize].as_dvec3());
         let Some(world) = self.clip(ends) else { return Vec::new() };
@@ -229,7 +264,10 @@ impl Sight<'_> {
         let mut pieces = Vec::new();
         let mut since = None;
         for cell in 0..=cells {
-            let seen = cell < cells && self.sees(on_edge((f64::from(cell) + 0.5) / f64::from(cells)), edge);
+            let seen = cell < cells && {
+                let point = on_edge((f64::from(cell) + 0.5) / f64::from(cells));
+                self.sees(point, edge) && (least_step <= 0.0 || self.step_behind(point, edge) >= least_step)
+            };
             match (since, seen) {
                 (None, true) => since = Some(cell),
                 (Some(start), false) => {
@@ -294,14 +332,29 @@ impl Sight<'_> {
     /// Whether nothing hides a point of an edge.
     fn sees(&self, point: DVec3, edge: &Edge) -> bool {
         let depth = self.in_view(point).z;
-        let origin = if self.is_parallel() { point + self.camera.axes()[2] * depth } else { self.camera.eye };
+        let origin = self.origin_of_sight(point, depth);
         let range = (self.camera.near / depth, 1.0 - BEHIND);
+        !self.scene.rays().any(origin, point - origin, range, |hit| self.hides(hit, edge))
+    }
+
+    fn origin_of_sight(&self, point: DVec3, depth: f64) -> DVec3 {
+        if self.is_parallel() { point + self.camera.axes()[2] * depth } else { self.camera.eye }
+    }
+
+    /// Whether what is hit is solid, and none of the edge's own faces.
+    fn hides(&self, hit: &Hit, edge: &Edge) -> bool {
         let model = &self.scene.model;
-        let hides = |face: u32, front: bool| {
-            let material = &model.materials[model.face_material[face as usize] as usize];
-            (front || material.double_sided) && material.alpha_mode != AlphaMode::Blend && !self.is_own(face, edge)
-        };
-        !self.scene.rays().any(origin, point - origin, range, |hit| hides(hit.face, hit.front))
+        let material = &model.materials[model.face_material[hit.face as usize] as usize];
+        (hit.front || material.double_sided) && material.alpha_mode != AlphaMode::Blend && !self.is_own(hit.face, edge)
+    }
+
+    /// How much deeper than a point of an edge the next surface behind it is, world units; infinite if there is none.
+    fn step_behind(&self, point: DVec3, edge: &Edge) -> f64 {
+        let depth = self.in_view(point).z;
+        let origin = self.origin_of_sight(point, depth);
+        let range = (1.0 + BEHIND, f64::INFINITY);
+        let next = self.scene.rays().closest(origin, point - origin, range, |hit| self.hides(hit, edge));
+        next.map_or(f64::INFINITY, |hit| (hit.t - 1.0) * depth)
     }
 
     /// Whether a face has the edge, or is of the polygon of one that has.

@@ -1,0 +1,64 @@
+//! Lines in the image against the exact contours, filter by filter.
+
+use super::{Checker, Limit, SIZE, WITHIN_PX, darkness, one_px_style};
+use crate::camera::Camera;
+use crate::error::HarnessError;
+use crate::image_ink::{ImageInk, Regions};
+use crate::line_truth::{accuracy, drawn_centreline, true_lines, true_lines_of_steps};
+use crate::plan::Plan;
+use crate::scene::Scene;
+use crate::style::Lines;
+use npr_imagespace::filter::depth::ANY_OS;
+use npr_imagespace::filter::fused::{DepthTest, FusedFilter};
+use npr_mesh::AlphaMode;
+
+/// The least F1 of the fused filter.
+pub const IMAGE_LINE_F1: f64 = 0.95;
+/// Silhouettes and boundaries behind which the next surface is nearer than this share of the model's size, the
+/// diagonal of its box, are not asked of a filter.
+pub const LEAST_STEP: f64 = 0.01;
+
+/// The filters that are compared; the first has a limit.
+fn filters() -> [(&'static str, ImageInk); 6] {
+    let none = FusedFilter { normal_cos: None, depth: None, regions: false, ..FusedFilter::default() };
+    let with = |filter: FusedFilter| ImageInk { filter, ..ImageInk::default() };
+    let plain = DepthTest { step: ANY_OS, plain: true };
+    [
+        ("image lines", ImageInk::default()),
+        ("image, normals", with(FusedFilter { normal_cos: FusedFilter::default().normal_cos, ..none })),
+        ("image, bends", with(FusedFilter { depth: Some(DepthTest::default()), ..none })),
+        ("image, steps", with(FusedFilter { depth: Some(plain), ..none })),
+        ("image, patches", with(FusedFilter { regions: true, ..none })),
+        ("image, no patch", ImageInk { regions: Regions::One, ..ImageInk::default() }),
+    ]
+}
+
+impl Checker<'_> {
+    /// Precision, recall and F1 of each filter.
+    pub(super) fn image_lines(
+        &mut self,
+        model: &str,
+        view: &str,
+        scene: &Scene,
+        camera: &Camera,
+    ) -> Result<(), HarnessError> {
+        let crease_angle_rad = f64::from(one_px_style(Lines::Image(ImageInk::default())).crease_angle_rad);
+        let asked = true_lines_of_steps(scene, camera, SIZE, crease_angle_rad, LEAST_STEP * 2.0 * scene.radius());
+        let all = true_lines(scene, camera, SIZE, crease_angle_rad);
+        let exact = !scene.model.materials.iter().any(|m| matches!(m.alpha_mode, AlphaMode::Mask { .. }));
+        for (number, (technique, ink)) in filters().into_iter().enumerate() {
+            let style = one_px_style(Lines::Image(ink));
+            let plan = Plan::new(scene, &style, camera)?;
+            let image = self.executor.render(scene, &style, &plan, camera, SIZE, 1, &|_| {})?;
+            let drawn = drawn_centreline(&darkness(&image), SIZE.0, SIZE.1);
+            let found = accuracy(&asked, &drawn, WITHIN_PX);
+            let limit = (number == 0 && exact).then_some(Limit::AtLeast(IMAGE_LINE_F1));
+            self.add(model, view, technique, "F1 within 1.5 px", found.f1, limit);
+            self.add(model, view, technique, "precision within 1.5 px", found.precision, None);
+            self.add(model, view, technique, "recall within 1.5 px", found.recall, None);
+            let near_any = accuracy(&all, &drawn, WITHIN_PX).precision;
+            self.add(model, view, technique, "precision, small steps counted as lines", near_any, None);
+        }
+        Ok(())
+    }
+}
