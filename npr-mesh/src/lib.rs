@@ -20,6 +20,8 @@
 //! - A polygon of n corners becomes n − 2 triangles ([`triangulate`]). The diagonals are no edges, and all triangles of
 //!   a polygon have its Newell normal.
 //! - What a file has no normals for gets them ([`normals`]): weighted by angle, split at creases.
+//! - A coarse model becomes round by its normals ([`pn_triangles`]): what was closed stays closed, and the edges within
+//!   a rounded face can be contours.
 //! - Non-manifold edges, opposite windings, faces without area and doubled faces each have a rule, see [`edges`]. None
 //!   of them makes a line disappear that should be seen.
 //! - A file is never trusted: indices, lengths and numbers are checked before use, sizes against [`Limits`], and what
@@ -35,6 +37,7 @@
 //!
 //! - D. Card, J. L. Mitchell: *Non-Photorealistic Rendering with Pixel and Vertex Shaders*, in *Direct3D ShaderX*,
 //!   2002, "Rendering Outlines": unique edges with the normals of their two faces, the negated normal at a boundary.
+//! - A. Vlachos, J. Peters, C. Boyd, J. L. Mitchell: *Curved PN Triangles*, I3D 2001: [`pn_triangles`].
 //! - M. Newell's teapot: [`embedded::teapot`]. Those of the algorithms are named where they are used.
 #![warn(missing_docs)]
 
@@ -46,6 +49,7 @@ mod limits;
 mod load;
 mod model;
 pub mod normals;
+pub mod pn_triangles;
 pub mod subdivide;
 pub mod triangulate;
 pub mod weld;
