@@ -216,6 +216,15 @@ impl Camera {
         [from.x, from.y, to.x - from.x, to.y - from.y]
     }
 
+    /// A plane of world space, positive where n · p + d is, for points of the picture: positive where the product with
+    /// (x px, y px, depth buffer's value, 1) is.
+    pub fn plane_px(&self, plane: DVec4, size_px: DVec2) -> DVec4 {
+        let in_clip = self.clip_from_world(size_px.x / size_px.y).inverse().transpose() * plane;
+        // Clip space over w from px: x' = 2 x / width - 1, y' = 1 - 2 y / height.
+        let along = DVec2::new(in_clip.x, -in_clip.y) * 2.0 / size_px;
+        DVec4::new(along.x, along.y, in_clip.z, in_clip.w - in_clip.x + in_clip.y)
+    }
+
     /// What npr-outline needs to know.
     pub fn line_view(&self, size_px: DVec2) -> LineView {
         let px = 2.0 * self.half_extent(size_px.x / size_px.y).y / size_px.y;
@@ -274,6 +283,26 @@ mod tests {
             let (on_screen, buffer) = npr_outline::segment::outline_screen(clip, size);
             assert!(on_screen.distance(pixel) < 1e-9, "{on_screen} is not {pixel}");
             assert_relative_eq!(buffer, camera.buffer_depth(depth), epsilon = 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_plane_has_the_same_side_in_px() {
+        let size = DVec2::new(300.0, 200.0);
+        let plane = DVec4::new(0.3, -0.8, 0.5, 0.1);
+        for camera in cameras() {
+            let in_px = camera.plane_px(plane, size);
+            let mut sides = [0; 2];
+            for i in 0..60u8 {
+                let pixel = DVec2::new(f64::from(i % 10) * 30.0, f64::from(i / 10) * 33.0);
+                let depth = 0.5 + f64::from(i % 7);
+                let (origin, direction) = camera.ray(pixel, size);
+                let side = plane.dot((origin + direction * depth).extend(1.0)) > 0.0;
+                let on_screen = pixel.extend(camera.buffer_depth(depth)).extend(1.0);
+                assert_eq!(in_px.dot(on_screen) > 0.0, side, "{pixel} at {depth}");
+                sides[usize::from(side)] += 1;
+            }
+            assert!(sides.iter().all(|&count| count > 5), "{sides:?}");
         }
     }
 

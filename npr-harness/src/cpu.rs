@@ -150,9 +150,8 @@ impl FrameContext<'_> {
         // Rows are handed out one by one, since the cost of a row depends on what is in it.
         let row = width as usize;
         let rows_of_texels = texels.chunks_mut(row).map(Some).chain(std::iter::repeat_with(|| None));
-        let work = std::sync::Mutex::new(
-            color.chunks_mut(row).zip(depth.chunks_mut(row)).zip(rows_of_texels).enumerate(),
-        );
+        let work =
+            std::sync::Mutex::new(color.chunks_mut(row).zip(depth.chunks_mut(row)).zip(rows_of_texels).enumerate());
         std::thread::scope(|scope| {
             for _ in 0..threads.min(height as usize).max(1) {
                 scope.spawn(|| {
@@ -188,7 +187,12 @@ impl FrameContext<'_> {
     /// What is seen through a pixel, but for what is blended over it.
     fn first_solid(&self, x: u32, y: u32) -> Option<Hit> {
         let (origin, direction) = self.camera.ray(self.sample_point(f64::from(x), f64::from(y)), self.size_px);
-        let is_solid = |hit: &Hit| self.is_shown(hit) && !self.is_blended(hit) && !self.is_cut_out(hit, x, y);
+        let is_solid = |hit: &Hit| {
+            self.is_shown(hit)
+                && self.scene.keeps(origin + direction * hit.t)
+                && !self.is_blended(hit)
+                && !self.is_cut_out(hit, x, y)
+        };
         self.scene.rays().closest(origin, direction, self.camera.depth_range(), is_solid)
     }
 
@@ -202,7 +206,8 @@ impl FrameContext<'_> {
             let (origin, direction) = self.camera.ray(self.sample_point(f64::from(x), f64::from(y)), self.size_px);
             let range = self.camera.depth_range();
             let nearer = (range.0, solid.map_or(range.1, |hit| hit.t));
-            let is_blended = |hit: &Hit| self.is_shown(hit) && self.is_blended(hit);
+            let is_blended =
+                |hit: &Hit| self.is_shown(hit) && self.is_blended(hit) && self.scene.keeps(origin + direction * hit.t);
             for hit in self.scene.rays().all(origin, direction, nearer, is_blended).iter().rev() {
                 let over = self.paint(hit, x, y);
                 color = color.lerp(over.truncate(), over.w);

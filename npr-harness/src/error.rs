@@ -26,6 +26,23 @@ pub enum HarnessError {
     #[cfg(feature = "gpu")]
     #[error(transparent)]
     Gpu(#[from] crate::gpu::GpuError),
+    /// Faces that cannot be cut into more.
+    #[error(transparent)]
+    Tessellate(#[from] npr_mesh::pn_triangles::TessellateError),
+    /// A material that the model does not have.
+    #[error("no material is called {name:?} (there are: {known})")]
+    UnknownMaterial {
+        /// What was asked for.
+        name: String,
+        /// Those there are.
+        known: String,
+    },
+    /// A cut scene, and lines that do not know of the cut.
+    #[error("style {style} draws a model's edges, which a clip plane does not cut; lines in the image are cut with it")]
+    ClippedEdges {
+        /// Which.
+        style: &'static str,
+    },
     /// A style that does not exist.
     #[error("no style is called {name:?} (there are: {known})")]
     UnknownStyle {

@@ -1,11 +1,15 @@
-//! Every style on the built-in scene.
+//! Every style on the built-in scene, and artists' lines on one that has them.
+
+mod painted;
+
+pub use painted::{painted_camera, painted_scene};
 
 use crate::camera::{Camera, Projection};
 use crate::error::HarnessError;
 use crate::executor::Executor;
 use crate::plan::Plan;
 use crate::scene::Scene;
-use crate::style::styles;
+use crate::style::{Lines, styles};
 use glam::DVec3;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -44,15 +48,17 @@ pub fn still_life_camera() -> Camera {
 /// [`HarnessError`].
 pub fn render(executor: &Executor, dir: &Path, progress: &(dyn Fn(f64) + Sync)) -> Result<Vec<Row>, HarnessError> {
     std::fs::create_dir_all(dir).map_err(|source| HarnessError::Write { path: dir.to_owned(), source })?;
-    let scene = Scene::new(npr_mesh::embedded::scene());
-    let camera = still_life_camera();
+    let still_life = (Scene::new(npr_mesh::embedded::scene()), still_life_camera());
+    let painted = (painted_scene(), painted_camera());
     let styles = styles();
     let mut rows = Vec::new();
     for (number, style) in styles.iter().enumerate() {
         let start = Instant::now();
-        let plan = Plan::new(&scene, style, &camera)?;
+        let asks_artists = matches!(&style.lines, Some(Lines::Image(ink)) if ink.artist);
+        let (scene, camera) = if asks_artists { &painted } else { &still_life };
+        let plan = Plan::new(scene, style, camera)?;
         let share_of = |within: f64| progress((number as f64 + within) / styles.len() as f64);
-        let image = executor.render(&scene, style, &plan, &camera, SIZE, 1, &share_of)?;
+        let image = executor.render(scene, style, &plan, camera, SIZE, 1, &share_of)?;
         let time_ms = start.elapsed().as_secs_f64() * 1e3;
         let path = dir.join(format!("{}.png", style.name));
         image.save_png(&path)?;

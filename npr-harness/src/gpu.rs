@@ -125,6 +125,7 @@ impl<'a> GpuRenderer<'a> {
             to_eye_dx: column(against(1.0, 0.0) - to_eye),
             to_eye_dy: column(against(0.0, 1.0) - to_eye),
             to_light: key_light(camera).as_vec3().extend(ambient).to_array(),
+            clip_px: scene.clip.map_or(glam::DVec4::ONE, |plane| camera.plane_px(plane, size_px)).as_vec4().to_array(),
         };
         let toon = match &style.shade {
             Shade::Toon(bands) => ToonUniform::new(bands)?,

@@ -12,7 +12,7 @@ use npr_imagespace::morphology::disc::Disc;
 use npr_imagespace::morphology::flood::{FloodPlan, flood};
 use npr_imagespace::picture::filter_picture;
 use npr_imagespace::region::{region_of_index, region_of_pairs, region_of_patches};
-use npr_mesh::edges::EdgeKind;
+use npr_mesh::edges::{Edge, EdgeKind};
 
 /// What a region is, between whose borders there are lines.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -21,8 +21,10 @@ pub enum Regions {
     One,
     /// What is made of one material.
     Material,
-    /// What is connected by edges less sharp than the style's creases, and of one material: creases become borders,
-    /// whatever the shading normals are.
+    /// What is one mesh of the file.
+    Mesh,
+    /// What is connected by edges less sharp than the style's creases, of one material and one mesh: creases become
+    /// borders, whatever the shading normals are.
     #[default]
     Patch,
 }
@@ -90,12 +92,7 @@ const FLOOD_FAN: u32 = 3;
 impl ImagePlan {
     /// # Errors
     /// What is wrong with the thresholds or the brush.
-    pub fn new(
-        scene: &Scene,
-        ink: &ImageInk,
-        crease_angle_rad: f32,
-        camera: &Camera,
-    ) -> Result<Self, ImageSpaceError> {
+    pub fn new(scene: &Scene, ink: &ImageInk, crease_angle_rad: f32, camera: &Camera) -> Result<Self, ImageSpaceError> {
         let code = depth_code(scene, camera, ink.layout)?;
         FilterUniform::new(&ink.filter, ink.layout, &code)?;
         if let Some(disc) = ink.brush {
@@ -103,11 +100,12 @@ impl ImagePlan {
             flood(&[], UVec2::ZERO, &disc, &FloodPlan { passes: Vec::new() })?;
         }
         let materials = scene.model.materials.len();
+        let line_kinds = if ink.artist { scene.line_kinds.clone() } else { vec![LineKind::Normals; materials] };
         Ok(Self {
             ink: *ink,
             code,
-            face_region: face_regions(scene, ink.regions, crease_angle_rad)?,
-            line_kinds: if ink.artist { scene.line_kinds.clone() } else { vec![LineKind::Normals; materials] },
+            face_region: face_regions(scene, ink.regions, &line_kinds, crease_angle_rad)?,
+            line_kinds,
             flood: ink.brush.map(|disc| FloodPlan::separable(&disc, FLOOD_FAN)),
         })
     }
@@ -166,22 +164,42 @@ fn depth_code(scene: &Scene, camera: &Camera, layout: TexelLayout) -> Result<Dep
     }
 }
 
-fn face_regions(scene: &Scene, by: Regions, crease_angle_rad: f32) -> Result<Vec<u32>, ImageSpaceError> {
-    let faces = scene.model.faces.len();
-    let material = || scene.model.face_material.iter().map(|&material| region_of_index(material));
+/// Per face its region. Only materials whose lines come from normals or regions are split into patches: of the others
+/// each mesh is one, so that nothing is drawn in it but what the artist wants.
+fn face_regions(
+    scene: &Scene,
+    by: Regions,
+    line_kinds: &[LineKind],
+    crease_angle_rad: f32,
+) -> Result<Vec<u32>, ImageSpaceError> {
+    let model = &scene.model;
+    let faces = model.faces.len();
+    let materials = || model.face_material.iter().map(|&material| region_of_index(material));
+    let meshes = || {
+        let one = (model.face_mesh.is_empty()).then_some(region_of_index(0));
+        let each = model.face_mesh.iter().map(|&mesh| region_of_index(mesh));
+        each.chain(std::iter::repeat_n(one, faces).flatten())
+    };
+    let paired =
+        |a: Vec<u32>, b: &mut dyn Iterator<Item = u32>| region_of_pairs(a.into_iter().zip(b).map(<[u32; 2]>::from));
     match by {
         Regions::One => Ok(vec![1; faces]),
-        Regions::Material => Ok(material().collect()),
+        Regions::Material => Ok(materials().collect()),
+        Regions::Mesh => Ok(meshes().collect()),
         Regions::Patch => {
-            let is_smooth = |edge: &npr_mesh::edges::Edge| {
+            let is_smooth = |edge: &Edge| {
                 edge.kind() == EdgeKind::TwoFace
                     && scene.edges.dihedral_rad(edge).is_some_and(|angle| angle <= crease_angle_rad)
             };
-            let diagonals = same_polygon(&scene.model.face_polygon);
-            let pairs: Vec<[u32; 2]> =
-                scene.edges.edges.iter().filter(|edge| is_smooth(edge)).map(|edge| edge.faces()).chain(diagonals).collect();
-            let patches = region_of_patches(faces, &pairs)?;
-            Ok(region_of_pairs(patches.into_iter().zip(material()).map(|(patch, material)| [patch, material])))
+            let smooth = scene.edges.edges.iter().filter(|edge| is_smooth(edge)).map(Edge::faces);
+            let pairs: Vec<[u32; 2]> = smooth.chain(same_polygon(&model.face_polygon)).collect();
+            let mut patches = region_of_patches(faces, &pairs)?;
+            for (patch, &material) in patches.iter_mut().zip(&model.face_material) {
+                if !matches!(line_kinds[material as usize], LineKind::Normals | LineKind::Regions) {
+                    *patch = 1;
+                }
+            }
+            Ok(paired(paired(patches, &mut materials()), &mut meshes()))
         }
     }
 }

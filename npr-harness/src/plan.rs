@@ -8,9 +8,9 @@ use crate::style::{Lines, Shade, Style};
 use glam::DVec4;
 use npr_imagespace::artist::LineKind as InnerLines;
 use npr_mesh::AlphaMode;
+use npr_outline::LineKind;
 use npr_outline::contour::{ContourEdges, ContourOptions, contour_edges};
 use npr_outline::fin_printed::{PrintedFins, printed_fins};
-use npr_outline::LineKind;
 use std::fmt;
 
 /// How lines are found and drawn on a device.
@@ -66,7 +66,7 @@ impl Plan {
     /// Decides what a style needs for a scene seen by a camera.
     ///
     /// # Errors
-    /// What is wrong with the style's lines.
+    /// What is wrong with the style's lines; [`HarnessError::ClippedEdges`].
     pub fn new(scene: &Scene, style: &Style, camera: &Camera) -> Result<Self, HarnessError> {
         let model = &scene.model;
         let painted = style.shade != Shade::Paper;
@@ -74,7 +74,10 @@ impl Plan {
         let textured = painted && (used(&|m| m.texture.is_some()) || !model.colors.is_empty());
         let cut_out = used(&|m| matches!(m.alpha_mode, AlphaMode::Mask { .. }));
         let blended = painted && scene.has_blend();
-        let cull_back = scene.closed && !sees_the_inside(scene, camera);
+        let cull_back = scene.closed && scene.clip.is_none() && !sees_the_inside(scene, camera);
+        if scene.clip.is_some() && matches!(style.lines, Some(Lines::Fins(_) | Lines::Printed { .. })) {
+            return Err(HarnessError::ClippedEdges { style: style.name });
+        }
         let mut passes = Vec::new();
         let mut left_out = Vec::new();
         let mut add = |there: bool, pass, why: &str, why_not: &str| {
@@ -95,7 +98,7 @@ impl Plan {
         add(
             !cull_back,
             "faces turned away",
-            "the model is open, or seen from inside",
+            "the model is open, cut, or seen from inside",
             "the model is closed: they are hidden",
         );
         let fins = matches!(style.lines, Some(Lines::Fins(_)));

@@ -2,8 +2,9 @@
 
 use crate::camera::Camera;
 use crate::color::encode_rgb;
+use crate::error::HarnessError;
 use crate::rays::RayCaster;
-use glam::{DVec3, Vec3};
+use glam::{DVec3, DVec4, Vec3};
 use npr_imagespace::artist::LineKind;
 use npr_mesh::edges::{self, EdgeKind, EdgeOptions, Edges};
 use npr_mesh::{AlphaMode, Model};
@@ -21,6 +22,9 @@ pub struct Scene {
     pub material_colors: Vec<DVec3>,
     /// Whether every edge has two faces, wound alike, so that no back of a face can be seen from outside.
     pub closed: bool,
+    /// Cuts the scene: shown is where n · p + d >= 0 for the plane (n, d), in the model's positions. The lines of a model's
+    /// edges do not know of it; those found in the image do.
+    pub clip: Option<DVec4>,
     /// Per material where its inner lines come from, in styles that ask: [`ImageInk::artist`]. All from their normals
     /// to begin with.
     ///
@@ -46,7 +50,30 @@ impl Scene {
             && signed_volume(&model) > 0.0;
         let material_colors = model.materials.iter().map(|m| encode_rgb(m.base_color.truncate().as_dvec3())).collect();
         let line_kinds = vec![LineKind::Normals; model.materials.len()];
-        Self { model, origin, edges, material_colors, closed, line_kinds, rays: OnceLock::new() }
+        Self { model, origin, edges, material_colors, closed, clip: None, line_kinds, rays: OnceLock::new() }
+    }
+
+    /// Says where the inner lines of all materials of a name come from.
+    ///
+    /// # Errors
+    /// [`HarnessError::UnknownMaterial`].
+    pub fn set_line_kind(&mut self, material: &str, kind: LineKind) -> Result<(), HarnessError> {
+        let mut known = false;
+        for (of, line_kind) in self.model.materials.iter().zip(&mut self.line_kinds) {
+            if of.name == material {
+                (known, *line_kind) = (true, kind);
+            }
+        }
+        if known {
+            return Ok(());
+        }
+        let names = self.model.materials.iter().map(|m| format!("{:?}", m.name)).collect::<Vec<_>>().join(", ");
+        Err(HarnessError::UnknownMaterial { name: material.to_owned(), known: names })
+    }
+
+    /// Whether a point is on the side that is shown.
+    pub fn keeps(&self, point: DVec3) -> bool {
+        self.clip.is_none_or(|plane| plane.dot(point.extend(1.0)) >= 0.0)
     }
 
     /// The ray caster, built when it is first asked for.

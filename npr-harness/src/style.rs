@@ -101,6 +101,12 @@ pub fn styles() -> Vec<Style> {
             image_lines(ImageInk { brush: Some(Disc { radius_px: 1.5, antialias: true }), ..ImageInk::default() }),
         ),
         style(
+            "artist",
+            "lines where an artist painted them, material by material",
+            Shade::Toon(Bands::default()),
+            image_lines(ImageInk { artist: true, ..ImageInk::default() }),
+        ),
+        style(
             "printed-bands",
             "the three bands of the 2002 chapter's listing 3, aliased",
             Shade::Toon(Bands::listing_3()),

@@ -72,6 +72,17 @@ pub fn ink_region_of_color(rgb: [u8; 3]) -> u32 {
     u32::from_le_bytes([rgb[0], rgb[1], rgb[2], 0]) + 1
 }
 
+/// Two numbers as one of 24 bits, above 0, where neither is 0, and 0 otherwise: for pairs that are not known beforehand,
+/// such as a patch and a texture's colour. Two different pairs get the same number once in some 2^24.
+pub fn ink_region_pair(a: u32, b: u32) -> u32 {
+    if a == 0 || b == 0 {
+        return 0;
+    }
+    // Fibonacci hashing: the upper bits of a product with 2^32 over the golden ratio.
+    let mixed = (a.wrapping_mul(0x9e37_79b1) ^ b).wrapping_mul(0x85eb_ca6b);
+    1 + (mixed >> 8) % 0x00ff_ffff
+}
+
 /// A region in the light and in shadow: two numbers, so that the shadow's outline is a border of regions.
 ///
 /// The papers negate the normals in shadow. A shadowed surface with normal n is then like a lit one with −n, the line

@@ -23,6 +23,9 @@ pub struct Model {
     pub faces: Vec<[u32; 3]>,
     /// Per face: its material, an index into [`Model::materials`].
     pub face_material: Vec<u32>,
+    /// Per face, or empty where all are of one: the mesh that it belongs to, from 0. In a glTF file a node's mesh, in
+    /// an `.obj` an object or group; what is appended stays a mesh of its own.
+    pub face_mesh: Vec<u32>,
     /// Per face, or empty where every face is a polygon by itself: the polygon of the file that the face was
     /// cut from. Faces of one polygon stand next to each other and their numbers ascend. An edge between two
     /// faces of one polygon is a diagonal that triangulation added: it is never a line.
@@ -108,7 +111,7 @@ impl Model {
     /// Adds all of `other` to this scene.
     ///
     /// Optional arrays that only one side has are filled up on the other: texture coordinates with zeros,
-    /// colours with white, polygons with one per face.
+    /// colours with white, polygons with one per face. The other's meshes stay apart from those of this scene.
     pub fn append(&mut self, other: &Model) {
         let first_vertex = self.positions.len() as u32;
         let first_material = self.materials.len() as u32;
@@ -125,6 +128,12 @@ impl Model {
             } else {
                 self.face_polygon.extend(other.face_polygon.iter().map(|p| first_polygon + p));
             }
+        }
+        if !self.faces.is_empty() || !other.face_mesh.is_empty() {
+            self.face_mesh.resize(self.faces.len(), 0);
+            let first_mesh = self.face_mesh.iter().max().map_or(0, |last| last + 1);
+            let of = |face: usize| other.face_mesh.get(face).copied().unwrap_or(0);
+            self.face_mesh.extend((0..other.faces.len()).map(|face| first_mesh + of(face)));
         }
         self.positions.extend_from_slice(&other.positions);
         self.normals.extend_from_slice(&other.normals);

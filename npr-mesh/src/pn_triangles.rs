@@ -108,6 +108,7 @@ pub fn tessellate(model: &Model, segments: u32) -> Result<Model, TessellateError
         colors: model.colors.clone(),
         faces: Vec::with_capacity(faces as usize),
         face_material: repeat(&model.face_material),
+        face_mesh: repeat(&model.face_mesh),
         face_polygon: Vec::new(),
         materials: model.materials.clone(),
         textures: model.textures.clone(),

@@ -49,6 +49,7 @@ pub fn subdivide_midpoint(model: &Model) -> Model {
         colors: model.colors.clone(),
         faces: Vec::with_capacity(model.faces.len() * 4),
         face_material: four_each(&model.face_material),
+        face_mesh: four_each(&model.face_mesh),
         face_polygon: four_each(&model.face_polygon),
         materials: model.materials.clone(),
         textures: model.textures.clone(),

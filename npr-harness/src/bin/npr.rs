@@ -2,6 +2,7 @@
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use glam::{DVec3, DVec4};
 use npr_harness::camera::{Camera, Framing};
 use npr_harness::error::HarnessError;
 use npr_harness::executor::{Backend, Executor};
@@ -9,6 +10,8 @@ use npr_harness::plan::Plan;
 use npr_harness::scene::Scene;
 use npr_harness::style::{Style, style, styles};
 use npr_harness::{check, gallery, inspect};
+use npr_imagespace::artist::LineKind;
+use npr_mesh::pn_triangles;
 use serde_json::json;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
@@ -86,6 +89,16 @@ struct Render {
     /// Samples per pixel along each axis; more than 1 renders on the CPU.
     #[arg(long, default_value_t = 1)]
     samples: u32,
+    /// Round a coarse model: each edge is cut into so many pieces, on the curves that its normals ask for.
+    #[arg(long, default_value_t = 1)]
+    segments: u32,
+    /// Show only where x NX + y NY + z NZ + D >= 0.
+    #[arg(long, value_name = "NX,NY,NZ,D", value_parser = parse_plane, allow_hyphen_values = true)]
+    clip: Option<DVec4>,
+    /// Where a material's inner lines come from, in styles that ask (`artist`): normals, vertex-colors, texture, regions
+    /// or none. May be repeated.
+    #[arg(long, value_name = "MATERIAL=KIND", value_parser = parse_line_kind)]
+    inner_lines: Vec<(String, LineKind)>,
     /// Print what was done as JSON.
     #[arg(long)]
     json: bool,
@@ -105,6 +118,27 @@ fn parse_size(text: &str) -> Result<(u32, u32), String> {
     let number = |part: &str| part.parse::<u32>().map_err(|_| format!("{part:?} is not a number of pixels"));
     let (width, height) = text.split_once(['x', 'X']).ok_or("expected WIDTHxHEIGHT, such as 1280x720")?;
     Ok((number(width)?, number(height)?))
+}
+
+fn parse_plane(text: &str) -> Result<DVec4, String> {
+    let number = |part: &str| part.trim().parse::<f64>().map_err(|_| format!("{part:?} is not a number"));
+    let numbers = text.split(',').map(number).collect::<Result<Vec<_>, _>>()?;
+    let plane = <[f64; 4]>::try_from(numbers).map_err(|_| "expected four numbers: NX,NY,NZ,D")?;
+    let plane = DVec4::from(plane);
+    if plane.is_finite() && plane.truncate() != DVec3::ZERO { Ok(plane) } else { Err("no plane".into()) }
+}
+
+fn parse_line_kind(text: &str) -> Result<(String, LineKind), String> {
+    let (material, kind) = text.rsplit_once('=').ok_or("expected MATERIAL=KIND")?;
+    let kind = match kind {
+        "normals" => LineKind::Normals,
+        "vertex-colors" => LineKind::VertexColor,
+        "texture" => LineKind::Texture,
+        "regions" => LineKind::Regions,
+        "none" => LineKind::None,
+        other => return Err(format!("{other:?} is none of normals, vertex-colors, texture, regions, none")),
+    };
+    Ok((material.to_owned(), kind))
 }
 
 fn main() -> ExitCode {
@@ -217,7 +251,14 @@ fn run_render(options: &Render) -> Result<bool, HarnessError> {
     for warning in &loaded.warnings {
         eprintln!("npr: {}: warning: {warning}", options.input.display());
     }
-    let scene = Scene::new(loaded.model);
+    let segments = checked("segments", f64::from(options.segments), 1.0, 1024.0, "1..=1024")? as u32;
+    let model = if segments > 1 { pn_triangles::tessellate(&loaded.model, segments)? } else { loaded.model };
+    let mut scene = Scene::new(model);
+    // Positions may have been moved to the origin.
+    scene.clip = options.clip.map(|plane| plane + DVec4::W * plane.truncate().dot(scene.origin));
+    for (material, kind) in &options.inner_lines {
+        scene.set_line_kind(material, *kind)?;
+    }
     let camera = Camera::framed(scene.corners(), f64::from(width) / f64::from(height), &framing);
     let plan = Plan::new(&scene, &style, &camera)?;
     let prepared_ms = start.elapsed().as_secs_f64() * 1e3 - loaded_ms;

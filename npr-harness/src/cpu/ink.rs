@@ -8,7 +8,7 @@ use glam::{DMat3, DVec3, Vec3};
 use npr_imagespace::artist::{LineKind, ink_artist_direction, ink_artist_index, ink_artist_texel};
 use npr_imagespace::composite::ink_composite;
 use npr_imagespace::format::texel::{BACKGROUND, TexelLayout, ink_narrow_pack, ink_wide_pack};
-use npr_imagespace::region::ink_region_of_color;
+use npr_imagespace::region::{ink_region_of_color, ink_region_pair};
 
 impl FrameContext<'_> {
     /// What a geometry pass writes for a pixel.
@@ -16,9 +16,10 @@ impl FrameContext<'_> {
         let (Some(image), Some(hit)) = (&self.plan.image, hit) else { return BACKGROUND };
         let kind = self.line_kind(hit);
         let normal = self.texel_normal(hit, kind, x, y).as_vec3();
+        let of_face = image.face_region[hit.face as usize];
         let region = match (kind, self.texture_bytes(hit, kind)) {
-            (LineKind::Regions, Some(rgb)) => ink_region_of_color(rgb),
-            _ => image.face_region[hit.face as usize],
+            (LineKind::Regions, Some(rgb)) => ink_region_pair(of_face, ink_region_of_color(rgb)),
+            _ => of_face,
         };
         match image.ink.layout {
             TexelLayout::Narrow => [ink_narrow_pack(normal, region, hit.t as f32, &image.code), 0],

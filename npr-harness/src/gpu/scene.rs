@@ -57,7 +57,8 @@ impl GpuScene {
             let descriptor = wgpu::util::BufferInitDescriptor { label: Some(what), contents, usage };
             Ok(context.device.create_buffer_init(&descriptor))
         };
-        let split = plan.image.as_ref().map(|image| split_by_region(&model.faces, &image.face_region, model.positions.len()));
+        let split =
+            plan.image.as_ref().map(|image| split_by_region(&model.faces, &image.face_region, model.positions.len()));
         let more: &[u32] = split.as_ref().map_or(&[], |split| &split.more);
         // All vertices, and again those that stand in several regions.
         let sources = || (0..model.positions.len()).chain(more.iter().map(|&vertex| vertex as usize));
@@ -81,9 +82,7 @@ impl GpuScene {
             None
         };
         let regions = match &split {
-            Some(split) => {
-                Some(buffer("regions", bytemuck::cast_slice(&split.regions), wgpu::BufferUsages::VERTEX)?)
-            }
+            Some(split) => Some(buffer("regions", bytemuck::cast_slice(&split.regions), wgpu::BufferUsages::VERTEX)?),
             None => None,
         };
         let faces = split.as_ref().map_or(&model.faces, |split| &split.faces);
@@ -198,7 +197,9 @@ fn materials(context: &GpuContext, pass: &SurfacePass, scene: &Scene, plan: &Pla
                 texture_size: *size,
                 last_level: (*levels - 1) as f32,
                 cutoff,
-                wrap: material.texture.map_or([0; 2], |t| scene.model.textures[t as usize].wrap.map(|wrap| wrap as u32)),
+                wrap: material
+                    .texture
+                    .map_or([0; 2], |t| scene.model.textures[t as usize].wrap.map(|wrap| wrap as u32)),
                 padding: [0; 2],
             };
             pass.material_group(&context.device, &uniform, view, sampler)

@@ -24,6 +24,7 @@ pub(super) struct SurfaceUniform {
     pub(super) to_eye_dx: [f32; 4],
     pub(super) to_eye_dy: [f32; 4],
     pub(super) to_light: [f32; 4],
+    pub(super) clip_px: [f32; 4],
 }
 
 /// `SurfaceMaterial` of `surface.wgsl`.
@@ -93,6 +94,7 @@ struct Variant {
     highlight: bool,
     /// Whether there is a picture to paint, even if it is left as it is.
     colored: bool,
+    clipped: bool,
     inking: Option<Inking>,
 }
 
@@ -212,7 +214,11 @@ impl SurfacePass {
             Shade::Lambert { .. } => Paint::Lambert,
             Shade::Toon(_) => Paint::Toon,
         };
-        let blended = if plan.blended && paint != Paint::Nothing { back_to_front(scene, &uploaded.blended_faces, camera) } else { Vec::new() };
+        let blended = if plan.blended && paint != Paint::Nothing {
+            back_to_front(scene, &uploaded.blended_faces, camera)
+        } else {
+            Vec::new()
+        };
         let blended_indices = (!blended.is_empty()).then(|| {
             device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
                 label: Some("blended faces"),
@@ -273,6 +279,7 @@ impl SurfacePass {
                 bands: toon_uniform.count.max(1),
                 highlight: toon_uniform.highlight_strength > 0.0,
                 colored: targets.color.is_some(),
+                clipped: scene.clip.is_some(),
                 inking,
             };
             let mut pipelines = self.pipelines.borrow_mut();
@@ -297,11 +304,11 @@ impl SurfacePass {
     }
 
     fn pipeline(&self, device: &wgpu::Device, variant: Variant) -> wgpu::RenderPipeline {
-        let Variant { paint, looked_up, cull_back, blended, bands, highlight, colored, inking } = variant;
+        let Variant { paint, looked_up, cull_back, blended, bands, highlight, colored, clipped, inking } = variant;
         // A blended surface is no surface to lines in the image.
         let inked = inking.is_some() && !blended;
         let (vertex, fragment) = match (paint, looked_up, inked) {
-            (Paint::Nothing, false, false) => ("vs_depth", "fs_nothing"),
+            (Paint::Nothing, false, false) => ("vs_depth", if clipped { "fs_clipped" } else { "fs_nothing" }),
             (Paint::Nothing, true, false) => ("vs_textured", "fs_cut_out"),
             (Paint::Lambert, false, false) => ("vs_plain", "fs_lambert"),
             (Paint::Lambert, true, false) => ("vs_textured", "fs_lambert_textured"),
@@ -376,6 +383,7 @@ impl SurfacePass {
                     constants: &[
                         (npr_toon::TOON_BANDS_OVERRIDE, f64::from(bands)),
                         ("surface_highlight", f64::from(u8::from(highlight))),
+                        ("surface_clipped", f64::from(u8::from(clipped))),
                         ("surface_narrow", f64::from(u8::from(narrow))),
                         ("surface_line_kind", f64::from(line_kind as u32)),
                         ("surface_region_of_texture", f64::from(u8::from(region_of_texture))),
@@ -436,6 +444,7 @@ mod tests {
             ("to_eye_dx", offset_of!(SurfaceUniform, to_eye_dx)),
             ("to_eye_dy", offset_of!(SurfaceUniform, to_eye_dy)),
             ("to_light", offset_of!(SurfaceUniform, to_light)),
+            ("clip_px", offset_of!(SurfaceUniform, clip_px)),
         ];
         assert_eq!(layout("SurfaceView"), ours(&view, size_of::<SurfaceUniform>()));
         let material = [

@@ -9,6 +9,8 @@ struct SurfaceView {
     to_eye_dy: vec4<f32>,
     // xyz: unit vector to the light; w: what Lambert leaves where no light falls.
     to_light: vec4<f32>,
+    // Of what is kept: positive where the product with (x px, y px, depth, 1) is.
+    clip_px: vec4<f32>,
 }
 
 struct SurfaceMaterial {
@@ -36,6 +38,8 @@ struct SurfaceInk {
 // Whether the bands have a highlight. Known when the pipeline is made, since a software rasteriser runs through what it
 // branches around.
 override surface_highlight: bool = true;
+// Whether a plane cuts the scene.
+override surface_clipped: bool = false;
 // Whether normal, region and depth are packed into one word.
 override surface_narrow: bool = false;
 // Where the material's inner lines come from: 0 its normals, 1 vertex colours, 2 its texture, 3 regions, 4 nowhere.
@@ -179,17 +183,26 @@ fn banded(base: vec3<f32>, normal: vec3<f32>, eye: vec3<f32>) -> vec3<f32> {
     return mix(color, toon.highlight.rgb, opacity);
 }
 
+// Cuts off what lies beyond the plane. After all derivatives.
+fn clip_off(position: vec4<f32>) {
+    if surface_clipped && dot(view.clip_px, vec4<f32>(position.xyz, 1.0)) < 0.0 {
+        discard;
+    }
+}
+
 fn facing(normal: vec3<f32>, front: bool) -> vec3<f32> {
     return select(-normal, normal, front);
 }
 
 @fragment
 fn fs_lambert(in: Surface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
+    clip_off(in.position);
     return vec4<f32>(lambert(material.base_color.rgb, facing(in.normal, front)), material.base_color.a);
 }
 
 @fragment
 fn fs_toon(in: Surface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
+    clip_off(in.position);
     return vec4<f32>(banded(material.base_color.rgb, facing(in.normal, front), to_eye(in.position.xy)), material.base_color.a);
 }
 
@@ -199,6 +212,7 @@ fn fs_lambert_textured(in: TexturedSurface, @builtin(front_facing) front: bool) 
     if base.a < material.cutoff {
         discard;
     }
+    clip_off(in.position);
     return vec4<f32>(lambert(encode_srgb(base.rgb), facing(in.normal, front)), base.a);
 }
 
@@ -209,6 +223,7 @@ fn fs_toon_textured(in: TexturedSurface, @builtin(front_facing) front: bool) -> 
     if base.a < material.cutoff {
         discard;
     }
+    clip_off(in.position);
     return vec4<f32>(shaded, base.a);
 }
 
@@ -217,6 +232,7 @@ fn fs_cut_out(in: TexturedSurface) {
     if base_color(texture_color(in.uv), in.color).a < material.cutoff {
         discard;
     }
+    clip_off(in.position);
 }
 
 @fragment
@@ -277,7 +293,7 @@ fn plain_words(in: InkedSurface, front: bool) -> vec2<u32> {
 fn textured_words(in: InkedTexturedSurface, front: bool, texel: vec4<f32>) -> vec2<u32> {
     var region = in.region;
     if surface_region_of_texture {
-        region = texture_region(in.uv);
+        region = ink_region_pair(in.region, texture_region(in.uv));
     }
     return words(inked_normal(facing(in.normal, front), texel, in.color, in.position.xy), region, in.position);
 }
@@ -285,12 +301,14 @@ fn textured_words(in: InkedTexturedSurface, front: bool, texel: vec4<f32>) -> ve
 @fragment
 fn fs_lambert_inked(in: InkedSurface, @builtin(front_facing) front: bool) -> Inked {
     let color = lambert(material.base_color.rgb, facing(in.normal, front));
+    clip_off(in.position);
     return Inked(vec4<f32>(color, material.base_color.a), plain_words(in, front));
 }
 
 @fragment
 fn fs_toon_inked(in: InkedSurface, @builtin(front_facing) front: bool) -> Inked {
     let color = banded(material.base_color.rgb, facing(in.normal, front), to_eye(in.position.xy));
+    clip_off(in.position);
     return Inked(vec4<f32>(color, material.base_color.a), plain_words(in, front));
 }
 
@@ -302,6 +320,7 @@ fn fs_lambert_textured_inked(in: InkedTexturedSurface, @builtin(front_facing) fr
         discard;
     }
     let color = lambert(encode_srgb(base.rgb), facing(in.normal, front));
+    clip_off(in.position);
     return Inked(vec4<f32>(color, base.a), textured_words(in, front, texel));
 }
 
@@ -313,11 +332,13 @@ fn fs_toon_textured_inked(in: InkedTexturedSurface, @builtin(front_facing) front
     if base.a < material.cutoff {
         discard;
     }
+    clip_off(in.position);
     return Inked(vec4<f32>(color, base.a), textured_words(in, front, texel));
 }
 
 @fragment
 fn fs_texels(in: InkedSurface, @builtin(front_facing) front: bool) -> Texel {
+    clip_off(in.position);
     return Texel(plain_words(in, front));
 }
 
@@ -327,5 +348,11 @@ fn fs_texels_textured(in: InkedTexturedSurface, @builtin(front_facing) front: bo
     if base_color(texel, in.color).a < material.cutoff {
         discard;
     }
+    clip_off(in.position);
     return Texel(textured_words(in, front, texel));
+}
+
+@fragment
+fn fs_clipped(@builtin(position) position: vec4<f32>) {
+    clip_off(position);
 }

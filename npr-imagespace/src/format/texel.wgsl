@@ -44,6 +44,12 @@ fn ink_region_of_color(rgb: vec3<f32>) -> u32 {
     return (bytes.x | (bytes.y << 8u) | (bytes.z << 16u)) + 1u;
 }
 
+// Two numbers as one of 24 bits; 0 where either is.
+fn ink_region_pair(a: u32, b: u32) -> u32 {
+    let mixed = ((a * 0x9e3779b1u) ^ b) * 0x85ebca6bu;
+    return select(1u + (mixed >> 8u) % 0xffffffu, 0u, a == 0u || b == 0u);
+}
+
 // A region in the light and in shadow: two numbers.
 fn ink_region_in_shadow(region: u32, shadowed: bool) -> u32 {
     return select(2u * region - select(1u, 0u, shadowed), 0u, region == 0u);

@@ -79,12 +79,22 @@ pub(super) fn load(path: &Path, limits: &Limits) -> Result<Loaded, LoadError> {
 
     let mut builder = Builder { model, path, limits, corners_before: 0, absent: &prepared.absent, repaired: 0 };
     builder.model.faces.reserve(prepared.counts.triangles as usize);
+    // tobj begins a mesh at each object, group and change of material.
+    let (mut number, mut name) = (0, meshes.first().map_or("", |first| first.name.as_str()));
     for mesh in &meshes {
         let material = mesh.mesh.material_id.map_or(0, |id| first_material + id);
         if material >= builder.model.materials.len() {
             return Err(builder.malformed(format!("material {material} is not there")));
         }
         builder.add(&mesh.mesh, material as u32)?;
+        if mesh.name != name {
+            (number, name) = (number + 1, &mesh.name);
+        }
+        let faces = builder.model.faces.len();
+        builder.model.face_mesh.resize(faces, number);
+    }
+    if number == 0 {
+        builder.model.face_mesh.clear();
     }
     if builder.repaired > 0 {
         warnings.push(format!("{} texture coordinates or colours are not finite", builder.repaired));

@@ -25,6 +25,7 @@ pub(super) fn flatten(document: &Document, nodes: &Nodes, warnings: &mut Vec<Str
         materials: Materials::default(),
         seen: vec![false; document.root.meshes.len()],
     };
+    let mut meshes = 0;
     let mut skins: HashMap<usize, Vec<DMat4>> = HashMap::new();
     for &number in &nodes.shown {
         let node = &document.root.nodes[number];
@@ -41,8 +42,14 @@ pub(super) fn flatten(document: &Document, nodes: &Nodes, warnings: &mut Vec<Str
             }
         };
         flattener.mesh(number, node, mesh, &placement)?;
+        let faces = flattener.model.faces.len();
+        flattener.model.face_mesh.resize(faces, meshes);
+        meshes += 1;
     }
     let mut model = flattener.model;
+    if meshes < 2 {
+        model.face_mesh.clear();
+    }
     let vertices = model.positions.len();
     if !model.uvs.is_empty() {
         model.uvs.resize(vertices, Vec2::ZERO);
