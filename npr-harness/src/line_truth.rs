@@ -21,6 +21,10 @@
 //! Solid is what hides in a picture: not a blended face, and not the back of a single-sided one. Faces cut out by alpha
 //! count as whole. An edge is seen or hidden whatever its own faces are made of.
 
+mod meetings;
+
+pub use meetings::{MOST_FACES_MEETING, true_meetings};
+
 use crate::camera::Camera;
 use crate::rays::Hit;
 use crate::scene::Scene;
@@ -30,6 +34,8 @@ use npr_mesh::edges::{Edge, EdgeKind, NO_FACE};
 use npr_outline::LineKind;
 use std::collections::HashMap;
 
+/// Of a line that is no edge.
+pub const NO_EDGE: u32 = u32::MAX;
 /// What lies in front of a point by less than this share of its eye depth does not hide it.
 ///
 /// Rounding of the ray is below 1e-12 of the distance. Positions, however, are f32, and surfaces that were made to
@@ -50,7 +56,7 @@ pub struct TrueSegment {
     pub ends_px: [DVec2; 2],
     /// Why it is a line.
     pub kind: LineKind,
-    /// Which of the scene's edges.
+    /// Which of the scene's edges; [`NO_EDGE`] where two faces pass through each other.
     pub edge: u32,
 }
 
@@ -254,24 +260,30 @@ impl Sight<'_> {
     fn visible_pieces(&self, number: u32, kind: LineKind, least_step: f64) -> Vec<TrueSegment> {
         let edge = &self.scene.edges.edges[number as usize];
         let ends = edge.ends.map(|v| self.scene.model.positions[v as usize].as_dvec3());
+        let own = |face: u32| self.is_own(face, edge);
+        let seen =
+            |point| self.sees_past(point, own) && (least_step <= 0.0 || self.step_behind(point, own) >= least_step);
+        let pieces = self.seen_pieces(ends, seen);
+        pieces.into_iter().map(|ends_px| TrueSegment { ends_px, kind, edge: number }).collect()
+    }
+
+    /// The pieces, px, of a line in the world that are in the picture, or just outside, and seen.
+    fn seen_pieces(&self, ends: [DVec3; 2], seen: impl Fn(DVec3) -> bool) -> Vec<[DVec2; 2]> {
         let Some(world) = self.clip(ends) else { return Vec::new() };
         let [(from, depth0), (to, depth1)] = world.map(|end| self.project(end));
         let cells = (from.distance(to) / STEP_PX).ceil().max(1.0) as u32;
         // In perspective the middle of the picture of a line is not the picture of its middle.
         let (w0, w1) = if self.is_parallel() { (1.0, 1.0) } else { (depth0, depth1) };
-        let on_edge = |fraction: f64| world[0].lerp(world[1], fraction * w0 / (w1 + fraction * (w0 - w1)));
+        let on_line = |fraction: f64| world[0].lerp(world[1], fraction * w0 / (w1 + fraction * (w0 - w1)));
         let on_screen = |cell: u32| from.lerp(to, f64::from(cell) / f64::from(cells));
         let mut pieces = Vec::new();
         let mut since = None;
         for cell in 0..=cells {
-            let seen = cell < cells && {
-                let point = on_edge((f64::from(cell) + 0.5) / f64::from(cells));
-                self.sees(point, edge) && (least_step <= 0.0 || self.step_behind(point, edge) >= least_step)
-            };
+            let seen = cell < cells && seen(on_line((f64::from(cell) + 0.5) / f64::from(cells)));
             match (since, seen) {
                 (None, true) => since = Some(cell),
                 (Some(start), false) => {
-                    pieces.push(TrueSegment { ends_px: [on_screen(start), on_screen(cell)], kind, edge: number });
+                    pieces.push([on_screen(start), on_screen(cell)]);
                     since = None;
                 }
                 _ => {}
@@ -329,32 +341,37 @@ impl Sight<'_> {
         (from <= to).then(|| [ends[0].lerp(ends[1], from), ends[0].lerp(ends[1], to)])
     }
 
-    /// Whether nothing hides a point of an edge.
-    fn sees(&self, point: DVec3, edge: &Edge) -> bool {
+    /// Whether nothing hides a point but the faces of which it is.
+    fn sees_past(&self, point: DVec3, own: impl Fn(u32) -> bool) -> bool {
         let depth = self.in_view(point).z;
         let origin = self.origin_of_sight(point, depth);
         let range = (self.camera.near / depth, 1.0 - BEHIND);
-        !self.scene.rays().any(origin, point - origin, range, |hit| self.hides(hit, edge))
+        !self.scene.rays().any(origin, point - origin, range, |hit| self.is_solid(hit) && !own(hit.face))
     }
 
     fn origin_of_sight(&self, point: DVec3, depth: f64) -> DVec3 {
         if self.is_parallel() { point + self.camera.axes()[2] * depth } else { self.camera.eye }
     }
 
-    /// Whether what is hit is solid, and none of the edge's own faces.
-    fn hides(&self, hit: &Hit, edge: &Edge) -> bool {
+    fn is_solid(&self, hit: &Hit) -> bool {
         let model = &self.scene.model;
         let material = &model.materials[model.face_material[hit.face as usize] as usize];
-        (hit.front || material.double_sided) && material.alpha_mode != AlphaMode::Blend && !self.is_own(hit.face, edge)
+        (hit.front || material.double_sided) && material.alpha_mode != AlphaMode::Blend
     }
 
-    /// How much deeper than a point of an edge the next surface behind it is, world units; infinite if there is none.
-    fn step_behind(&self, point: DVec3, edge: &Edge) -> f64 {
+    /// How much deeper than a point of some faces the next surface behind it is, world units; infinite if there is none.
+    fn step_behind(&self, point: DVec3, own: impl Fn(u32) -> bool) -> f64 {
         let depth = self.in_view(point).z;
         let origin = self.origin_of_sight(point, depth);
         let range = (1.0 + BEHIND, f64::INFINITY);
-        let next = self.scene.rays().closest(origin, point - origin, range, |hit| self.hides(hit, edge));
+        let is_next = |hit: &Hit| self.is_solid(hit) && !own(hit.face);
+        let next = self.scene.rays().closest(origin, point - origin, range, is_next);
         next.map_or(f64::INFINITY, |hit| (hit.t - 1.0) * depth)
+    }
+
+    fn same_polygon(&self, a: u32, b: u32) -> bool {
+        let of = &self.scene.model.face_polygon;
+        a == b || (!of.is_empty() && of[a as usize] == of[b as usize])
     }
 
     /// Whether a face has the edge, or is of the polygon of one that has.
@@ -362,10 +379,7 @@ impl Sight<'_> {
         let model = &self.scene.model;
         let corners = model.faces[face as usize].map(|v| self.scene.edges.representative[v as usize]);
         edge.ends.iter().all(|end| corners.contains(end))
-            || (!model.face_polygon.is_empty()
-                && edge.faces().iter().any(|&own| {
-                    own != NO_FACE && model.face_polygon[own as usize] == model.face_polygon[face as usize]
-                }))
+            || edge.faces().iter().any(|&own| own != NO_FACE && self.same_polygon(own, face))
     }
 }
 

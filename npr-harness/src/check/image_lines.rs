@@ -4,7 +4,10 @@ use super::{Checker, Limit, SIZE, WITHIN_PX, darkness, one_px_style};
 use crate::camera::Camera;
 use crate::error::HarnessError;
 use crate::image_ink::{ImageInk, Regions};
-use crate::line_truth::{accuracy, drawn_centreline, true_lines, true_lines_of_steps};
+use crate::line_truth::{
+    MOST_FACES_MEETING, TrueLines, TrueSegment, accuracy, drawn_centreline, true_lines, true_lines_of_steps,
+    true_meetings,
+};
 use crate::plan::Plan;
 use crate::scene::Scene;
 use crate::style::Lines;
@@ -43,8 +46,18 @@ impl Checker<'_> {
         camera: &Camera,
     ) -> Result<(), HarnessError> {
         let crease_angle_rad = f64::from(one_px_style(Lines::Image(ImageInk::default())).crease_angle_rad);
-        let asked = true_lines_of_steps(scene, camera, SIZE, crease_angle_rad, LEAST_STEP * 2.0 * scene.radius());
-        let all = true_lines(scene, camera, SIZE, crease_angle_rad);
+        let least_step = LEAST_STEP * 2.0 * scene.radius();
+        let of_edges = true_lines_of_steps(scene, camera, SIZE, crease_angle_rad, least_step);
+        let meetings = |least_angle_rad| true_meetings(scene, camera, SIZE, least_angle_rad).segments;
+        let with = |lines: &TrueLines, more: Vec<TrueSegment>| TrueLines {
+            segments: [lines.segments.as_slice(), &more].concat(),
+            ..lines.clone()
+        };
+        let asked = with(&of_edges, meetings(crease_angle_rad));
+        let all = with(&true_lines(scene, camera, SIZE, crease_angle_rad), meetings(0.0));
+        if scene.model.faces.len() > MOST_FACES_MEETING {
+            self.skipped.push(format!("where surfaces of {model} meet: more than {MOST_FACES_MEETING} faces"));
+        }
         let exact = !scene.model.materials.iter().any(|m| matches!(m.alpha_mode, AlphaMode::Mask { .. }));
         for (number, (technique, ink)) in filters().into_iter().enumerate() {
             let style = one_px_style(Lines::Image(ink));
@@ -57,7 +70,9 @@ impl Checker<'_> {
             self.add(model, view, technique, "precision within 1.5 px", found.precision, None);
             self.add(model, view, technique, "recall within 1.5 px", found.recall, None);
             let near_any = accuracy(&all, &drawn, WITHIN_PX).precision;
-            self.add(model, view, technique, "precision, small steps counted as lines", near_any, None);
+            self.add(model, view, technique, "precision, any step or meeting a line", near_any, None);
+            let without = accuracy(&of_edges, &drawn, WITHIN_PX).f1;
+            self.add(model, view, technique, "F1, meetings of surfaces no lines", without, None);
         }
         Ok(())
     }
