@@ -1,6 +1,11 @@
 //! Lines in the image against the exact contours, filter by filter.
+//!
+//! Numbers without limits: how good a filter can be depends on the model. What they miss, most of it, is creases with
+//! one patch on both sides (their share is told), unless the shading normals are split there; what they draw too much
+//! is what lies nearer behind than is asked for, borders of coplanar patches, and the third pixel of a line where a
+//! surface turns away steeply.
 
-use super::{Checker, Limit, SIZE, WITHIN_PX, darkness, one_px_style};
+use super::{Checker, SIZE, WITHIN_PX, darkness, one_px_style};
 use crate::camera::Camera;
 use crate::error::HarnessError;
 use crate::image_ink::{ImageInk, Regions};
@@ -13,15 +18,13 @@ use crate::scene::Scene;
 use crate::style::Lines;
 use npr_imagespace::filter::depth::ANY_OS;
 use npr_imagespace::filter::fused::{DepthTest, FusedFilter};
-use npr_mesh::AlphaMode;
+use npr_outline::LineKind;
 
-/// The least F1 of the fused filter.
-pub const IMAGE_LINE_F1: f64 = 0.95;
 /// Silhouettes and boundaries behind which the next surface is nearer than this share of the model's size, the
 /// diagonal of its box, are not asked of a filter.
 pub const LEAST_STEP: f64 = 0.01;
 
-/// The filters that are compared; the first has a limit.
+/// The filters that are compared, the default first.
 fn filters() -> [(&'static str, ImageInk); 6] {
     let none = FusedFilter { normal_cos: None, depth: None, regions: false, ..FusedFilter::default() };
     let with = |filter: FusedFilter| ImageInk { filter, ..ImageInk::default() };
@@ -58,15 +61,16 @@ impl Checker<'_> {
         if scene.model.faces.len() > MOST_FACES_MEETING {
             self.skipped.push(format!("where surfaces of {model} meet: more than {MOST_FACES_MEETING} faces"));
         }
-        let exact = !scene.model.materials.iter().any(|m| matches!(m.alpha_mode, AlphaMode::Mask { .. }));
-        for (number, (technique, ink)) in filters().into_iter().enumerate() {
+        let style = one_px_style(Lines::Image(ImageInk::default()));
+        let uncarried = uncarried_share(scene, &of_edges, &Plan::new(scene, &style, camera)?);
+        self.add(model, view, "image lines", "share of creases within one patch", uncarried, None);
+        for (technique, ink) in filters() {
             let style = one_px_style(Lines::Image(ink));
             let plan = Plan::new(scene, &style, camera)?;
             let image = self.executor.render(scene, &style, &plan, camera, SIZE, 1, &|_| {})?;
             let drawn = drawn_centreline(&darkness(&image), SIZE.0, SIZE.1);
             let found = accuracy(&asked, &drawn, WITHIN_PX);
-            let limit = (number == 0 && exact).then_some(Limit::AtLeast(IMAGE_LINE_F1));
-            self.add(model, view, technique, "F1 within 1.5 px", found.f1, limit);
+            self.add(model, view, technique, "F1 within 1.5 px", found.f1, None);
             self.add(model, view, technique, "precision within 1.5 px", found.precision, None);
             self.add(model, view, technique, "recall within 1.5 px", found.recall, None);
             let near_any = accuracy(&all, &drawn, WITHIN_PX).precision;
@@ -76,4 +80,18 @@ impl Checker<'_> {
         }
         Ok(())
     }
+}
+
+/// The share of the lines' length that are creases with one region on both sides: found only if the shading normals
+/// say so.
+fn uncarried_share(scene: &Scene, lines: &TrueLines, plan: &Plan) -> f64 {
+    let Some(image) = &plan.image else { return 0.0 };
+    let is_uncarried = |segment: &&TrueSegment| {
+        let [first, second] = scene.edges.edges[segment.edge as usize].faces();
+        segment.kind == LineKind::Crease
+            && image.face_region.get(first as usize) == image.face_region.get(second as usize)
+    };
+    let length = |segment: &TrueSegment| segment.ends_px[0].distance(segment.ends_px[1]);
+    let total: f64 = lines.segments.iter().map(length).sum();
+    lines.segments.iter().filter(is_uncarried).map(length).sum::<f64>() / total.max(f64::MIN_POSITIVE)
 }
