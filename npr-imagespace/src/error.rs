@@ -56,6 +56,12 @@ pub enum ImageSpaceError {
         /// What was asked for.
         radius_px: f32,
     },
+    /// A threshold of a soft step that is negative or not finite.
+    #[error("a step's threshold of {threshold}: it must be finite and not negative")]
+    StepThreshold {
+        /// What was asked for.
+        threshold: f32,
+    },
     /// A pair of adjacent faces names a face that there is not.
     #[error("a face {face} of {faces}")]
     Face {

@@ -35,7 +35,7 @@
 //!    that no visible surface has.
 //! 3. [`filter`]: where neighbouring pixels differ there is ink.
 //! 4. [`morphology`]: thicker, thinner, opened and closed.
-//! 5. [`composite`]: ink over a picture.
+//! 5. [`composite`], [`resample`]: ink over a picture, also of another size.
 //!
 //! The same functions under the same names, `ink_`, stand here twice: in Rust, the reference, and in [`WGSL`], over
 //! values already loaded. What the papers got wrong is told where it is mended, and kept under a name that says
@@ -72,14 +72,15 @@ pub mod morphology;
 pub mod pass;
 pub mod picture;
 pub mod region;
+pub mod resample;
 
 pub use error::ImageSpaceError;
 
 /// The functions of this crate in WGSL: no bindings, no entry points, every name begins with `ink_`, `INK_` or `Ink`.
 ///
 /// It is all parts in a row: [`picture::PICTURE_WGSL`], [`format::FORMAT_WGSL`], [`filter::FILTER_WGSL`],
-/// [`morphology::MORPHOLOGY_WGSL`], [`composite::COMPOSITE_WGSL`] and [`artist::ARTIST_WGSL`]. Each stands alone, but
-/// for the filters, which need the formats.
+/// [`morphology::MORPHOLOGY_WGSL`], [`composite::COMPOSITE_WGSL`], [`resample::RESAMPLE_WGSL`] and
+/// [`artist::ARTIST_WGSL`]. Each stands alone, but for the filters, which need the formats.
 pub const WGSL: &str = concat!(
     include_str!("picture.wgsl"),
     include_str!("format.wgsl"),
@@ -96,5 +97,6 @@ pub const WGSL: &str = concat!(
     include_str!("morphology.wgsl"),
     include_str!("morphology/flood.wgsl"),
     include_str!("composite.wgsl"),
+    include_str!("resample.wgsl"),
     include_str!("artist.wgsl"),
 );

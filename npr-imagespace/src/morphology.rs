@@ -99,6 +99,19 @@ pub enum Operation {
     Close,
 }
 
+impl Operation {
+    /// What it consists of, in order: whether each half erodes.
+    pub(crate) fn halves(self) -> impl Iterator<Item = bool> {
+        let (first, second) = match self {
+            Self::Dilate => (false, None),
+            Self::Erode => (true, None),
+            Self::Open => (true, Some(false)),
+            Self::Close => (false, Some(true)),
+        };
+        std::iter::once(first).chain(second)
+    }
+}
+
 /// `steps` steps of an operation, to and fro between two pictures, as a GPU does with two targets.
 ///
 /// # Errors
@@ -112,13 +125,7 @@ pub fn ping_pong(
 ) -> Result<Vec<u8>, ImageSpaceError> {
     checked_len(ink.len(), size_px)?;
     let (mut from, mut to) = (ink.to_vec(), Vec::new());
-    let (first, second) = match operation {
-        Operation::Dilate => (Some(false), None),
-        Operation::Erode => (Some(true), None),
-        Operation::Open => (Some(true), Some(false)),
-        Operation::Close => (Some(false), Some(true)),
-    };
-    for eroding in [first, second].into_iter().flatten() {
+    for eroding in operation.halves() {
         for _ in 0..steps {
             if eroding {
                 erode(&from, size_px, kernel, &mut to)?;

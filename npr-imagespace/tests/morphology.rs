@@ -4,7 +4,9 @@
 use glam::{IVec2, UVec2};
 use npr_imagespace::ImageSpaceError;
 use npr_imagespace::morphology::disc::{Disc, DiscBuffers, LINE, dilate_disc, erode_disc};
-use npr_imagespace::morphology::flood::{FloodPlan, flood, ink_flood_seed, ink_flood_take, ink_flood_vector};
+use npr_imagespace::morphology::flood::{
+    FloodPass, FloodPlan, flood, ink_flood_seed, ink_flood_take, ink_flood_vector,
+};
 use npr_imagespace::morphology::*;
 use proptest::prelude::*;
 
@@ -129,7 +131,8 @@ proptest! {
     fn a_flood_covers_no_more_than_the_disc((size, ink) in picture(), radius_px in 0f32..20.0, antialias: bool) {
         let disc = Disc { radius_px, antialias };
         let exact = dilated(&ink, size, &disc);
-        for plan in [FloodPlan::separable(&disc, 1), FloodPlan::separable(&disc, 3), FloodPlan::square(&disc)] {
+        let separable = [FloodPlan::separable(&disc, 1), FloodPlan::separable(&disc, 3), FloodPlan::fitted(&disc, 3)];
+        for plan in separable.into_iter().chain([FloodPlan::square(&disc)]) {
             let flooded = flood(&ink, size, &disc, &plan).unwrap();
             for (i, (&f, &e)) in flooded.iter().zip(&exact).enumerate() {
                 prop_assert!(f <= e.saturating_add(u8::from(antialias)), "{}: {} over {}", i, f, e);
@@ -264,16 +267,27 @@ fn plans_reach_as_far_as_the_disc() {
         for antialias in [false, true] {
             let disc = Disc { radius_px, antialias };
             for fan in [1, 2, 3] {
-                let plan = FloodPlan::separable(&disc, fan);
-                let along =
-                    |x: bool| plan.passes.iter().filter(|p| p.along_x == x).map(|p| p.fan * p.step).sum::<u32>();
                 let needed = if antialias { (radius_px + 1.0).ceil() as u32 - 1 } else { radius_px as u32 };
-                assert!(along(true) >= needed && along(false) >= needed, "{disc:?} {fan}");
+                for plan in [FloodPlan::separable(&disc, fan), FloodPlan::fitted(&disc, fan)] {
+                    let along =
+                        |x: bool| plan.passes.iter().filter(|p| p.along_x == x).map(|p| p.fan * p.step).sum::<u32>();
+                    assert!(along(true) >= needed && along(false) >= needed, "{disc:?} {fan}");
+                    assert_eq!(along(true), plan.row_reach_px());
+                    // Without a gap: no step is longer than what those after it cover, and one.
+                    for (i, pass) in plan.passes.iter().enumerate() {
+                        let rest = plan.passes[i + 1..].iter().filter(|p| p.along_x == pass.along_x);
+                        assert_eq!(pass.step, rest.map(|p| p.fan * p.step).sum::<u32>() + 1, "{disc:?} {fan}");
+                    }
+                }
             }
         }
     }
     let passes = |radius_px, fan| FloodPlan::separable(&Disc { radius_px, antialias: true }, fan).passes.len();
     assert_eq!([passes(4.0, 1), passes(64.0, 1), passes(4.0, 3), passes(64.0, 3)], [6, 14, 4, 8]);
+    let fitted = |radius_px| FloodPlan::fitted(&Disc { radius_px, antialias: true }, 3).passes;
+    let steps = |passes: Vec<FloodPass>| passes.iter().map(|pass| (pass.step, pass.fan)).collect::<Vec<_>>();
+    assert_eq!(steps(fitted(4.0)), [(1, 4), (1, 4)]);
+    assert_eq!(steps(fitted(64.0)), [(16, 4), (4, 3), (1, 3), (16, 4), (4, 3), (1, 3)]);
 }
 
 #[test]
@@ -321,6 +335,7 @@ fn floods_miss_less_than_half_a_percent() {
             let plans = [
                 ("separable, fan 1", FloodPlan::separable(&disc, 1)),
                 ("separable, fan 3", FloodPlan::separable(&disc, 3)),
+                ("fitted, fan 3", FloodPlan::fitted(&disc, 3)),
                 ("square", FloodPlan::square(&disc)),
             ];
             for (name, plan) in plans {

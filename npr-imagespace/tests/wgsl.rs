@@ -12,6 +12,7 @@ use npr_imagespace::format::FORMAT_WGSL;
 use npr_imagespace::format::texel::DepthCode;
 use npr_imagespace::morphology::MORPHOLOGY_WGSL;
 use npr_imagespace::picture::PICTURE_WGSL;
+use npr_imagespace::resample::RESAMPLE_WGSL;
 use std::mem::{offset_of, size_of};
 
 fn validated(source: &str) -> Module {
@@ -45,9 +46,9 @@ fn is_a_library() {
 
 #[test]
 fn the_parts_stand_alone_and_are_the_whole() {
-    let parts = [PICTURE_WGSL, FORMAT_WGSL, FILTER_WGSL, MORPHOLOGY_WGSL, COMPOSITE_WGSL, ARTIST_WGSL];
+    let parts = [PICTURE_WGSL, FORMAT_WGSL, FILTER_WGSL, MORPHOLOGY_WGSL, COMPOSITE_WGSL, RESAMPLE_WGSL, ARTIST_WGSL];
     assert_eq!(parts.concat(), WGSL);
-    for part in [PICTURE_WGSL, FORMAT_WGSL, MORPHOLOGY_WGSL, COMPOSITE_WGSL, ARTIST_WGSL] {
+    for part in [PICTURE_WGSL, FORMAT_WGSL, MORPHOLOGY_WGSL, COMPOSITE_WGSL, RESAMPLE_WGSL, ARTIST_WGSL] {
         validated(part);
     }
     validated(&[FORMAT_WGSL, FILTER_WGSL].concat());

@@ -62,6 +62,31 @@ impl FloodPlan {
         Self { passes: steps.iter().map(pass(true)).chain(steps.iter().map(pass(false))).collect() }
     }
 
+    /// [`FloodPlan::separable`], with no more taps than are needed: the farthest pass of each axis has as many as reach
+    /// the disc's border, up to twice `fan` before there is another pass.
+    pub fn fitted(disc: &Disc, fan: u32) -> Self {
+        let (reach, fan) = (reach_px(disc), fan.max(1));
+        let mut steps = Vec::new();
+        let mut covered = 0;
+        loop {
+            let step = covered + 1;
+            let needed = (reach - covered).div_ceil(step);
+            if needed <= 2 * fan {
+                steps.push((step, needed));
+                break;
+            }
+            steps.push((step, fan));
+            covered += fan * step;
+        }
+        let pass = |along_x: bool| move |&(step, fan): &(u32, u32)| FloodPass { step, fan, along_x, along_y: !along_x };
+        Self { passes: [true, false].into_iter().flat_map(|x| steps.iter().rev().map(pass(x))).collect() }
+    }
+
+    /// How far the passes along x together read.
+    pub fn row_reach_px(&self) -> u32 {
+        self.passes.iter().filter(|pass| pass.along_x).map(|pass| pass.step * pass.fan).sum()
+    }
+
     /// Jump flooding in the plane, with a last pass by 1 px more.
     pub fn square(disc: &Disc) -> Self {
         let steps = steps(reach_px(disc), 1).into_iter().chain([1]);

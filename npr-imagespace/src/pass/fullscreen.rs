@@ -17,12 +17,21 @@ pub(super) enum Bound {
     Float,
 }
 
+/// What a pass writes.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Output {
+    /// Ink, in whichever form the target wants it.
+    Ink(InkTarget),
+    /// Whole numbers of a format, on the way to ink. Outside the area they become 0.
+    Whole(wgpu::TextureFormat),
+}
+
 /// A pipeline that runs a fragment shader over a target.
 #[derive(Debug)]
 pub(super) struct Fullscreen {
     pipeline: wgpu::RenderPipeline,
     layout: wgpu::BindGroupLayout,
-    target: InkTarget,
+    output: Output,
     label: &'static str,
 }
 
@@ -35,11 +44,12 @@ impl Fullscreen {
         source: &str,
         bound: &[Bound],
         constants: &[(&str, f64)],
-        target: InkTarget,
+        output: Output,
     ) -> Self {
-        let entries: Vec<_> = std::iter::once(&Bound::Uniform)
-            .chain(bound)
-            .zip(0u32..)
+        let how = matches!(output, Output::Ink(_)).then_some((&Bound::Uniform, 0));
+        let entries: Vec<_> = how
+            .into_iter()
+            .chain(bound.iter().zip(1..))
             .map(|(bound, binding)| wgpu::BindGroupLayoutEntry {
                 binding,
                 visibility: wgpu::ShaderStages::FRAGMENT,
@@ -53,9 +63,13 @@ impl Fullscreen {
             label: Some(label),
             source: wgpu::ShaderSource::Wgsl([crate::WGSL, FULLSCREEN_WGSL, source].concat().into()),
         });
-        let (format, blend) = match target {
-            InkTarget::Ink => (INK_FORMAT, None),
-            InkTarget::Picture(format) => (format, Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING)),
+        // A picture's alpha stays.
+        let (format, blend, write_mask) = match output {
+            Output::Ink(InkTarget::Ink) => (INK_FORMAT, None, wgpu::ColorWrites::ALL),
+            Output::Ink(InkTarget::Picture(format)) => {
+                (format, Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING), wgpu::ColorWrites::COLOR)
+            }
+            Output::Whole(format) => (format, None, wgpu::ColorWrites::ALL),
         };
         let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(label),
@@ -77,16 +91,75 @@ impl Fullscreen {
                 module: &module,
                 entry_point: Some(&format!("fs_{label}")),
                 compilation_options: wgpu::PipelineCompilationOptions { constants, ..Default::default() },
-                // A picture's alpha stays.
-                targets: &[Some(wgpu::ColorTargetState { format, blend, write_mask: wgpu::ColorWrites::COLOR })],
+                targets: &[Some(wgpu::ColorTargetState { format, blend, write_mask })],
             }),
             multiview_mask: None,
             cache: None,
         });
-        Self { pipeline, layout, target, label }
+        Self { pipeline, layout, output, label }
     }
 
-    /// Runs it. `resources` are those of [`Fullscreen::new`]'s `bound`.
+    /// What it binds. `resources` are those of [`Fullscreen::new`]'s `bound`; `composite` is not looked at but for
+    /// pictures.
+    pub(super) fn group(
+        &self,
+        device: &wgpu::Device,
+        resources: &[wgpu::BindingResource<'_>],
+        composite: &Composite,
+    ) -> wgpu::BindGroup {
+        let how = match self.output {
+            Output::Ink(InkTarget::Ink) => Some(Composite::Over { color: Vec3::ONE, opacity: 1.0 }),
+            Output::Ink(InkTarget::Picture(_)) => Some(*composite),
+            Output::Whole(_) => None,
+        };
+        let how = how.map(|how| uniform(device, bytemuck::bytes_of(&CompositeUniform::from(&how))));
+        let entries: Vec<_> = how
+            .iter()
+            .map(|how| (how.as_entire_binding(), 0))
+            .chain(resources.iter().cloned().zip(1..))
+            .map(|(resource, binding)| wgpu::BindGroupEntry { binding, resource })
+            .collect();
+        device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some(self.label),
+            layout: &self.layout,
+            entries: &entries,
+        })
+    }
+
+    /// Runs it over `area` of `view`.
+    pub(super) fn draw(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        group: &wgpu::BindGroup,
+        view: &wgpu::TextureView,
+        area: Option<[u32; 4]>,
+    ) {
+        let load = match self.output {
+            Output::Ink(InkTarget::Picture(_)) => wgpu::LoadOp::Load,
+            _ => wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+        };
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some(self.label),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
+            })],
+            ..Default::default()
+        });
+        if let Some([x, y, width, height]) = area {
+            if width == 0 || height == 0 {
+                return;
+            }
+            pass.set_scissor_rect(x, y, width, height);
+        }
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, group, &[]);
+        pass.draw(0..3, 0..1);
+    }
+
+    /// [`Fullscreen::group`] and [`Fullscreen::draw`].
     pub(super) fn record(
         &self,
         device: &wgpu::Device,
@@ -94,43 +167,19 @@ impl Fullscreen {
         resources: &[wgpu::BindingResource<'_>],
         onto: &Onto<'_>,
     ) {
-        let (how, load) = match self.target {
-            InkTarget::Ink => {
-                (Composite::Over { color: Vec3::ONE, opacity: 1.0 }, wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT))
-            }
-            InkTarget::Picture(_) => (*onto.composite, wgpu::LoadOp::Load),
-        };
-        let how = uniform(device, bytemuck::bytes_of(&CompositeUniform::from(&how)));
-        let entries: Vec<_> = std::iter::once(how.as_entire_binding())
-            .chain(resources.iter().cloned())
-            .zip(0u32..)
-            .map(|(resource, binding)| wgpu::BindGroupEntry { binding, resource })
-            .collect();
-        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some(self.label),
-            layout: &self.layout,
-            entries: &entries,
-        });
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some(self.label),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: onto.view,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
-            })],
-            ..Default::default()
-        });
-        if let Some([x, y, width, height]) = onto.area {
-            if width == 0 || height == 0 {
-                return;
-            }
-            pass.set_scissor_rect(x, y, width, height);
-        }
-        pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, &group, &[]);
-        pass.draw(0..3, 0..1);
+        let group = self.group(device, resources, onto.composite);
+        self.draw(encoder, &group, onto.view, onto.area);
     }
+}
+
+/// A constant that says yes or no.
+pub(super) fn flag(name: &str, is: bool) -> (&str, f64) {
+    (name, f64::from(u8::from(is)))
+}
+
+/// Width and height of the texture of a view.
+pub(super) fn size_px(view: &wgpu::TextureView) -> [u32; 2] {
+    [view.texture().width(), view.texture().height()]
 }
 
 fn binding_type(bound: Bound) -> wgpu::BindingType {

@@ -1,6 +1,6 @@
 //! The fused filter over packed texels: see [`crate::filter::fused`] for what it decides.
 
-use super::fullscreen::{Bound, Fullscreen, uniform};
+use super::fullscreen::{Bound, Fullscreen, Output, flag, uniform};
 use super::{InkTarget, Onto};
 use crate::ImageSpaceError;
 use crate::filter::fused::{FilterUniform, FusedFilter};
@@ -30,15 +30,14 @@ impl FusedPass {
     /// Makes the pipeline for a filter's taps, hard if its softness is 0.
     pub fn new(device: &wgpu::Device, filter: &FusedFilter, layout: TexelLayout, target: InkTarget) -> Self {
         let soft = filter.softness > 0.0;
-        let constant = |name, is: bool| (name, f64::from(u8::from(is)));
         let constants = [
-            constant("narrow", layout == TexelLayout::Narrow),
-            constant("cross_taps", filter.taps == Taps::Cross),
-            constant("soft", soft),
+            flag("narrow", layout == TexelLayout::Narrow),
+            flag("cross_taps", filter.taps == Taps::Cross),
+            flag("soft", soft),
         ];
         let bound = [Bound::Uniform, Bound::Whole];
         Self {
-            draw: Fullscreen::new(device, "fused", FUSED_WGSL, &bound, &constants, target),
+            draw: Fullscreen::new(device, "fused", FUSED_WGSL, &bound, &constants, Output::Ink(target)),
             layout,
             taps: filter.taps,
             soft,

@@ -1,0 +1,20 @@
+//! The passes on whatever graphics adapter there is, against the CPU twins.
+//!
+//! `NPR_GPU=required` fails without an adapter, `off` uses none, anything else skips, saying so, where there is none.
+#![cfg(feature = "wgpu")]
+#![allow(clippy::print_stdout)]
+
+#[path = "gpu/device.rs"]
+mod device;
+#[path = "gpu/discs.rs"]
+mod discs;
+#[path = "gpu/fused.rs"]
+mod fused;
+#[path = "gpu/inputs.rs"]
+mod inputs;
+#[path = "gpu/lay.rs"]
+mod lay;
+#[path = "gpu/steps.rs"]
+mod steps;
+#[path = "gpu/targets.rs"]
+mod targets;

@@ -1,0 +1,115 @@
+//! A device, textures on it, and reading them back. Shared by tests, benchmark and example.
+
+use std::sync::OnceLock;
+
+/// A device and its queue.
+pub struct Gpu {
+    pub device: wgpu::Device,
+    pub queue: wgpu::Queue,
+}
+
+/// The device that the tests share, or `None`, having said so, where `NPR_GPU` is `off`, or there is no adapter and
+/// `NPR_GPU` is not `required`.
+pub fn gpu() -> Option<&'static Gpu> {
+    static GPU: OnceLock<Option<Gpu>> = OnceLock::new();
+    let wish = std::env::var("NPR_GPU").unwrap_or_else(|_| "auto".into());
+    let gpu = GPU.get_or_init(|| if wish == "off" { None } else { open(wish == "required") }).as_ref();
+    if gpu.is_none() {
+        println!("skipped: no graphics adapter is used (NPR_GPU={wish})");
+    }
+    gpu
+}
+
+fn open(required: bool) -> Option<Gpu> {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
+    let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()));
+    let adapter = match adapter {
+        Ok(adapter) => adapter,
+        Err(error) if required => panic!("NPR_GPU=required, and there is no adapter: {error}"),
+        Err(_) => return None,
+    };
+    println!("adapter: {}", adapter.get_info().name);
+    let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default()))
+        .expect("an adapter gives a device with the default limits");
+    Some(Gpu { device, queue })
+}
+
+impl Gpu {
+    /// A texture, uninitialised, to render to, read and copy.
+    pub fn texture(&self, format: wgpu::TextureFormat, [width, height]: [u32; 2]) -> wgpu::Texture {
+        self.device.create_texture(&wgpu::TextureDescriptor {
+            label: None,
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+                | wgpu::TextureUsages::TEXTURE_BINDING
+                | wgpu::TextureUsages::COPY_SRC
+                | wgpu::TextureUsages::COPY_DST,
+            view_formats: &[],
+        })
+    }
+
+    /// A texture that holds the bytes, rows from the top.
+    pub fn upload(&self, format: wgpu::TextureFormat, size: [u32; 2], bytes: &[u8]) -> wgpu::Texture {
+        let texture = self.texture(format, size);
+        self.write(&texture, bytes);
+        texture
+    }
+
+    /// Overwrites a texture.
+    pub fn write(&self, texture: &wgpu::Texture, bytes: &[u8]) {
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(bytes.len() as u32 / texture.height()),
+            rows_per_image: None,
+        };
+        self.queue.write_texture(texture.as_image_copy(), bytes, layout, texture.size());
+    }
+
+    /// Records and waits.
+    pub fn run(&self, record: impl FnOnce(&mut wgpu::CommandEncoder)) {
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        record(&mut encoder);
+        self.queue.submit([encoder.finish()]);
+        self.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device is not lost");
+    }
+
+    /// A texture's texels, rows from the top.
+    pub fn read(&self, texture: &wgpu::Texture) -> Vec<u8> {
+        let bytes = texture.format().block_copy_size(None).expect("a colour format");
+        let (row, height) = (texture.width() * bytes, texture.height());
+        let padded_row = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let copy = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: u64::from(padded_row * height),
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        self.run(|encoder| {
+            encoder.copy_texture_to_buffer(
+                texture.as_image_copy(),
+                wgpu::TexelCopyBufferInfo {
+                    buffer: &copy,
+                    layout: wgpu::TexelCopyBufferLayout {
+                        offset: 0,
+                        bytes_per_row: Some(padded_row),
+                        rows_per_image: None,
+                    },
+                },
+                texture.size(),
+            );
+        });
+        copy.map_async(wgpu::MapMode::Read, .., |result| result.expect("a buffer for reading can be mapped"));
+        self.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device is not lost");
+        let mapped = copy.get_mapped_range(..).expect("it is mapped");
+        mapped.chunks(padded_row as usize).flat_map(|padded| padded[..row as usize].to_vec()).collect()
+    }
+}
+
+/// The whole of a texture.
+pub fn view(texture: &wgpu::Texture) -> wgpu::TextureView {
+    texture.create_view(&Default::default())
+}
