@@ -106,7 +106,7 @@ impl ImagePlan {
             code,
             face_region: face_regions(scene, ink.regions, &line_kinds, crease_angle_rad)?,
             line_kinds,
-            flood: ink.brush.map(|disc| FloodPlan::separable(&disc, FLOOD_FAN)),
+            flood: ink.brush.map(|disc| FloodPlan::fitted(&disc, FLOOD_FAN)),
         })
     }
 

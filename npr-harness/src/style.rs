@@ -1,6 +1,6 @@
 //! What a picture looks like, whatever it shows.
 
-use crate::image_ink::ImageInk;
+use crate::image_ink::{ImageInk, InkScale};
 use glam::Vec3;
 use npr_imagespace::composite::Composite;
 use npr_imagespace::morphology::disc::Disc;
@@ -99,6 +99,12 @@ pub fn styles() -> Vec<Style> {
             "the same lines, widened by a round brush",
             Shade::Toon(Bands::default()),
             image_lines(ImageInk { brush: Some(Disc { radius_px: 1.5, antialias: true }), ..ImageInk::default() }),
+        ),
+        style(
+            "ink-fine",
+            "lines on paper, found at twice the picture's size",
+            Shade::Paper,
+            image_lines(ImageInk { scale: InkScale::Double, ..ImageInk::default() }),
         ),
         style(
             "artist",

@@ -4,11 +4,12 @@ use super::{CpuFrame, FrameContext};
 use crate::color::encode_rgb;
 use crate::image_ink::ImagePlan;
 use crate::rays::Hit;
-use glam::{DMat3, DVec3, Vec3};
+use glam::{DMat3, DVec3, UVec2, Vec3};
 use npr_imagespace::artist::{LineKind, ink_artist_direction, ink_artist_index, ink_artist_texel};
 use npr_imagespace::composite::ink_composite;
 use npr_imagespace::format::texel::{BACKGROUND, TexelLayout, ink_narrow_pack, ink_wide_pack};
 use npr_imagespace::region::{ink_region_of_color, ink_region_pair};
+use npr_imagespace::resample::resample;
 
 impl FrameContext<'_> {
     /// What a geometry pass writes for a pixel.
@@ -56,6 +57,12 @@ impl FrameContext<'_> {
 pub(super) fn draw_ink(image: &ImagePlan, texels: &[[u32; 2]], frame: &mut CpuFrame) {
     let size = image.ink.scale.size((frame.width, frame.height));
     let ink = image.ink(texels, size);
+    let picture = UVec2::new(frame.width, frame.height);
+    let ink = if size == (frame.width, frame.height) {
+        ink
+    } else {
+        resample(&ink, UVec2::from(size), picture).expect("one ink for each of its pixels")
+    };
     for (color, ink) in frame.color.iter_mut().zip(ink) {
         if ink > 0 {
             let inked = ink_composite(color.truncate(), f64::from(ink) / 255.0, &image.ink.composite);

@@ -6,19 +6,26 @@ use crate::camera::Camera;
 use crate::image_ink::ImagePlan;
 use crate::scene::Scene;
 use npr_imagespace::format::texel::TexelLayout;
+use npr_imagespace::morphology::Operation;
+use npr_imagespace::pass::disc::DiscPass;
 use npr_imagespace::pass::fused::FusedPass;
+use npr_imagespace::pass::lay::LayPass;
 use npr_imagespace::pass::{InkTarget, Onto};
 use npr_imagespace::picture::Taps;
-use std::cell::RefCell;
+use std::cell::{OnceCell, RefCell};
 use std::collections::HashMap;
 
 /// What tells one filter's pipeline from another's.
 type FilterKey = (Taps, bool, TexelLayout, InkTarget);
 
+const PICTURE: InkTarget = InkTarget::Picture(COLOR_FORMAT);
+
 /// The passes, made when they are first needed.
 #[derive(Default)]
 pub(super) struct InkPasses {
     filters: RefCell<HashMap<FilterKey, FusedPass>>,
+    brushes: RefCell<HashMap<InkTarget, DiscPass>>,
+    lay: OnceCell<LayPass>,
 }
 
 impl InkPasses {
@@ -34,15 +41,36 @@ impl InkPasses {
         ink: &InkTargets,
         targets: &Targets,
     ) -> Result<(), GpuError> {
+        let device = &context.device;
+        let area = |size, around_px| scene.model.bounds().map(|bounds| camera.area(bounds, size, around_px));
+        let onto = |view, size, around_px| Onto { view, composite: &image.ink.composite, area: area(size, around_px) };
+        // Beside a surface there is a pixel of line, and then what the brush adds.
+        let brush_px = image.ink.brush.map_or(0, |disc| disc.radius_px.ceil() as u32 + 1);
+        let picture_size = (targets.width, targets.height);
+
         let filter = &image.ink.filter;
-        let target = InkTarget::Picture(COLOR_FORMAT);
+        let found = ink.found.as_ref();
+        let target = if found.is_some() { InkTarget::Ink } else { PICTURE };
         let key = (filter.taps, filter.softness > 0.0, image.ink.layout, target);
         let mut filters = self.filters.borrow_mut();
-        let pass =
-            filters.entry(key).or_insert_with(|| FusedPass::new(&context.device, filter, image.ink.layout, target));
-        let area = scene.model.bounds().map(|bounds| camera.area(bounds, ink.size, 1));
-        let onto = Onto { view: &targets.color_view, composite: &image.ink.composite, area };
-        pass.record(&context.device, encoder, filter, &image.code, &ink.texels, &onto)?;
+        let pass = filters.entry(key).or_insert_with(|| FusedPass::new(device, filter, image.ink.layout, target));
+        let view = found.unwrap_or(&targets.color_view);
+        pass.record(device, encoder, filter, &image.code, &ink.texels, &onto(view, ink.size, 1))?;
+        let Some(mut line) = found else { return Ok(()) };
+
+        if let (Some(disc), Some(scratch)) = (&image.ink.brush, &ink.brush) {
+            let thick = ink.thick.as_ref();
+            let target = if thick.is_some() { InkTarget::Ink } else { PICTURE };
+            let mut brushes = self.brushes.borrow_mut();
+            let pass = brushes.entry(target).or_insert_with(|| DiscPass::new(device, target));
+            let onto = onto(thick.unwrap_or(&targets.color_view), ink.size, 1 + brush_px);
+            pass.record(device, encoder, Operation::Dilate, disc, line, scratch, &onto)?;
+            let Some(thick) = thick else { return Ok(()) };
+            line = thick;
+        }
+        // A pixel of ink is at most two of the picture's, and reaches as far again.
+        let onto = onto(&targets.color_view, picture_size, 4 + 2 * brush_px);
+        self.lay.get_or_init(|| LayPass::new(device, PICTURE)).record(device, encoder, line, &onto);
         Ok(())
     }
 }

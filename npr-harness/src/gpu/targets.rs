@@ -4,6 +4,8 @@ use super::{GpuContext, GpuError};
 use crate::compare::Image;
 use crate::image_ink::{ImageInk, InkScale};
 use npr_imagespace::format::texel::TexelLayout;
+use npr_imagespace::pass::INK_FORMAT;
+use npr_imagespace::pass::disc::DiscScratch;
 use npr_imagespace::pass::fused::texel_format;
 use npr_outline::line_pass::WINNER_FORMAT;
 use npr_outline::line_strokes::{LineStrokes, StrokeBuffers};
@@ -37,12 +39,18 @@ pub struct Targets {
 
 /// What lines in the image are found in.
 pub(super) struct InkTargets {
-    layout: TexelLayout,
-    scale: InkScale,
+    /// For which layout, which scale, and whether for a brush.
+    kind: (TexelLayout, InkScale, bool),
     pub(super) size: (u32, u32),
     pub(super) texels: wgpu::TextureView,
     /// Where the ink has another size than the picture.
     pub(super) depth: Option<wgpu::TextureView>,
+    /// Ink as it is found, where it is not laid at once.
+    pub(super) found: Option<wgpu::TextureView>,
+    /// Where there is a brush.
+    pub(super) brush: Option<DiscScratch>,
+    /// Ink from the brush, where it is not laid at once.
+    pub(super) thick: Option<wgpu::TextureView>,
 }
 
 impl InkTargets {
@@ -51,13 +59,15 @@ impl InkTargets {
         check_size(context, size)?;
         let view = |label, format, usage| texture(context, label, format, usage, size).create_view(&Default::default());
         let read = wgpu::TextureUsages::TEXTURE_BINDING;
+        let (scaled, brushed) = (ink.scale != InkScale::One, ink.brush.is_some());
         Ok(Self {
-            layout: ink.layout,
-            scale: ink.scale,
+            kind: (ink.layout, ink.scale, brushed),
             size,
             texels: view("normal, region and depth", texel_format(ink.layout), read),
-            depth: (ink.scale != InkScale::One)
-                .then(|| view("depth of the ink", DEPTH_FORMAT, wgpu::TextureUsages::empty())),
+            depth: scaled.then(|| view("depth of the ink", DEPTH_FORMAT, wgpu::TextureUsages::empty())),
+            found: (scaled || brushed).then(|| view("ink", INK_FORMAT, read)),
+            brush: brushed.then(|| DiscScratch::new(&context.device, size.into())),
+            thick: (scaled && brushed).then(|| view("thick ink", INK_FORMAT, read)),
         })
     }
 }
@@ -120,7 +130,8 @@ impl Targets {
     /// # Errors
     /// [`GpuError::TooLarge`].
     pub(super) fn ink(&self, context: &GpuContext, ink: &ImageInk) -> Result<Ref<'_, InkTargets>, GpuError> {
-        let is_for = |targets: &InkTargets| targets.layout == ink.layout && targets.scale == ink.scale;
+        let kind = (ink.layout, ink.scale, ink.brush.is_some());
+        let is_for = |targets: &InkTargets| targets.kind == kind;
         if !self.ink.borrow().as_ref().is_some_and(is_for) {
             *self.ink.borrow_mut() = Some(InkTargets::new(context, ink, (self.width, self.height))?);
         }
