@@ -28,13 +28,16 @@ pub struct CpuOptions {
     /// sensitive. Lines stay where they are, since their coverage is no sample; whether they are hidden is decided by
     /// the moved samples. The printed fins, which have no coverage, are sampled like surfaces.
     pub shift_px: DVec2,
+    /// Faces end so far before their boundaries, px: what is then seen between two faces that lie side by side without
+    /// being joined is what a device may show there, whose corners are rounded.
+    pub boundary_inset_px: f64,
     /// At most so many threads; 0 for as many as the machine has.
     pub threads: usize,
 }
 
 impl Default for CpuOptions {
     fn default() -> Self {
-        Self { samples: 1, shift_px: DVec2::ZERO, threads: 0 }
+        Self { samples: 1, shift_px: DVec2::ZERO, boundary_inset_px: 0.0, threads: 0 }
     }
 }
 
@@ -78,6 +81,8 @@ pub struct FrameContext<'a> {
     plan: &'a Plan,
     /// Whether surfaces get their colours.
     painting: bool,
+    /// In px of the grid that is sampled.
+    boundary_inset_px: f64,
 }
 
 /// Renders a frame.
@@ -108,6 +113,7 @@ pub fn render(
         shift_px: options.shift_px * f64::from(samples),
         plan,
         painting: plan.painted,
+        boundary_inset_px: options.boundary_inset_px * f64::from(samples),
     };
     let mut fine = context.trace(width * samples, height * samples, options.threads, progress);
     let shared_texels = std::mem::take(&mut fine.texels);
@@ -192,6 +198,7 @@ impl FrameContext<'_> {
                 && self.scene.keeps(origin + direction * hit.t)
                 && !self.is_blended(hit)
                 && !self.is_cut_out(hit, x, y)
+                && !self.is_inset(hit, x, y)
         };
         self.scene.rays().closest(origin, direction, self.camera.depth_range(), is_solid)
     }

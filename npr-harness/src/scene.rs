@@ -31,6 +31,7 @@ pub struct Scene {
     /// [`ImageInk::artist`]: crate::image_ink::ImageInk::artist
     pub line_kinds: Vec<LineKind>,
     rays: OnceLock<RayCaster>,
+    boundary_sides: OnceLock<Vec<u8>>,
 }
 
 impl Scene {
@@ -50,7 +51,17 @@ impl Scene {
             && signed_volume(&model) > 0.0;
         let material_colors = model.materials.iter().map(|m| encode_rgb(m.base_color.truncate().as_dvec3())).collect();
         let line_kinds = vec![LineKind::Normals; model.materials.len()];
-        Self { model, origin, edges, material_colors, closed, clip: None, line_kinds, rays: OnceLock::new() }
+        Self {
+            model,
+            origin,
+            edges,
+            material_colors,
+            closed,
+            clip: None,
+            line_kinds,
+            rays: OnceLock::new(),
+            boundary_sides: OnceLock::new(),
+        }
     }
 
     /// Says where the inner lines of all materials of a name come from.
@@ -79,6 +90,23 @@ impl Scene {
     /// The ray caster, built when it is first asked for.
     pub fn rays(&self) -> &RayCaster {
         self.rays.get_or_init(|| RayCaster::new(&self.model.positions, &self.model.faces))
+    }
+
+    /// Per face which of its sides no other face has: bit i for the side from corner i to the next.
+    pub fn boundary_sides(&self) -> &[u8] {
+        self.boundary_sides.get_or_init(|| {
+            let mut sides = vec![0; self.model.faces.len()];
+            for edge in self.edges.edges.iter().filter(|edge| edge.kind() == EdgeKind::Boundary) {
+                let face = edge.faces()[0] as usize;
+                let corners = self.model.faces[face].map(|v| self.edges.representative[v as usize]);
+                for side in 0..3 {
+                    if edge.ends.contains(&corners[side]) && edge.ends.contains(&corners[(side + 1) % 3]) {
+                        sides[face] |= 1 << side;
+                    }
+                }
+            }
+            sides
+        })
     }
 
     /// Whether any face is blended over what is behind it.

@@ -11,9 +11,12 @@ use npr_harness::check::{self, Reference, SIZE, Shot, agrees, magnitude};
 use npr_harness::compare::{Image, compare};
 use npr_harness::executor::Executor;
 use npr_harness::gallery::still_life_camera;
+use npr_harness::image_ink::ImageInk;
 use npr_harness::plan::Plan;
 use npr_harness::scene::Scene;
 use npr_harness::style::{Lines, Shade, Style, style};
+use npr_imagespace::filter::fused::FusedFilter;
+use npr_imagespace::morphology::disc::Disc;
 use npr_mesh::{AlphaMode, Material, Model, Texture, Wrap, embedded};
 use npr_outline::line_look::LineLook;
 
@@ -94,7 +97,8 @@ fn the_built_in_scene() {
     let report = check::run(&executor, &[], &folder.0, &|_| {}).expect("pictures");
     println!("{report}");
     assert!(report.passed() && report.skipped.is_empty(), "{report}");
-    for technique in ["cartoon", "lines", "printed-fins", "formats", "line finder", "width"] {
+    let pictures = ["cartoon", "lines", "printed-fins", "ink-image", "ink-thick", "ink-fine", "artist"];
+    for technique in pictures.into_iter().chain(["image lines", "formats", "line finder", "width"]) {
         assert!(report.metrics.iter().any(|metric| metric.technique == technique), "{technique} was not checked");
     }
 }
@@ -183,7 +187,7 @@ fn broken_pictures_do_not_pass() {
     let Some(executor) = device() else { return };
     let scene = Scene::new(embedded::scene());
     let camera = still_life_camera();
-    for name in ["cartoon", "lines", "printed-fins"] {
+    for name in ["cartoon", "lines", "printed-fins", "ink-image", "ink-thick", "ink-fine"] {
         let style = style(name).expect("a style of the crate");
         let plan = Plan::new(&scene, &style, &camera).expect("a good style");
         let magnitude = magnitude(&plan);
@@ -220,6 +224,11 @@ fn broken_styles(style: &Style) -> Vec<Style> {
     let lines = match style.lines {
         Some(Lines::Fins(look)) => Some(Lines::Fins(LineLook { width_px: look.width_px.map(|w| w + 0.05), ..look })),
         Some(Lines::Printed { width_px, ink }) => Some(Lines::Printed { width_px: width_px + 0.25, ink }),
+        Some(Lines::Image(ink)) => Some(Lines::Image(ImageInk {
+            filter: FusedFilter { normal_cos: Some(0.7), ..ink.filter },
+            brush: ink.brush.map(|disc| Disc { radius_px: disc.radius_px + 0.1, ..disc }),
+            ..ink
+        })),
         None => None,
     };
     broken.push(Style { lines, ..style.clone() });

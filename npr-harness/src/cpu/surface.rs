@@ -58,6 +58,26 @@ impl FrameContext<'_> {
         [1.0 - v - w, v, w]
     }
 
+    /// Whether a hit is so near to a boundary, on the screen, that the face is taken to end before it.
+    pub(super) fn is_inset(&self, hit: &Hit, x: u32, y: u32) -> bool {
+        if self.boundary_inset_px <= 0.0 {
+            return false;
+        }
+        let boundaries = self.scene.boundary_sides()[hit.face as usize];
+        if boundaries == 0 {
+            return false;
+        }
+        let (x, y) = (f64::from(x), f64::from(y));
+        let beside = [(x + 1.0, y), (x, y + 1.0)].map(|(x, y)| self.extrapolated(hit, self.sample_point(x, y)));
+        (0..3).filter(|side| boundaries >> side & 1 != 0).any(|side| {
+            // The weight of the corner opposite to a side is 0 on it and nearly linear on the screen.
+            let opposite = (side + 2) % 3;
+            let weight = hit.barycentric[opposite];
+            let per_px = DVec2::new(beside[0][opposite] - weight, beside[1][opposite] - weight).length();
+            weight < self.boundary_inset_px * per_px
+        })
+    }
+
     fn footprint(&self, hit: &Hit, x: u32, y: u32) -> Footprint {
         let beside = |index: u32| if index.is_multiple_of(2) { 1.0 } else { -1.0 };
         let (dx, dy) = (beside(x), beside(y));
