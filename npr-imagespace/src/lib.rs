@@ -94,6 +94,8 @@ pub const WGSL: &str = concat!(
     include_str!("filter/region.wgsl"),
     include_str!("filter/fused.wgsl"),
     include_str!("filter/inker.wgsl"),
+    include_str!("filter/separate.wgsl"),
+    include_str!("filter/printed.wgsl"),
     include_str!("morphology.wgsl"),
     include_str!("morphology/flood.wgsl"),
     include_str!("composite.wgsl"),

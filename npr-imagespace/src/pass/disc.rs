@@ -104,9 +104,8 @@ struct Half<'a> {
 impl DiscPass {
     /// Makes the pipelines.
     pub fn new(device: &wgpu::Device, target: InkTarget) -> Self {
-        let pipeline = |label, texture, output| {
-            Fullscreen::new(device, label, DISC_WGSL, &[Bound::Uniform, texture], &[], output)
-        };
+        let pipeline =
+            |label, texture, output| Fullscreen::new(device, label, DISC_WGSL, &[Bound::Uniform, texture], &[], output);
         Self {
             bits: pipeline("bits", Bound::Float, Output::Whole(WORD_FORMAT)),
             row: pipeline("row", Bound::Whole, Output::Whole(SITE_FORMAT)),

@@ -110,9 +110,7 @@ impl PingPong {
     ) -> usize {
         // All that is needed, once for all steps.
         let groups = |draw: &Fullscreen| {
-            ink.map(|from| {
-                draw.group(device, &[wgpu::BindingResource::TextureView(from)], &Composite::Multiply)
-            })
+            ink.map(|from| draw.group(device, &[wgpu::BindingResource::TextureView(from)], &Composite::Multiply))
         };
         let mut from = 0;
         for eroding in operation.halves() {
