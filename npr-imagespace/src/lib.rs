@@ -37,6 +37,8 @@
 //! 4. [`morphology`]: thicker, thinner, opened and closed.
 //! 5. [`composite`], [`resample`]: ink over a picture, also of another size.
 //!
+//! With the feature `wgpu` the module `pass` has all of this as passes over textures.
+//!
 //! The same functions under the same names, `ink_`, stand here twice: in Rust, the reference, and in [`WGSL`], over
 //! values already loaded. What the papers got wrong is told where it is mended, and kept under a name that says
 //! `printed` where it can run.
