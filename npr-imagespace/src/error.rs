@@ -44,6 +44,18 @@ pub enum ImageSpaceError {
         /// What was asked for.
         step: f32,
     },
+    /// Numbers that turn no depth buffer into depths: one is not finite, or the scale is 0.
+    #[error(
+        "a depth buffer's scale of {scale}, bias of {bias}, cleared to {clear}: they must be finite, the scale not 0"
+    )]
+    DepthSource {
+        /// What was given.
+        scale: f32,
+        /// What was given.
+        bias: f32,
+        /// What was given.
+        clear: f32,
+    },
     /// A width of the transition from paper to line that is negative or not finite.
     #[error("a softness of {softness}: it must be finite and not negative")]
     Softness {

@@ -4,6 +4,8 @@
 //!   corrected.
 //! - [`fused`]: the three at once over the packed texels of [`crate::format::texel`], decided on whole numbers. The default.
 //! - [`inker`]: the filter of four taps that compares opposite pixels.
+//! - [`separate`]: any of the three, and all, over textures of one's own.
+//! - [`mod@printed`]: the filters and the inker over the bytes of [`crate::format::printed`].
 //!
 //! All return *ink*: 1 a line, 0 paper. The listings output the complement, white paper and black lines.
 //!
@@ -18,7 +20,9 @@ pub mod depth;
 pub mod fused;
 pub mod inker;
 pub mod normal;
+pub mod printed;
 pub mod region;
+pub mod separate;
 
 /// WGSL of the modules in this one: no bindings, no entry points. Needs [`crate::format::FORMAT_WGSL`].
 pub const FILTER_WGSL: &str = concat!(
@@ -28,6 +32,8 @@ pub const FILTER_WGSL: &str = concat!(
     include_str!("filter/region.wgsl"),
     include_str!("filter/fused.wgsl"),
     include_str!("filter/inker.wgsl"),
+    include_str!("filter/separate.wgsl"),
+    include_str!("filter/printed.wgsl"),
 );
 
 /// The soft form of `excess > 0`, which it is where `width` is 0.

@@ -37,6 +37,8 @@
 //! 4. [`morphology`]: thicker, thinner, opened and closed.
 //! 5. [`composite`], [`resample`]: ink over a picture, also of another size.
 //!
+//! With the feature `wgpu` the module `pass` has all of this as passes over textures.
+//!
 //! The same functions under the same names, `ink_`, stand here twice: in Rust, the reference, and in [`WGSL`], over
 //! values already loaded. What the papers got wrong is told where it is mended, and kept under a name that says
 //! `printed` where it can run.
@@ -94,6 +96,8 @@ pub const WGSL: &str = concat!(
     include_str!("filter/region.wgsl"),
     include_str!("filter/fused.wgsl"),
     include_str!("filter/inker.wgsl"),
+    include_str!("filter/separate.wgsl"),
+    include_str!("filter/printed.wgsl"),
     include_str!("morphology.wgsl"),
     include_str!("morphology/flood.wgsl"),
     include_str!("composite.wgsl"),

@@ -14,6 +14,10 @@ mod fused;
 mod inputs;
 #[path = "gpu/lay.rs"]
 mod lay;
+#[path = "gpu/printed.rs"]
+mod printed;
+#[path = "gpu/separate.rs"]
+mod separate;
 #[path = "gpu/steps.rs"]
 mod steps;
 #[path = "gpu/targets.rs"]

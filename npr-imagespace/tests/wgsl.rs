@@ -8,6 +8,8 @@ use npr_imagespace::composite::{COMPOSITE_WGSL, CompositeUniform};
 use npr_imagespace::filter::FILTER_WGSL;
 use npr_imagespace::filter::fused::FilterUniform;
 use npr_imagespace::filter::inker::InkerUniform;
+use npr_imagespace::filter::printed::PrintedUniform;
+use npr_imagespace::filter::separate::SeparateUniform;
 use npr_imagespace::format::FORMAT_WGSL;
 use npr_imagespace::format::texel::DepthCode;
 use npr_imagespace::morphology::MORPHOLOGY_WGSL;
@@ -76,6 +78,7 @@ fn functions_have_the_names_of_the_rust_ones() {
         "ink_depth_join2",
         "ink_depth_join4",
         "ink_depth_pair",
+        "ink_depth_step_soft_tap",
         "ink_depth_step_tap",
         "ink_normal_tap",
         "ink_oct_decode",
@@ -120,7 +123,47 @@ fn uniforms_have_the_layout_of_the_shader() {
         [asked, normal_cos2, depth_slack, depth_base, depth_step, depth_shift, weight, normal_cos, softness]
     );
     assert_layout!("InkInker", InkerUniform, [form, normal_cos, normal_fall, depth_delta, softness]);
+    assert_layout!("InkPrinted", PrintedUniform, [normal_threshold, depth_threshold, depth_form]);
+    assert_layout!(
+        "InkSeparate",
+        SeparateUniform,
+        [
+            normal_cos,
+            normal_biased,
+            softness,
+            weight,
+            depth_threshold,
+            depth_scale,
+            depth_bias,
+            depth_clear,
+            depth_is_buffer,
+            parallel,
+            plain_form
+        ]
+    );
     assert_layout!("InkComposite", CompositeUniform, [line, form, alpha_less, alpha_reference]);
+}
+
+const FULLSCREEN: &str = include_str!("../src/pass/fullscreen.wgsl");
+
+/// The passes' own shaders, as they use them: after the library and the triangle.
+const PASSES: [(&str, &[&str]); 6] = [
+    (include_str!("../src/pass/fused.wgsl"), &["fs_fused"]),
+    (include_str!("../src/pass/separate.wgsl"), &["fs_separate"]),
+    (include_str!("../src/pass/printed.wgsl"), &["fs_printed", "fs_inker"]),
+    (include_str!("../src/pass/step.wgsl"), &["fs_step"]),
+    (include_str!("../src/pass/disc.wgsl"), &["fs_bits", "fs_row", "fs_column", "fs_resolve"]),
+    (include_str!("../src/pass/lay.wgsl"), &["fs_lay"]),
+];
+
+#[test]
+fn passes_validate() {
+    for (pass, entry_points) in PASSES {
+        let module = validated(&[WGSL, FULLSCREEN, pass].concat());
+        let found: Vec<_> = module.entry_points.iter().map(|entry| entry.name.as_str()).collect();
+        assert_eq!(found[0], "vs_fullscreen");
+        assert_eq!(found[1..], *entry_points);
+    }
 }
 
 #[test]

@@ -117,3 +117,17 @@ pub fn ink_depth_step(centre: f32, taps: [f32; 4], step: f64) -> bool {
         (a, b) => a != b,
     })
 }
+
+/// The soft form of [`ink_depth_step`]: the ramp of each tap is `softness` times as wide as its threshold is high, and
+/// each counts `weight`.
+pub fn ink_depth_step_soft(centre: f32, taps: [f32; 4], step: f64, softness: f64, weight: f64) -> f64 {
+    let across = taps.map(|tap| match (ink_is_surface(centre), ink_is_surface(tap)) {
+        (true, true) => {
+            let (a, b) = (1.0 / f64::from(centre), 1.0 / f64::from(tap));
+            let threshold = step * a.max(b);
+            ink_ramp((a - b).abs() - threshold, softness * threshold)
+        }
+        (a, b) => f64::from(u8::from(a != b)),
+    });
+    (weight * across.iter().sum::<f64>()).min(1.0)
+}

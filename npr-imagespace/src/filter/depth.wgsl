@@ -77,3 +77,26 @@ fn ink_depth_step(centre: f32, taps: vec4<f32>, step: f32) -> bool {
     return ink_depth_step_tap(centre, taps.x, step) || ink_depth_step_tap(centre, taps.y, step)
         || ink_depth_step_tap(centre, taps.z, step) || ink_depth_step_tap(centre, taps.w, step);
 }
+
+// The soft form of one tap.
+fn ink_depth_step_soft_tap(centre: f32, tap: f32, step: f32, softness: f32) -> f32 {
+    let surface = ink_is_surface(centre);
+    if !surface || !ink_is_surface(tap) {
+        return select(0.0, 1.0, surface != ink_is_surface(tap));
+    }
+    let a = 1.0 / centre;
+    let b = 1.0 / tap;
+    let threshold = step * max(a, b);
+    return ink_ramp(abs(a - b) - threshold, softness * threshold);
+}
+
+// The soft form of `ink_depth_step`.
+fn ink_depth_step_soft(centre: f32, taps: vec4<f32>, step: f32, softness: f32, weight: f32) -> f32 {
+    let across = vec4<f32>(
+        ink_depth_step_soft_tap(centre, taps.x, step, softness),
+        ink_depth_step_soft_tap(centre, taps.y, step, softness),
+        ink_depth_step_soft_tap(centre, taps.z, step, softness),
+        ink_depth_step_soft_tap(centre, taps.w, step, softness),
+    );
+    return min(weight * dot(across, vec4<f32>(1.0)), 1.0);
+}

@@ -220,3 +220,30 @@ fn in_texels([x, y, width, height]: [u32; 4], px: u32) -> [u32; 4] {
     let left = x / px;
     [left, y, (x + width).div_ceil(px) - left, height]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::mem::offset_of;
+
+    #[test]
+    fn the_uniform_has_the_layout_of_the_shader() {
+        let source = [crate::WGSL, include_str!("fullscreen.wgsl"), DISC_WGSL].concat();
+        let module = naga::front::wgsl::parse_str(&source).expect("it is valid");
+        let (_, found) = module.types.iter().find(|(_, t)| t.name.as_deref() == Some("Pass")).expect("it has it");
+        let naga::TypeInner::Struct { members, span } = &found.inner else { panic!("it is no struct") };
+        let offsets: Vec<_> = members[..6].iter().map(|m| (m.name.as_deref().unwrap(), m.offset as usize)).collect();
+        assert_eq!(
+            offsets,
+            [
+                ("step", offset_of!(PassUniform, step)),
+                ("fan", offset_of!(PassUniform, fan)),
+                ("row_reach", offset_of!(PassUniform, row_reach)),
+                ("inverted", offset_of!(PassUniform, inverted)),
+                ("radius_px", offset_of!(PassUniform, radius_px)),
+                ("antialias", offset_of!(PassUniform, antialias)),
+            ]
+        );
+        assert_eq!(*span as usize, size_of::<PassUniform>());
+    }
+}

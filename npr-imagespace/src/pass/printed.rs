@@ -1,0 +1,90 @@
+//! The filters and the inker of 2002 over an RGBA8 target: see [`crate::filter::printed`] for what they decide, and
+//! [`crate::format::printed`] for what the target holds.
+
+use super::fullscreen::{Bound, Fullscreen, Output, flag, uniform};
+use super::{InkTarget, Onto};
+use crate::ImageSpaceError;
+use crate::filter::inker::InkerUniform;
+use crate::filter::printed::{PrintedFilter, PrintedUniform};
+use crate::picture::Taps;
+
+const PRINTED_WGSL: &str = include_str!("printed.wgsl");
+
+/// What a pipeline is made for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    /// Whether normals are asked for, and as printed, and whether depth is.
+    Edges {
+        normal: Option<bool>,
+        depth: bool,
+        taps: Taps,
+    },
+    Inker,
+}
+
+impl From<&PrintedFilter> for Kind {
+    fn from(filter: &PrintedFilter) -> Self {
+        match filter {
+            PrintedFilter::Edges(edges) => Self::Edges {
+                normal: edges.normal.map(|normal| normal.printed_background),
+                depth: edges.depth.is_some(),
+                taps: edges.taps,
+            },
+            PrintedFilter::Inker(_) => Self::Inker,
+        }
+    }
+}
+
+/// The pipeline of a filter: for what it looks for and its taps.
+#[derive(Debug)]
+pub struct PrintedPass {
+    draw: Fullscreen,
+    kind: Kind,
+}
+
+impl PrintedPass {
+    /// Makes the pipeline.
+    pub fn new(device: &wgpu::Device, filter: &PrintedFilter, target: InkTarget) -> Self {
+        let kind = Kind::from(filter);
+        let (label, normal, depth, taps) = match kind {
+            Kind::Edges { normal, depth, taps } => ("printed", normal, depth, taps),
+            Kind::Inker => ("inker", None, false, Taps::Diagonal),
+        };
+        let constants = [
+            flag("with_normal", normal.is_some()),
+            flag("printed_background", normal == Some(true)),
+            flag("with_depth", depth),
+            flag("cross_taps", taps == Taps::Cross),
+        ];
+        let bound = [Bound::Uniform, Bound::Float];
+        Self { draw: Fullscreen::new(device, label, PRINTED_WGSL, &bound, &constants, Output::Ink(target)), kind }
+    }
+
+    /// Records filtering `texels`, `Rgba8Unorm` of the target's size.
+    ///
+    /// # Errors
+    /// If a threshold, or the inker's softness, is out of its range.
+    ///
+    /// # Panics
+    /// If the filter looks for anything else than what the pass was made for.
+    pub fn record(
+        &self,
+        device: &wgpu::Device,
+        encoder: &mut wgpu::CommandEncoder,
+        filter: &PrintedFilter,
+        texels: &wgpu::TextureView,
+        onto: &Onto<'_>,
+    ) -> Result<(), ImageSpaceError> {
+        assert_eq!(Kind::from(filter), self.kind, "a pass for another filter");
+        let what = match filter {
+            PrintedFilter::Edges(edges) => uniform(device, bytemuck::bytes_of(&PrintedUniform::new(edges)?)),
+            PrintedFilter::Inker(inker) if !(inker.softness >= 0.0 && inker.softness.is_finite()) => {
+                return Err(ImageSpaceError::Softness { softness: inker.softness });
+            }
+            PrintedFilter::Inker(inker) => uniform(device, bytemuck::bytes_of(&InkerUniform::from(inker))),
+        };
+        let resources = [what.as_entire_binding(), wgpu::BindingResource::TextureView(texels)];
+        self.draw.record(device, encoder, &resources, onto);
+        Ok(())
+    }
+}

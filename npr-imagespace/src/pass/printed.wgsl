@@ -1,0 +1,56 @@
+// The filters and the inker of 2002 over an RGBA8 target. Appended to `fullscreen.wgsl`.
+
+@group(0) @binding(1) var<uniform> what: InkPrinted;
+@group(0) @binding(1) var<uniform> inker: InkInker;
+@group(0) @binding(2) var texels: texture_2d<f32>;
+
+// Known when the pipeline is made: a software rasteriser runs through what it branches around.
+override with_normal: bool;
+override printed_background: bool;
+override with_depth: bool;
+override cross_taps: bool;
+
+fn tap_px(pixel: vec2<i32>, tap: u32, reach: vec2<i32>) -> vec2<i32> {
+    if cross_taps {
+        return pixel + ink_tap_cross(tap, reach);
+    }
+    return pixel + ink_tap_diagonal(tap, reach);
+}
+
+fn normals_differ(centre: vec3<i32>, tap0: vec3<i32>, tap1: vec3<i32>, tap2: vec3<i32>, tap3: vec3<i32>) -> bool {
+    if printed_background {
+        return ink_normal_bytes_edge_printed(centre, tap0, tap1, tap2, tap3, what.normal_threshold);
+    }
+    return ink_normal_bytes_edge(centre, tap0, tap1, tap2, tap3, what.normal_threshold);
+}
+
+@fragment
+fn fs_printed(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    let pixel = vec2<i32>(position.xy);
+    let reach = ink_reach(vec2<u32>(pixel), textureDimensions(texels));
+    let centre = ink_bytes(textureLoad(texels, pixel, 0));
+    let tap0 = ink_bytes(textureLoad(texels, tap_px(pixel, 0u, reach), 0));
+    let tap1 = ink_bytes(textureLoad(texels, tap_px(pixel, 1u, reach), 0));
+    let tap2 = ink_bytes(textureLoad(texels, tap_px(pixel, 2u, reach), 0));
+    let tap3 = ink_bytes(textureLoad(texels, tap_px(pixel, 3u, reach), 0));
+    var is_line = false;
+    if with_normal {
+        is_line = normals_differ(centre.xyz, tap0.xyz, tap1.xyz, tap2.xyz, tap3.xyz);
+    }
+    if with_depth {
+        let depths = vec4<u32>(vec4<i32>(tap0.w, tap1.w, tap2.w, tap3.w));
+        is_line = is_line || ink_depth_plain_codes(u32(centre.w), depths, what.depth_form, what.depth_threshold);
+    }
+    return ink_premultiplied(select(0.0, 1.0, is_line), how);
+}
+
+@fragment
+fn fs_inker(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    let pixel = vec2<i32>(position.xy);
+    let reach = ink_reach(vec2<u32>(pixel), textureDimensions(texels));
+    let tap0 = textureLoad(texels, pixel + ink_tap_diagonal(0u, reach), 0);
+    let tap1 = textureLoad(texels, pixel + ink_tap_diagonal(1u, reach), 0);
+    let tap2 = textureLoad(texels, pixel + ink_tap_diagonal(2u, reach), 0);
+    let tap3 = textureLoad(texels, pixel + ink_tap_diagonal(3u, reach), 0);
+    return ink_premultiplied(ink_printed_inker(inker, tap0, tap1, tap2, tap3), how);
+}

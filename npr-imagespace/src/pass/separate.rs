@@ -1,0 +1,124 @@
+//! The filters over someone else's G-buffer: see [`crate::filter::separate`] for what they decide, and how the numbers
+//! of a depth buffer are read.
+
+use super::fullscreen::{Bound, Fullscreen, Output, flag, uniform};
+use super::{InkTarget, Onto};
+use crate::ImageSpaceError;
+use crate::filter::separate::{SeparateDepthTest, SeparateFilter, SeparateUniform};
+use crate::picture::Taps;
+
+const SEPARATE_WGSL: &str = include_str!("separate.wgsl");
+
+/// The textures of a G-buffer, all of the target's size. What the filter does not ask for may be `None`.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct SeparateTextures<'a> {
+    /// Any format of floats with three channels or more.
+    pub normal: Option<&'a wgpu::TextureView>,
+    /// Any format of floats, the first channel; or a depth buffer, `Depth32Float` or the depth alone of another.
+    pub depth: Option<&'a wgpu::TextureView>,
+    /// Any format of unsigned whole numbers, the first channel: `R8Uint`, `R16Uint`, `R32Uint`.
+    pub region: Option<&'a wgpu::TextureView>,
+}
+
+/// What a pipeline is made for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Kind {
+    normal: bool,
+    /// 0 none, 1 bends, 2 steps, 3 plain.
+    depth: u8,
+    region: bool,
+    taps: Taps,
+    soft: bool,
+}
+
+impl From<&SeparateFilter> for Kind {
+    fn from(filter: &SeparateFilter) -> Self {
+        let depth = filter.depth.map_or(0, |depth| match depth.test {
+            SeparateDepthTest::Bend { .. } => 1,
+            SeparateDepthTest::Step { .. } => 2,
+            SeparateDepthTest::Plain { .. } => 3,
+        });
+        Self {
+            normal: filter.normal.is_some(),
+            depth,
+            region: filter.regions,
+            taps: filter.taps,
+            soft: filter.softness > 0.0,
+        }
+    }
+}
+
+/// The pipeline of a filter: for what it looks for, its taps, and hard or soft lines.
+#[derive(Debug)]
+pub struct SeparatePass {
+    draw: Fullscreen,
+    kind: Kind,
+    /// For what is not asked for: a texel of floats and one of whole numbers.
+    none: [wgpu::TextureView; 2],
+}
+
+impl SeparatePass {
+    /// Makes the pipeline.
+    pub fn new(device: &wgpu::Device, filter: &SeparateFilter, target: InkTarget) -> Self {
+        let kind = Kind::from(filter);
+        let constants = [
+            flag("with_normal", kind.normal),
+            flag("with_region", kind.region),
+            ("depth_test", f64::from(kind.depth)),
+            flag("cross_taps", kind.taps == Taps::Cross),
+            flag("soft", kind.soft),
+        ];
+        let bound = [Bound::Uniform, Bound::Float, Bound::Float, Bound::Whole];
+        let none = [wgpu::TextureFormat::R8Unorm, wgpu::TextureFormat::R8Uint].map(|format| {
+            let texture = device.create_texture(&wgpu::TextureDescriptor {
+                label: Some("not asked for"),
+                size: wgpu::Extent3d::default(),
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage: wgpu::TextureUsages::TEXTURE_BINDING,
+                view_formats: &[],
+            });
+            texture.create_view(&Default::default())
+        });
+        Self {
+            draw: Fullscreen::new(device, "separate", SEPARATE_WGSL, &bound, &constants, Output::Ink(target)),
+            kind,
+            none,
+        }
+    }
+
+    /// Records filtering the textures.
+    ///
+    /// # Errors
+    /// If a threshold is out of its range, or a depth buffer's numbers make no depths.
+    ///
+    /// # Panics
+    /// If the filter looks for anything else than what the pass was made for, or in a texture that is not given.
+    pub fn record(
+        &self,
+        device: &wgpu::Device,
+        encoder: &mut wgpu::CommandEncoder,
+        filter: &SeparateFilter,
+        textures: &SeparateTextures<'_>,
+        onto: &Onto<'_>,
+    ) -> Result<(), ImageSpaceError> {
+        let what = SeparateUniform::new(filter)?;
+        assert_eq!(Kind::from(filter), self.kind, "a pass for another filter");
+        let what = uniform(device, bytemuck::bytes_of(&what));
+        let texture = |asked: bool, given: Option<&wgpu::TextureView>, none: &wgpu::TextureView| {
+            assert!(!asked || given.is_some(), "a texture that is filtered is not given");
+            if asked { given.unwrap_or(none).clone() } else { none.clone() }
+        };
+        let [no_float, no_whole] = &self.none;
+        let views = [
+            texture(self.kind.normal, textures.normal, no_float),
+            texture(self.kind.depth != 0, textures.depth, no_float),
+            texture(self.kind.region, textures.region, no_whole),
+        ];
+        let [normal, depth, region] = views.each_ref().map(wgpu::BindingResource::TextureView);
+        self.draw.record(device, encoder, &[what.as_entire_binding(), normal, depth, region], onto);
+        Ok(())
+    }
+}
