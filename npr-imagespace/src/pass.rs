@@ -21,6 +21,8 @@ pub mod disc;
 mod fullscreen;
 pub mod fused;
 pub mod lay;
+pub mod printed;
+pub mod separate;
 pub mod step;
 
 use crate::composite::Composite;
