@@ -120,6 +120,16 @@ impl DepthCode {
         Ok(Self { scale: -scale as f32, bias: (f64::from(far) * scale) as f32, most, parallel: 1 })
     }
 
+    /// The same code from a depth buffer's value d, where what [`DepthCode`] calls v is `v_at_0 + d · v_per_unit`.
+    ///
+    /// A depth buffer is linear on the screen, so any can be used, and a fragment has its value at hand, in
+    /// `position.z`. v is 1/z in perspective: with reversed depth and no far plane d = near / z, so that v is
+    /// d / near. In a parallel view v is z: far − d (far − near) with reversed depth.
+    pub fn of_buffer(&self, v_at_0: f64, v_per_unit: f64) -> Self {
+        let (scale, bias) = (f64::from(self.scale), f64::from(self.bias));
+        Self { scale: (scale * v_per_unit) as f32, bias: (bias + scale * v_at_0) as f32, ..*self }
+    }
+
     /// Eye-space depth of a code; infinite for 0 where the range is.
     pub fn depth(&self, code: u32) -> f64 {
         let v = (f64::from(code) - f64::from(self.bias)) / f64::from(self.scale);
@@ -155,12 +165,18 @@ pub struct Tap {
 
 /// A pixel in one word: `R32Uint`. `region` 0, and a depth that no surface has, give background.
 pub fn ink_narrow_pack(normal: Vec3, region: u32, depth: f32, code: &DepthCode) -> u32 {
-    let layout = TexelLayout::Narrow;
     if region == 0 || !ink_is_surface(depth) {
         return 0;
     }
+    ink_narrow_word(normal, region, ink_depth_code(depth, code))
+}
+
+/// A surface in one word: for who has its depth code at hand, from a depth buffer, say ([`DepthCode::of_buffer`]).
+/// `region` is not 0.
+pub fn ink_narrow_word(normal: Vec3, region: u32, depth_code: u32) -> u32 {
+    let layout = TexelLayout::Narrow;
     let oct = ink_oct_store(ink_oct_encode(normal, layout.normal_most()), layout.normal_most());
-    ink_depth_code(depth, code) | ink_fold_region(region, layout.region_most()) << 14 | oct.x << 22 | oct.y << 27
+    depth_code | ink_fold_region(region, layout.region_most()) << 14 | oct.x << 22 | oct.y << 27
 }
 
 /// A pixel of one word.
@@ -175,13 +191,18 @@ pub fn ink_narrow_tap(word: u32) -> Tap {
 
 /// A pixel in two words: `Rg32Uint`. `region` 0, and a depth that no surface has, give background.
 pub fn ink_wide_pack(normal: Vec3, region: u32, depth: f32, code: &DepthCode) -> [u32; 2] {
-    let layout = TexelLayout::Wide;
     if region == 0 || !ink_is_surface(depth) {
         return BACKGROUND;
     }
+    ink_wide_words(normal, region, ink_depth_code(depth, code))
+}
+
+/// A surface in two words, as [`ink_narrow_word`].
+pub fn ink_wide_words(normal: Vec3, region: u32, depth_code: u32) -> [u32; 2] {
+    let layout = TexelLayout::Wide;
     let oct = ink_oct_store(ink_oct_encode(normal, layout.normal_most()), layout.normal_most());
     let region = ink_fold_region(region, layout.region_most());
-    [ink_depth_code(depth, code) | region << 24, oct.x | oct.y << 8 | region >> 8 << 16]
+    [depth_code | region << 24, oct.x | oct.y << 8 | region >> 8 << 16]
 }
 
 /// A pixel of two words.
