@@ -19,6 +19,7 @@
 
 mod fullscreen;
 pub mod fused;
+pub mod fused_strips;
 
 use crate::composite::Composite;
 
