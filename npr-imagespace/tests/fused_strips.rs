@@ -255,7 +255,8 @@ fn pictures_of_any_size() {
                 let filter = FusedFilter { normal_cos: Some(normal_cos), depth, taps, ..Default::default() };
                 let strips = FusedStrips::new(&gpu.device, &filter, layout);
                 let sizes = [(1, 1), (1, 2), (2, 1), (1, 40), (41, 1), (2, 2), (2, 9), (9, 2), (3, 3), (5, 7), (6, 34)];
-                let wide = [(7, 3), (33, 35), (34, 33), (35, 3), (66, 67), (131, 5), (4, 131)];
+                let wide =
+                    [(9, 8), (10, 6), (11, 4), (19, 38), (33, 35), (34, 33), (65, 3), (66, 67), (131, 5), (4, 131)];
                 for size in sizes.into_iter().chain(wide).map(|(x, y)| UVec2::new(x, y)) {
                     for kind in [Kind::Background, Kind::Words, Kind::Specks] {
                         let words = texels(kind, layout, size, &mut numbers);

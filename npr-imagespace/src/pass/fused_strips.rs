@@ -25,9 +25,9 @@ const STRIPS_WGSL: &str = include_str!("fused_strips.wgsl");
 pub const STRIPS_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
 /// Columns of a strip, and how many strips a workgroup has side by side, as in the shader.
-const COLUMNS: u32 = 4;
+const COLUMNS: u32 = 8;
 const STRIPS: u32 = 8;
-/// Of a strip. Two more are loaded.
+/// Of a strip, a multiple of 4. Two more are read.
 const ROWS: u32 = 32;
 /// Invocations of a workgroup along the picture's border, as in the shader.
 const BORDER: u32 = 64;
@@ -61,6 +61,7 @@ pub struct FusedStrips {
     bindings: wgpu::BindGroupLayout,
     inner: wgpu::ComputePipeline,
     border: wgpu::ComputePipeline,
+    nearest: wgpu::Sampler,
     layout: TexelLayout,
     made_for: Structure,
 }
@@ -107,7 +108,8 @@ impl FusedStrips {
             })
         };
         let [inner, border] = ["fused_strips", "fused_border"].map(|entry| pipeline(entry, &constants));
-        Self { bindings, inner, border, layout, made_for: structure(filter) }
+        let nearest = device.create_sampler(&wgpu::SamplerDescriptor::default());
+        Self { bindings, inner, border, nearest, layout, made_for: structure(filter) }
     }
 
     /// Records filtering `texels`, of format [`texel_format`](crate::pass::fused::texel_format), onto a picture of
@@ -171,6 +173,7 @@ impl FusedStrips {
                 entry(1, strips.as_entire_binding()),
                 entry(2, wgpu::BindingResource::TextureView(texels)),
                 entry(3, wgpu::BindingResource::TextureView(picture)),
+                entry(4, wgpu::BindingResource::Sampler(&self.nearest)),
             ],
         })
     }
@@ -192,10 +195,11 @@ fn bindings(device: &wgpu::Device) -> wgpu::BindGroupLayout {
         format: STRIPS_FORMAT,
         view_dimension: wgpu::TextureViewDimension::D2,
     };
+    let nearest = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::NonFiltering);
     let entry =
         |binding, ty| wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::COMPUTE, ty, count: None };
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("fused strips"),
-        entries: &[entry(0, uniform), entry(1, uniform), entry(2, texels), entry(3, picture)],
+        entries: &[entry(0, uniform), entry(1, uniform), entry(2, texels), entry(3, picture), entry(4, nearest)],
     })
 }

@@ -1,7 +1,12 @@
-// The hard fused filter by strips of four columns, from the top down. Appended to the library.
+// The hard fused filter by strips of eight columns, from the top down; and apart from it on the picture's border.
+// Appended to the library.
+//
+// A software rasteriser runs eight invocations as one vector, and both sides of what they branch at. A loop goes on
+// until the last of them leaves it, and where it is left from its head the rest of its body is run once more for
+// nobody: so loops are left at their ends. What a loop carries over is copied at each turn: so a turn is four rows.
 
 struct Strips {
-    // Where pixels have all taps: left, top, right, bottom in px, the latter two exclusive.
+    // Where all taps are in the picture: left, top, right, bottom in px, the latter two exclusive.
     inner: vec4<i32>,
     // Where there may be lines: left, top, width, height in px.
     area: vec4<u32>,
@@ -12,39 +17,272 @@ struct Strips {
 @group(0) @binding(1) var<uniform> strips: Strips;
 @group(0) @binding(2) var texels: texture_2d<u32>;
 @group(0) @binding(3) var picture: texture_storage_2d<rgba8unorm, write>;
+@group(0) @binding(4) var nearest: sampler;
 
-// Known when the pipeline is made: a software rasteriser runs through what it branches around.
 override narrow: bool;
 override cross_taps: bool;
 override asks_normals: bool;
 override asks_bends: bool;
 override asks_steps: bool;
 override asks_regions: bool;
+// Of a strip; a multiple of 4.
 override rows: i32;
 
-// A tap, as pairs are compared: background is all zeros.
-struct Texel {
-    normal: vec3<f32>,
-    length2: f32,
-    // Different where two texels are across whatever their depths, and directions.
-    key: u32,
-    depth: i32,
-    // On differences of depth of which this one's is the largest.
-    threshold: i32,
+// Of a strip; two more are read.
+const COLUMNS: i32 = 8;
+
+// Four texels beside each other. Of background all is zero, so that no comparison need ask for it.
+struct Texels {
+    x: vec4<f32>,
+    y: vec4<f32>,
+    z: vec4<f32>,
+    length2: vec4<f32>,
+    // Where two keys differ there is ink whatever else the texels hold: the region, if asked for, else whether it is a
+    // surface; and whether that has no normal, if asked for.
+    key: vec4<u32>,
+    depth: vec4<i32>,
+    // On differences of depth codes of which this one is the largest. It never falls as the code grows, so that of
+    // several thresholds the largest is that of the largest code.
+    threshold: vec4<i32>,
 }
 
+// Ten columns, four, four and two; of the last four, two are never looked at, nor worked out.
 struct Row {
-    t0: Texel,
-    t1: Texel,
-    t2: Texel,
-    t3: Texel,
-    t4: Texel,
-    t5: Texel,
+    a: Texels,
+    b: Texels,
+    c: Texels,
 }
 
-struct PairInk {
-    upper: vec4<bool>,
-    lower: vec4<bool>,
+struct TwoRows {
+    upper: Row,
+    lower: Row,
+}
+
+// Texels of four pixels around a corner, as a gather has them: w and z are the upper two, x and y the lower two.
+struct Corner {
+    words0: vec4<u32>,
+    words1: vec4<u32>,
+}
+
+// Ink, or what may be, of a strip's eight columns.
+struct Eight {
+    a: vec4<bool>,
+    b: vec4<bool>,
+}
+
+struct Between {
+    upper: Eight,
+    lower: Eight,
+}
+
+const NO_NORMAL: u32 = 0x80000000u;
+
+fn texels_of(words0: vec4<u32>, words1: vec4<u32>) -> Texels {
+    var region = (words0 >> vec4<u32>(24u)) | ((words1 >> vec4<u32>(16u)) << vec4<u32>(8u));
+    var depth = words0 & vec4<u32>(0xffffffu);
+    var u = words1 & vec4<u32>(255u);
+    var v = (words1 >> vec4<u32>(8u)) & vec4<u32>(255u);
+    var most = INK_OCT8_MOST;
+    if narrow {
+        region = (words0 >> vec4<u32>(14u)) & vec4<u32>(255u);
+        depth = words0 & vec4<u32>(0x3fffu);
+        u = (words0 >> vec4<u32>(22u)) & vec4<u32>(31u);
+        v = words0 >> vec4<u32>(27u);
+        most = INK_OCT5_MOST;
+    }
+    let surface = region != vec4<u32>(0u);
+    var four: Texels;
+    four.key = select(vec4<u32>(0u), vec4<u32>(1u), surface);
+    if asks_regions {
+        four.key = region;
+    }
+    if asks_normals {
+        // As `ink_oct_load` and `ink_oct_vector`, where z < 0: sign(x) (most - |y|) = x - sign(x) |z|.
+        let flat_x = vec4<f32>(vec4<i32>(u)) - (most + 1.0);
+        let flat_y = vec4<f32>(vec4<i32>(v)) - (most + 1.0);
+        let z = most - abs(flat_x) - abs(flat_y);
+        let below = min(z, vec4<f32>(0.0));
+        let is_normal = surface & (u != vec4<u32>(0u));
+        four.x = select(vec4<f32>(0.0), flat_x + select(below, -below, flat_x < vec4<f32>(0.0)), is_normal);
+        four.y = select(vec4<f32>(0.0), flat_y + select(below, -below, flat_y < vec4<f32>(0.0)), is_normal);
+        four.z = select(vec4<f32>(0.0), z, is_normal);
+        four.length2 = four.x * four.x + four.y * four.y + four.z * four.z;
+        four.key |= select(vec4<u32>(0u), vec4<u32>(NO_NORMAL), surface & (u == vec4<u32>(0u)));
+    }
+    if asks_bends || asks_steps {
+        four.depth = select(vec4<i32>(0), vec4<i32>(depth), surface);
+        four.threshold = ink_taps_depth_thresholds(what, four.depth);
+    }
+    return four;
+}
+
+// A gather costs about what a load does, and brings a word of four texels. A corner is half a pixel from where rounding
+// could make it another.
+fn corner_at(corner: vec2<i32>, per_px: vec2<f32>) -> Corner {
+    let at = vec2<f32>(corner) * per_px;
+    var words: Corner;
+    words.words0 = textureGather(0, texels, nearest, at);
+    if !narrow {
+        words.words1 = textureGather(1, texels, nearest, at);
+    }
+    return words;
+}
+
+fn upper_of(left: Corner, right: Corner) -> Texels {
+    return texels_of(vec4<u32>(left.words0.wz, right.words0.wz), vec4<u32>(left.words1.wz, right.words1.wz));
+}
+
+fn lower_of(left: Corner, right: Corner) -> Texels {
+    return texels_of(vec4<u32>(left.words0.xy, right.words0.xy), vec4<u32>(left.words1.xy, right.words1.xy));
+}
+
+// The rows above and below the corner's y; the second column begins at its x.
+fn rows_at(corner: vec2<i32>, per_px: vec2<f32>) -> TwoRows {
+    let a = corner_at(corner, per_px);
+    let b = corner_at(corner + vec2<i32>(2, 0), per_px);
+    let c = corner_at(corner + vec2<i32>(4, 0), per_px);
+    let d = corner_at(corner + vec2<i32>(6, 0), per_px);
+    let e = corner_at(corner + vec2<i32>(8, 0), per_px);
+    return TwoRows(
+        Row(upper_of(a, b), upper_of(c, d), upper_of(e, e)),
+        Row(lower_of(a, b), lower_of(c, d), lower_of(e, e)),
+    );
+}
+
+// The four texels from the second on.
+fn shifted_four(a: Texels, b: Texels) -> Texels {
+    return Texels(
+        vec4<f32>(a.x.yzw, b.x.x),
+        vec4<f32>(a.y.yzw, b.y.x),
+        vec4<f32>(a.z.yzw, b.z.x),
+        vec4<f32>(a.length2.yzw, b.length2.x),
+        vec4<u32>(a.key.yzw, b.key.x),
+        vec4<i32>(a.depth.yzw, b.depth.x),
+        vec4<i32>(a.threshold.yzw, b.threshold.x),
+    );
+}
+
+// The row from its second column on.
+fn shifted(row: Row) -> Row {
+    return Row(shifted_four(row.a, row.b), shifted_four(row.b, row.c), shifted_four(row.c, row.c));
+}
+
+fn any_of(p: Eight, q: Eight) -> Eight {
+    return Eight(p.a | q.a, p.b | q.b);
+}
+
+fn four_across(a: Texels, b: Texels) -> vec4<bool> {
+    var is = a.key != b.key;
+    if asks_steps {
+        is = is | (abs(a.depth - b.depth) > max(a.threshold, b.threshold));
+    }
+    if asks_normals {
+        // cos |cos| for cos^2: negative where cos is. Both sides are 0 for no normal, as they are for background.
+        let cos = a.x * b.x + a.y * b.y + a.z * b.z;
+        is = is | (cos * abs(cos) < (a.length2 * b.length2) * what.normal_cos2);
+    }
+    return is;
+}
+
+fn four_bend(a: Texels, centre: Texels, b: Texels) -> vec4<bool> {
+    // Where one of the three is background and another not, there is ink already.
+    let bend = abs(a.depth - centre.depth - (centre.depth - b.depth));
+    return (bend > max(max(a.threshold, b.threshold), centre.threshold));
+}
+
+fn bends(a: Row, centre: Row, b: Row) -> Eight {
+    if !asks_bends {
+        return Eight();
+    }
+    return Eight(four_bend(a.a, centre.a, b.a), four_bend(a.b, centre.b, b.b));
+}
+
+// Whether the first nine columns of two rows are across: those from the first on, and from the second on.
+fn across(p: Row, q: Row) -> Between {
+    let a = four_across(p.a, q.a);
+    let b = four_across(p.b, q.b);
+    let c = four_across(p.c, q.c);
+    return Between(Eight(a, b), Eight(vec4<bool>(a.yzw, b.x), vec4<bool>(b.yzw, c.x)));
+}
+
+// Ink of the pairs between two rows.
+fn between(upper: Row, lower: Row) -> Between {
+    if cross_taps {
+        let down = across(upper, lower).lower;
+        return Between(down, down);
+    }
+    let falling = across(upper, shifted(lower));
+    let rising = across(shifted(upper), lower);
+    return Between(any_of(falling.lower, rising.upper), any_of(falling.upper, rising.lower));
+}
+
+// Ink of the pairs in a row, and of bends at it.
+fn within(above: Row, row: Row, below: Row) -> Eight {
+    let middle = shifted(row);
+    if cross_taps {
+        let beside = across(row, middle);
+        let upright = bends(shifted(above), middle, shifted(below));
+        let level = bends(row, middle, shifted(middle));
+        return any_of(any_of(beside.upper, beside.lower), any_of(upright, level));
+    }
+    return any_of(bends(above, middle, shifted(shifted(below))), bends(shifted(shifted(above)), middle, below));
+}
+
+// A row's ink as the bits of a byte.
+fn ink_bits(from_above: Eight, inner: Eight, from_below: Eight) -> u32 {
+    let ink = any_of(any_of(from_above, from_below), inner);
+    let low = select(vec4<u32>(0u), vec4<u32>(1u, 2u, 4u, 8u), ink.a);
+    let high = select(vec4<u32>(0u), vec4<u32>(16u, 32u, 64u, 128u), ink.b);
+    let both = low | high;
+    return both.x | both.y | both.z | both.w;
+}
+
+@compute @workgroup_size(8)
+fn fused_strips(@builtin(global_invocation_id) id: vec3<u32>) {
+    let x = strips.inner.x + COLUMNS * i32(id.x);
+    var y = strips.inner.y + rows * i32(id.y);
+    let bottom = min(y + rows, strips.inner.w);
+    if x >= strips.inner.z {
+        return;
+    }
+    // A byte a row.
+    let columns = (255u >> u32(max(x + COLUMNS - strips.inner.z, 0))) * 0x01010101u;
+    let per_px = 1.0 / vec2<f32>(textureDimensions(texels));
+    let first = rows_at(vec2<i32>(x, y), per_px);
+    var above = first.upper;
+    var row = first.lower;
+    var ink = between(above, row).lower;
+    loop {
+        let two = rows_at(vec2<i32>(x, y + 2), per_px);
+        let four = rows_at(vec2<i32>(x, y + 4), per_px);
+        let ink1 = between(row, two.upper);
+        let ink2 = between(two.upper, two.lower);
+        let ink3 = between(two.lower, four.upper);
+        let ink4 = between(four.upper, four.lower);
+        var mask = ink_bits(ink, within(above, row, two.upper), ink1.upper);
+        mask |= ink_bits(ink1.lower, within(row, two.upper, two.lower), ink2.upper) << 8u;
+        mask |= ink_bits(ink2.lower, within(two.upper, two.lower, four.upper), ink3.upper) << 16u;
+        mask |= ink_bits(ink3.lower, within(two.lower, four.upper, four.lower), ink4.upper) << 24u;
+        mask &= columns & (0xffffffffu >> u32(8 * max(y + 4 - bottom, 0)));
+        // A store is dear, even where no invocation has one: one a turn, and as many turns as the fullest mask has bits.
+        loop {
+            if mask != 0u {
+                let bit = i32(firstTrailingBit(mask));
+                textureStore(picture, vec2<i32>(x + (bit & 7), y + (bit >> 3u)), strips.line);
+            }
+            mask &= mask - 1u;
+            if mask == 0u {
+                break;
+            }
+        }
+        above = four.upper;
+        row = four.lower;
+        ink = ink4.lower;
+        y += 4;
+        if y >= bottom {
+            break;
+        }
+    }
 }
 
 fn tap_at(pixel: vec2<i32>) -> InkTap {
@@ -53,137 +291,6 @@ fn tap_at(pixel: vec2<i32>) -> InkTap {
         return ink_narrow_tap(words.x);
     }
     return ink_wide_tap(words);
-}
-
-fn texel_at(pixel: vec2<i32>) -> Texel {
-    let tap = tap_at(pixel);
-    let surface = tap.region != 0u;
-    var texel: Texel;
-    texel.key = select(0u, 1u, surface);
-    if asks_regions {
-        texel.key = tap.region;
-    }
-    if asks_normals {
-        texel.normal = select(vec3<f32>(0.0), tap.normal, surface);
-        texel.length2 = dot(texel.normal, texel.normal);
-        texel.key |= select(0u, 0x80000000u, surface && texel.length2 == 0.0);
-    }
-    if asks_bends || asks_steps {
-        texel.depth = select(0, tap.depth, surface);
-        let growth = ((u32(texel.depth) >> what.depth_shift) * what.depth_step) >> (16u - what.depth_shift);
-        texel.threshold = i32(max(what.depth_slack, what.depth_base + growth));
-    }
-    return texel;
-}
-
-fn row_at(columns: array<i32, 6>, y: i32) -> Row {
-    return Row(
-        texel_at(vec2<i32>(columns[0], y)),
-        texel_at(vec2<i32>(columns[1], y)),
-        texel_at(vec2<i32>(columns[2], y)),
-        texel_at(vec2<i32>(columns[3], y)),
-        texel_at(vec2<i32>(columns[4], y)),
-        texel_at(vec2<i32>(columns[5], y)),
-    );
-}
-
-fn across(a: Texel, b: Texel) -> bool {
-    var is = a.key != b.key;
-    if asks_steps {
-        is = is | (abs(a.depth - b.depth) > max(a.threshold, b.threshold));
-    }
-    if asks_normals {
-        let cos = dot(a.normal, b.normal);
-        is = is | (cos * abs(cos) < (a.length2 * b.length2) * what.normal_cos2);
-    }
-    return is;
-}
-
-fn bends(a: Texel, centre: Texel, b: Texel) -> bool {
-    if !asks_bends {
-        return false;
-    }
-    return abs(a.depth - centre.depth - (centre.depth - b.depth)) > max(max(a.threshold, b.threshold), centre.threshold);
-}
-
-// Pairs between two rows.
-fn pairs(upper: Row, lower: Row) -> PairInk {
-    if cross_taps {
-        let down = vec4<bool>(
-            across(upper.t1, lower.t1), across(upper.t2, lower.t2), across(upper.t3, lower.t3), across(upper.t4, lower.t4)
-        );
-        return PairInk(down, down);
-    }
-    let right = vec4<bool>(
-        across(upper.t0, lower.t1), across(upper.t1, lower.t2), across(upper.t2, lower.t3), across(upper.t3, lower.t4)
-    );
-    let right4 = across(upper.t4, lower.t5);
-    let left = vec4<bool>(
-        across(upper.t1, lower.t0), across(upper.t2, lower.t1), across(upper.t3, lower.t2), across(upper.t4, lower.t3)
-    );
-    let left4 = across(upper.t5, lower.t4);
-    return PairInk(
-        left | vec4<bool>(right.yzw, right4),
-        right | vec4<bool>(left.yzw, left4),
-    );
-}
-
-fn centres(above: Row, middle: Row, below: Row) -> vec4<bool> {
-    if cross_taps {
-        let right = vec4<bool>(
-            across(middle.t0, middle.t1), across(middle.t1, middle.t2), across(middle.t2, middle.t3),
-            across(middle.t3, middle.t4)
-        );
-        let right4 = across(middle.t4, middle.t5);
-        return right | vec4<bool>(right.yzw, right4) | vec4<bool>(
-            bends(above.t1, middle.t1, below.t1) | bends(middle.t0, middle.t1, middle.t2),
-            bends(above.t2, middle.t2, below.t2) | bends(middle.t1, middle.t2, middle.t3),
-            bends(above.t3, middle.t3, below.t3) | bends(middle.t2, middle.t3, middle.t4),
-            bends(above.t4, middle.t4, below.t4) | bends(middle.t3, middle.t4, middle.t5),
-        );
-    }
-    return vec4<bool>(
-        bends(above.t0, middle.t1, below.t2) | bends(above.t2, middle.t1, below.t0),
-        bends(above.t1, middle.t2, below.t3) | bends(above.t3, middle.t2, below.t1),
-        bends(above.t2, middle.t3, below.t4) | bends(above.t4, middle.t3, below.t2),
-        bends(above.t3, middle.t4, below.t5) | bends(above.t5, middle.t4, below.t3),
-    );
-}
-
-@compute @workgroup_size(8)
-fn fused_strips(@builtin(global_invocation_id) id: vec3<u32>) {
-    let x = strips.inner.x + 4 * i32(id.x);
-    let top = strips.inner.y + rows * i32(id.y);
-    let bottom = min(top + rows, strips.inner.w);
-    let last = strips.inner.z;
-    if x >= last {
-        return;
-    }
-    let columns = array<i32, 6>(x - 1, x, min(x + 1, last), min(x + 2, last), min(x + 3, last), min(x + 4, last));
-    let inside = vec4<i32>(x, x + 1, x + 2, x + 3) < vec4<i32>(last);
-    var above = row_at(columns, top - 1);
-    var middle = row_at(columns, top);
-    var before = pairs(above, middle).lower;
-    for (var y = top; y < bottom; y++) {
-        let below = row_at(columns, y + 1);
-        let after = pairs(middle, below);
-        let ink = (before | after.upper | centres(above, middle, below)) & inside;
-        if ink.x {
-            textureStore(picture, vec2<i32>(x, y), strips.line);
-        }
-        if ink.y {
-            textureStore(picture, vec2<i32>(x + 1, y), strips.line);
-        }
-        if ink.z {
-            textureStore(picture, vec2<i32>(x + 2, y), strips.line);
-        }
-        if ink.w {
-            textureStore(picture, vec2<i32>(x + 3, y), strips.line);
-        }
-        before = after.lower;
-        above = middle;
-        middle = below;
-    }
 }
 
 fn tap_beside(pixel: vec2<i32>, tap: u32, reach: vec2<i32>) -> InkTap {
