@@ -2,6 +2,7 @@
 //!
 //! - [`fused`]: packed texels ([`crate::format::texel`]) to ink, or at once over a picture: nothing is written in
 //!   between.
+//! - [`fused_strips`]: the same, hard and opaque, by compute shaders, for software rasterisers.
 //! - [`separate`]: the same from textures of one's own: normals, depth, region numbers, any of them.
 //! - [`printed`]: the filters and the inker of 2002 over an RGBA8 target ([`crate::format::printed`]), on its bytes.
 //! - [`step`]: one step of dilation or erosion, hard and soft, from ink to ink.

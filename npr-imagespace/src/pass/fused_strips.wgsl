@@ -1,4 +1,4 @@
-// The hard fused filter by strips of eight columns, from the top down; and apart from it on the picture's border.
+// The hard fused filter by strips of four columns, from the top down; and apart from it on the picture's border.
 // Appended to the library.
 //
 // A software rasteriser runs eight invocations as one vector, and both sides of what they branch at. A loop goes on
@@ -29,7 +29,7 @@ override asks_regions: bool;
 override rows: i32;
 
 // Of a strip; two more are read.
-const COLUMNS: i32 = 8;
+const COLUMNS: i32 = 4;
 
 // Four texels beside each other. Of background all is zero, so that no comparison need ask for it.
 struct Texels {
@@ -46,11 +46,10 @@ struct Texels {
     threshold: vec4<i32>,
 }
 
-// Ten columns, four, four and two; of the last four, two are never looked at, nor worked out.
+// Six columns, four and two; of the last four two are never looked at, nor worked out.
 struct Row {
     a: Texels,
     b: Texels,
-    c: Texels,
 }
 
 struct TwoRows {
@@ -64,15 +63,11 @@ struct Corner {
     words1: vec4<u32>,
 }
 
-// Ink, or what may be, of a strip's eight columns.
-struct Eight {
-    a: vec4<bool>,
-    b: vec4<bool>,
-}
-
-struct Between {
-    upper: Eight,
-    lower: Eight,
+// Which of the first five pairs of two rows are across: from the first on, and from the second on; or ink of the pairs
+// between two rows.
+struct Across {
+    upper: vec4<bool>,
+    lower: vec4<bool>,
 }
 
 const NO_NORMAL: u32 = 0x80000000u;
@@ -141,12 +136,7 @@ fn rows_at(corner: vec2<i32>, per_px: vec2<f32>) -> TwoRows {
     let a = corner_at(corner, per_px);
     let b = corner_at(corner + vec2<i32>(2, 0), per_px);
     let c = corner_at(corner + vec2<i32>(4, 0), per_px);
-    let d = corner_at(corner + vec2<i32>(6, 0), per_px);
-    let e = corner_at(corner + vec2<i32>(8, 0), per_px);
-    return TwoRows(
-        Row(upper_of(a, b), upper_of(c, d), upper_of(e, e)),
-        Row(lower_of(a, b), lower_of(c, d), lower_of(e, e)),
-    );
+    return TwoRows(Row(upper_of(a, b), upper_of(c, c)), Row(lower_of(a, b), lower_of(c, c)));
 }
 
 // The four texels from the second on.
@@ -164,11 +154,7 @@ fn shifted_four(a: Texels, b: Texels) -> Texels {
 
 // The row from its second column on.
 fn shifted(row: Row) -> Row {
-    return Row(shifted_four(row.a, row.b), shifted_four(row.b, row.c), shifted_four(row.c, row.c));
-}
-
-fn any_of(p: Eight, q: Eight) -> Eight {
-    return Eight(p.a | q.a, p.b | q.b);
+    return Row(shifted_four(row.a, row.b), shifted_four(row.b, row.b));
 }
 
 fn four_across(a: Texels, b: Texels) -> vec4<bool> {
@@ -184,57 +170,48 @@ fn four_across(a: Texels, b: Texels) -> vec4<bool> {
     return is;
 }
 
-fn four_bend(a: Texels, centre: Texels, b: Texels) -> vec4<bool> {
+// Whether depth bends at the second to fifth column of a row between others.
+fn bends(a: Texels, centre: Texels, b: Texels) -> vec4<bool> {
+    if !asks_bends {
+        return vec4<bool>(false);
+    }
     // Where one of the three is background and another not, there is ink already.
     let bend = abs(a.depth - centre.depth - (centre.depth - b.depth));
-    return (bend > max(max(a.threshold, b.threshold), centre.threshold));
+    return bend > max(max(a.threshold, b.threshold), centre.threshold);
 }
 
-fn bends(a: Row, centre: Row, b: Row) -> Eight {
-    if !asks_bends {
-        return Eight();
-    }
-    return Eight(four_bend(a.a, centre.a, b.a), four_bend(a.b, centre.b, b.b));
-}
-
-// Whether the first nine columns of two rows are across: those from the first on, and from the second on.
-fn across(p: Row, q: Row) -> Between {
+fn across(p: Row, q: Row) -> Across {
     let a = four_across(p.a, q.a);
     let b = four_across(p.b, q.b);
-    let c = four_across(p.c, q.c);
-    return Between(Eight(a, b), Eight(vec4<bool>(a.yzw, b.x), vec4<bool>(b.yzw, c.x)));
+    return Across(a, vec4<bool>(a.yzw, b.x));
 }
 
 // Ink of the pairs between two rows.
-fn between(upper: Row, lower: Row) -> Between {
+fn between(upper: Row, lower: Row) -> Across {
     if cross_taps {
         let down = across(upper, lower).lower;
-        return Between(down, down);
+        return Across(down, down);
     }
     let falling = across(upper, shifted(lower));
     let rising = across(shifted(upper), lower);
-    return Between(any_of(falling.lower, rising.upper), any_of(falling.upper, rising.lower));
+    return Across(falling.lower | rising.upper, falling.upper | rising.lower);
 }
 
 // Ink of the pairs in a row, and of bends at it.
-fn within(above: Row, row: Row, below: Row) -> Eight {
+fn within(above: Row, row: Row, below: Row) -> vec4<bool> {
     let middle = shifted(row);
     if cross_taps {
         let beside = across(row, middle);
-        let upright = bends(shifted(above), middle, shifted(below));
-        let level = bends(row, middle, shifted(middle));
-        return any_of(any_of(beside.upper, beside.lower), any_of(upright, level));
+        let upright = bends(shifted(above).a, middle.a, shifted(below).a);
+        return beside.upper | beside.lower | upright | bends(row.a, middle.a, shifted(middle).a);
     }
-    return any_of(bends(above, middle, shifted(shifted(below))), bends(shifted(shifted(above)), middle, below));
+    return bends(above.a, middle.a, shifted(shifted(below)).a) | bends(shifted(shifted(above)).a, middle.a, below.a);
 }
 
-// A row's ink as the bits of a byte.
-fn ink_bits(from_above: Eight, inner: Eight, from_below: Eight) -> u32 {
-    let ink = any_of(any_of(from_above, from_below), inner);
-    let low = select(vec4<u32>(0u), vec4<u32>(1u, 2u, 4u, 8u), ink.a);
-    let high = select(vec4<u32>(0u), vec4<u32>(16u, 32u, 64u, 128u), ink.b);
-    let both = low | high;
-    return both.x | both.y | both.z | both.w;
+// A row's ink as four bits.
+fn ink_bits(ink: vec4<bool>) -> u32 {
+    let bits = select(vec4<u32>(0u), vec4<u32>(1u, 2u, 4u, 8u), ink);
+    return bits.x | bits.y | bits.z | bits.w;
 }
 
 @compute @workgroup_size(8)
@@ -245,8 +222,8 @@ fn fused_strips(@builtin(global_invocation_id) id: vec3<u32>) {
     if x >= strips.inner.z {
         return;
     }
-    // A byte a row.
-    let columns = (255u >> u32(max(x + COLUMNS - strips.inner.z, 0))) * 0x01010101u;
+    // Four bits a row.
+    let columns = (15u >> u32(max(x + COLUMNS - strips.inner.z, 0))) * 0x1111u;
     let per_px = 1.0 / vec2<f32>(textureDimensions(texels));
     let first = rows_at(vec2<i32>(x, y), per_px);
     var above = first.upper;
@@ -259,16 +236,16 @@ fn fused_strips(@builtin(global_invocation_id) id: vec3<u32>) {
         let ink2 = between(two.upper, two.lower);
         let ink3 = between(two.lower, four.upper);
         let ink4 = between(four.upper, four.lower);
-        var mask = ink_bits(ink, within(above, row, two.upper), ink1.upper);
-        mask |= ink_bits(ink1.lower, within(row, two.upper, two.lower), ink2.upper) << 8u;
-        mask |= ink_bits(ink2.lower, within(two.upper, two.lower, four.upper), ink3.upper) << 16u;
-        mask |= ink_bits(ink3.lower, within(two.lower, four.upper, four.lower), ink4.upper) << 24u;
-        mask &= columns & (0xffffffffu >> u32(8 * max(y + 4 - bottom, 0)));
+        var mask = ink_bits(ink | ink1.upper | within(above, row, two.upper));
+        mask |= ink_bits(ink1.lower | ink2.upper | within(row, two.upper, two.lower)) << 4u;
+        mask |= ink_bits(ink2.lower | ink3.upper | within(two.upper, two.lower, four.upper)) << 8u;
+        mask |= ink_bits(ink3.lower | ink4.upper | within(two.lower, four.upper, four.lower)) << 12u;
+        mask &= columns & (0xffffu >> u32(4 * max(y + 4 - bottom, 0)));
         // A store is dear, even where no invocation has one: one a turn, and as many turns as the fullest mask has bits.
         loop {
             if mask != 0u {
                 let bit = i32(firstTrailingBit(mask));
-                textureStore(picture, vec2<i32>(x + (bit & 7), y + (bit >> 3u)), strips.line);
+                textureStore(picture, vec2<i32>(x + (bit & 3), y + (bit >> 2u)), strips.line);
             }
             mask &= mask - 1u;
             if mask == 0u {
