@@ -2,6 +2,7 @@
 //!
 //! - [`fused`]: packed texels ([`crate::format::texel`]) to ink, or at once over a picture: nothing is written in
 //!   between.
+//! - [`fused_strips`]: the same, hard and opaque, by compute shaders, for software rasterisers.
 //! - [`separate`]: the same from textures of one's own: normals, depth, region numbers, any of them.
 //! - [`printed`]: the filters and the inker of 2002 over an RGBA8 target ([`crate::format::printed`]), on its bytes.
 //! - [`step`]: one step of dilation or erosion, hard and soft, from ink to ink.
@@ -17,13 +18,9 @@
 //! show what they hold: `Rgba8Unorm`, `Bgra8Unorm`, `Rgba16Float`, but not those named `Srgb`, in which coverage would
 //! blend in linear light. Their alpha is left alone.
 
-pub mod disc;
 mod fullscreen;
 pub mod fused;
-pub mod lay;
-pub mod printed;
-pub mod separate;
-pub mod step;
+pub mod fused_strips;
 
 use crate::composite::Composite;
 

@@ -1,0 +1,305 @@
+//! The compute form of the hard fused filter against the reference, pixel by pixel. `NPR_GPU` is `auto`, `required` or
+//! `off`.
+#![cfg(feature = "wgpu")]
+#![allow(clippy::print_stdout)]
+
+use glam::{UVec2, Vec3};
+use npr_imagespace::composite::{AlphaTest, Composite, composite_picture};
+use npr_imagespace::filter::fused::{DepthTest, FilterUniform, FusedFilter, ink_fused};
+use npr_imagespace::format::texel::{DepthCode, TexelLayout, ink_narrow_tap, ink_wide_tap};
+use npr_imagespace::pass::Onto;
+use npr_imagespace::pass::fused::texel_format;
+use npr_imagespace::pass::fused_strips::{FusedStrips, STRIPS_FORMAT, serves};
+use npr_imagespace::picture::{Taps, filter_picture};
+use std::sync::OnceLock;
+
+struct Gpu {
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+}
+
+/// The device that the tests share, or `None`, having said so, where `NPR_GPU` is `off`, or there is no adapter and
+/// `NPR_GPU` is not `required`.
+fn gpu() -> Option<&'static Gpu> {
+    static GPU: OnceLock<Option<Gpu>> = OnceLock::new();
+    let wish = std::env::var("NPR_GPU").unwrap_or_else(|_| "auto".into());
+    let gpu = GPU.get_or_init(|| if wish == "off" { None } else { open(wish == "required") }).as_ref();
+    if gpu.is_none() {
+        println!("skipped: no graphics adapter is used (NPR_GPU={wish})");
+    }
+    gpu
+}
+
+fn open(required: bool) -> Option<Gpu> {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
+    let adapter = match pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default())) {
+        Ok(adapter) => adapter,
+        Err(error) if required => panic!("NPR_GPU=required, and there is no adapter: {error}"),
+        Err(_) => return None,
+    };
+    println!("adapter: {}", adapter.get_info().name);
+    let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default()))
+        .expect("an adapter gives a device with the default limits");
+    Some(Gpu { device, queue })
+}
+
+impl Gpu {
+    /// A texture of `words` 32-bit words a texel.
+    fn upload(
+        &self,
+        format: wgpu::TextureFormat,
+        size: UVec2,
+        usage: wgpu::TextureUsages,
+        bytes: &[u8],
+    ) -> wgpu::Texture {
+        let texture = self.device.create_texture(&wgpu::TextureDescriptor {
+            label: None,
+            size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: usage | wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::COPY_SRC,
+            view_formats: &[],
+        });
+        self.queue.write_texture(
+            texture.as_image_copy(),
+            bytes,
+            wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(bytes.len() as u32 / size.y),
+                rows_per_image: None,
+            },
+            texture.size(),
+        );
+        texture
+    }
+
+    /// The pixels of an RGBA8 texture.
+    fn pixels(&self, texture: &wgpu::Texture) -> Vec<[u8; 4]> {
+        let row = 4 * texture.width();
+        let padded_row = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let copy = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: u64::from(padded_row * texture.height()),
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(padded_row), rows_per_image: None };
+        encoder.copy_texture_to_buffer(
+            texture.as_image_copy(),
+            wgpu::TexelCopyBufferInfo { buffer: &copy, layout },
+            texture.size(),
+        );
+        self.queue.submit([encoder.finish()]);
+        copy.map_async(wgpu::MapMode::Read, .., |result| result.expect("a buffer for reading can be mapped"));
+        self.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device is not lost");
+        let bytes = copy.get_mapped_range(..).expect("it is mapped").to_vec();
+        bytes
+            .chunks(padded_row as usize)
+            .flat_map(|padded| bytemuck::cast_slice(&padded[..row as usize]).to_vec())
+            .collect()
+    }
+}
+
+/// The same numbers on every machine, below 2^32.
+struct Numbers(u64);
+
+impl Numbers {
+    fn next(&mut self) -> u32 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 32) as u32
+    }
+
+    fn below(&mut self, end: u32) -> u32 {
+        (u64::from(self.next()) * u64::from(end) >> 32) as u32
+    }
+}
+
+/// What a picture of texels is made of.
+#[derive(Clone, Copy, Debug)]
+enum Kind {
+    Background,
+    /// Any words, so that background holds what it should not, and normals are such as no encoder gives.
+    Words,
+    /// One surface with the odd texel that differs in one thing, by a little.
+    Specks,
+}
+
+fn texels(kind: Kind, layout: TexelLayout, size: UVec2, numbers: &mut Numbers) -> Vec<[u32; 2]> {
+    let narrow = layout == TexelLayout::Narrow;
+    let pack = |depth: u32, region: u32, u: u32, v: u32| {
+        if narrow { [depth | region << 14 | u << 22 | v << 27, 0] } else { [depth | region << 24, u | v << 8] }
+    };
+    let tilt = numbers.below(4);
+    (0..size.x * size.y)
+        .map(|i| match kind {
+            Kind::Background => [0; 2],
+            Kind::Words => {
+                let words = [numbers.next(), if narrow { 0 } else { numbers.next() }];
+                let mask = if narrow { !(255 << 14) } else { 0x00ff_ffff };
+                match numbers.below(3) {
+                    0 if narrow => [words[0] & mask, 0],
+                    0 => [words[0] & mask, words[1] & 0xffff],
+                    1 => words,
+                    // A single region: only normals and depth differ.
+                    _ if narrow => [words[0] & mask | 5 << 14, 0],
+                    _ => [words[0] & mask | 5 << 24, words[1] & 0xffff],
+                }
+            }
+            Kind::Specks => {
+                let (x, y) = (i % size.x, i / size.x);
+                let (most, slack) = (layout.normal_most() as u32, layout.depth_slack());
+                let plane = 4000 + tilt * x + 2 * y;
+                match numbers.below(20) {
+                    0 => pack(plane, 3, most, most),
+                    1 | 2 => pack(plane + slack / 2 + numbers.below(slack), 2, most, most),
+                    3 => pack(plane + 2 * slack, 2, most, most),
+                    // Some 37 degrees away: at the default threshold.
+                    4 => pack(plane, 2, most + numbers.below(most), most + numbers.below(most / 2)),
+                    5 => pack(plane, 2, 0, 0),
+                    6 => pack(0, 0, 0, 0),
+                    _ => pack(plane, 2, most, most),
+                }
+            }
+        })
+        .collect()
+}
+
+fn ink(words: &[[u32; 2]], size: UVec2, filter: &FusedFilter, layout: TexelLayout, code: &DepthCode) -> Vec<u8> {
+    let uniform = FilterUniform::new(filter, layout, code).unwrap();
+    let tap = |words: [u32; 2]| match layout {
+        TexelLayout::Narrow => ink_narrow_tap(words[0]),
+        TexelLayout::Wide => ink_wide_tap(words),
+    };
+    filter_picture(words, size, filter.taps, |c, taps| ink_fused(&uniform, &tap(c), &taps.map(tap)) as f32).unwrap()
+}
+
+/// Draws both and compares; returns how many pixels are ink.
+#[expect(clippy::too_many_arguments, reason = "a test's case")]
+fn assert_same(
+    gpu: &Gpu,
+    strips: &FusedStrips,
+    words: &[[u32; 2]],
+    size: UVec2,
+    filter: &FusedFilter,
+    layout: TexelLayout,
+    composite: &Composite,
+    area: Option<[u32; 4]>,
+) -> usize {
+    let code = DepthCode::perspective(0.5, 60.0, layout).unwrap();
+    let count = if layout == TexelLayout::Narrow { 1 } else { 2 };
+    let flat: Vec<u32> = words.iter().flat_map(|words| words[..count].to_vec()).collect();
+    let texels =
+        gpu.upload(texel_format(layout), size, wgpu::TextureUsages::TEXTURE_BINDING, bytemuck::cast_slice(&flat));
+    let mut numbers = Numbers(9);
+    let mut expected: Vec<[u8; 4]> =
+        words.iter().map(|_| [numbers.next() as u8, numbers.next() as u8, numbers.next() as u8, 255]).collect();
+    let storage = wgpu::TextureUsages::STORAGE_BINDING;
+    let picture = gpu.upload(STRIPS_FORMAT, size, storage, bytemuck::cast_slice(&expected));
+    let mut ink = ink(words, size, filter, layout, &code);
+    let [x, y, width, height] = area.unwrap_or([0, 0, size.x, size.y]);
+    for (i, ink) in (0u32..).zip(&mut ink) {
+        let inside = (i % size.x).wrapping_sub(x) < width && (i / size.x).wrapping_sub(y) < height;
+        *ink = if inside { *ink } else { 0 };
+    }
+    composite_picture(&mut expected, &ink, composite).unwrap();
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    let [texels, view] = [&texels, &picture].map(|texture| texture.create_view(&Default::default()));
+    let onto = Onto { view: &view, composite, area };
+    strips.record(&gpu.device, &mut encoder, filter, &code, &texels, &onto).unwrap();
+    gpu.queue.submit([encoder.finish()]);
+    let differs = expected.iter().zip(gpu.pixels(&picture)).position(|(expected, pixel)| *expected != pixel);
+    let at = differs.map(|i| (i % size.x as usize, i / size.x as usize));
+    assert_eq!(at, None, "{size} {filter:?} {layout:?} {area:?}");
+    ink.iter().filter(|&&ink| ink > 0).count()
+}
+
+const LAYOUTS: [TexelLayout; 2] = [TexelLayout::Narrow, TexelLayout::Wide];
+
+#[test]
+fn whatever_is_asked_for_the_ink_is_the_references() {
+    let Some(gpu) = gpu() else { return };
+    let mut numbers = Numbers(1);
+    let plain = |step| Some(DepthTest { step, plain: true });
+    for layout in LAYOUTS {
+        for taps in [Taps::Diagonal, Taps::Cross] {
+            for normal_cos in [None, Some(0.8)] {
+                for depth in [None, Some(DepthTest { step: 0.001, plain: false }), plain(0.002)] {
+                    for regions in [false, true] {
+                        let filter = FusedFilter { normal_cos, depth, regions, taps, softness: 0.0 };
+                        let strips = FusedStrips::new(&gpu.device, &filter, layout);
+                        for (kind, size) in [(Kind::Words, UVec2::new(23, 9)), (Kind::Specks, UVec2::new(75, 70))] {
+                            let words = texels(kind, layout, size, &mut numbers);
+                            let black = Composite::default();
+                            let inked = assert_same(gpu, &strips, &words, size, &filter, layout, &black, None);
+                            assert!(inked > 0 && inked < words.len(), "{kind:?} {filter:?}: {inked}");
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn pictures_of_any_size() {
+    let Some(gpu) = gpu() else { return };
+    let mut numbers = Numbers(2);
+    for layout in LAYOUTS {
+        for taps in [Taps::Diagonal, Taps::Cross] {
+            // A cosine of 0 and no growth: only the slack.
+            for (normal_cos, step) in [(0.8, 0.02), (0.0, 0.0), (1.0, 0.0)] {
+                let depth = Some(DepthTest { step, plain: false });
+                let filter = FusedFilter { normal_cos: Some(normal_cos), depth, taps, ..Default::default() };
+                let strips = FusedStrips::new(&gpu.device, &filter, layout);
+                let sizes = [(1, 1), (1, 2), (2, 1), (1, 40), (41, 1), (2, 2), (2, 9), (9, 2), (3, 3), (5, 7), (6, 34)];
+                let wide =
+                    [(9, 8), (10, 6), (11, 4), (19, 38), (33, 35), (34, 33), (65, 3), (66, 67), (131, 5), (4, 131)];
+                for size in sizes.into_iter().chain(wide).map(|(x, y)| UVec2::new(x, y)) {
+                    for kind in [Kind::Background, Kind::Words, Kind::Specks] {
+                        let words = texels(kind, layout, size, &mut numbers);
+                        let black = Composite::default();
+                        let inked = assert_same(gpu, &strips, &words, size, &filter, layout, &black, None);
+                        assert!(inked == 0 || !matches!(kind, Kind::Background));
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn areas_and_composites() {
+    let Some(gpu) = gpu() else { return };
+    let mut numbers = Numbers(3);
+    let red = Composite::Over { color: Vec3::new(0.8, 0.1, 0.0), opacity: 1.0 };
+    let composites = [red, Composite::Multiply, Composite::AlphaTested(AlphaTest::CORRECTED)];
+    for layout in LAYOUTS {
+        let filter = FusedFilter::default();
+        let strips = FusedStrips::new(&gpu.device, &filter, layout);
+        for size in [UVec2::new(50, 43), UVec2::new(3, 60)] {
+            let words = texels(Kind::Specks, layout, size, &mut numbers);
+            for round in 0..24 {
+                let left = numbers.below(size.x);
+                let top = numbers.below(size.y);
+                let area = [left, top, numbers.below(size.x - left + 1), numbers.below(size.y - top + 1)];
+                let composite = &composites[round % 3];
+                assert_same(gpu, &strips, &words, size, &filter, layout, composite, Some(area));
+            }
+            assert_same(gpu, &strips, &words, size, &filter, layout, &red, Some([0, 0, size.x, size.y]));
+        }
+    }
+}
+
+#[test]
+fn serves_what_is_opaque() {
+    let hard = FusedFilter::default();
+    let black = Composite::default();
+    assert!(serves(&hard, &black) && serves(&hard, &Composite::Multiply));
+    assert!(!serves(&FusedFilter { softness: 0.1, ..hard }, &black));
+    assert!(!serves(&hard, &Composite::Over { color: Vec3::ZERO, opacity: 0.99 }));
+    assert!(serves(&hard, &Composite::AlphaTested(AlphaTest::CORRECTED)));
+    assert!(!serves(&hard, &Composite::AlphaTested(AlphaTest::PRINTED)));
+}
