@@ -18,9 +18,14 @@
 //! show what they hold: `Rgba8Unorm`, `Bgra8Unorm`, `Rgba16Float`, but not those named `Srgb`, in which coverage would
 //! blend in linear light. Their alpha is left alone.
 
+pub mod disc;
 mod fullscreen;
 pub mod fused;
 pub mod fused_strips;
+pub mod lay;
+pub mod printed;
+pub mod separate;
+pub mod step;
 
 use crate::composite::Composite;
 

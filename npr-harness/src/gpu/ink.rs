@@ -9,6 +9,7 @@ use npr_imagespace::format::texel::TexelLayout;
 use npr_imagespace::morphology::Operation;
 use npr_imagespace::pass::disc::DiscPass;
 use npr_imagespace::pass::fused::FusedPass;
+use npr_imagespace::pass::fused_strips::{FusedStrips, Structure, serves, structure};
 use npr_imagespace::pass::lay::LayPass;
 use npr_imagespace::pass::{InkTarget, Onto};
 use npr_imagespace::picture::Taps;
@@ -24,8 +25,14 @@ const PICTURE: InkTarget = InkTarget::Picture(COLOR_FORMAT);
 #[derive(Default)]
 pub(super) struct InkPasses {
     filters: RefCell<HashMap<FilterKey, FusedPass>>,
+    strips: RefCell<HashMap<(Structure, TexelLayout), FusedStrips>>,
     brushes: RefCell<HashMap<InkTarget, DiscPass>>,
     lay: OnceCell<LayPass>,
+}
+
+/// Whether lines are found by compute shaders: a rasteriser that is software is slower at it.
+fn by_strips(context: &GpuContext) -> bool {
+    context.is_software() && context.can_stroke
 }
 
 impl InkPasses {
@@ -50,6 +57,15 @@ impl InkPasses {
 
         let filter = &image.ink.filter;
         let found = ink.found.as_ref();
+        if found.is_none() && by_strips(context) && serves(filter, &image.ink.composite) {
+            let mut strips = self.strips.borrow_mut();
+            let pass = strips
+                .entry((structure(filter), image.ink.layout))
+                .or_insert_with(|| FusedStrips::new(device, filter, image.ink.layout));
+            let onto = onto(&targets.color_view, ink.size, 1);
+            pass.record(device, encoder, filter, &image.code, &ink.texels, &onto)?;
+            return Ok(());
+        }
         let target = if found.is_some() { InkTarget::Ink } else { PICTURE };
         let key = (filter.taps, filter.softness > 0.0, image.ink.layout, target);
         let mut filters = self.filters.borrow_mut();

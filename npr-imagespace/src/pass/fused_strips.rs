@@ -81,9 +81,10 @@ pub struct FusedStrips {
 }
 
 /// What of a filter the pipelines are made for: taps, and whether normals, depth (plain or not) and regions count.
-type Structure = (Taps, bool, Option<bool>, bool);
+pub type Structure = (Taps, bool, Option<bool>, bool);
 
-fn structure(filter: &FusedFilter) -> Structure {
+/// The same for two filters that differ in their thresholds alone.
+pub fn structure(filter: &FusedFilter) -> Structure {
     (filter.taps, filter.normal_cos.is_some(), filter.depth.map(|test| test.plain), filter.regions)
 }
 
