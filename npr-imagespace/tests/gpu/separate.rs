@@ -291,6 +291,28 @@ fn depth_buffers_and_small_formats_are_read() {
     count.report("depth buffers", 20);
 }
 
+/// Beside the far end what was drawn is told from what was not by the number alone.
+#[test]
+fn a_cleared_depth_buffer_is_background_even_beside_the_far_end() {
+    let Some(gpu) = gpu() else { return };
+    let size = [6, 1];
+    for (source, d) in [
+        (DepthSource::perspective(1.0, 2.0).unwrap(), [0.999, 0.999, 0.999, 1.0, 1.0, 1.0]),
+        (DepthSource::reversed(1.0, 2.0).unwrap(), [0.001, 0.001, 0.001, 0.0, 0.0, 0.0]),
+        (DepthSource::reversed(1.0, f32::INFINITY).unwrap(), [1e-30, 1e-30, 1e-30, 0.0, 0.0, 0.0]),
+    ] {
+        let depth = SeparateDepth { source, ..Default::default() };
+        let filter = SeparateFilter { depth: Some(depth), ..NONE };
+        let pass = SeparatePass::new(&gpu.device, &filter, InkTarget::Ink);
+        let buffer = view(&gpu.depth_buffer(size, &d));
+        let got = drawn(gpu, size, InkTarget::Ink, &Composite::default(), None, |encoder, onto| {
+            let textures = SeparateTextures { depth: Some(&buffer), ..Default::default() };
+            pass.record(&gpu.device, encoder, &filter, &textures, onto).unwrap();
+        });
+        assert_eq!(got, [0, 0, 255, 255, 0, 0], "{source:?}");
+    }
+}
+
 #[test]
 fn halves_and_signed_bytes_are_normals_too() {
     let Some(gpu) = gpu() else { return };
