@@ -10,7 +10,8 @@
 //! - [`lay`]: ink over a picture, also of another size.
 //!
 //! Each is a struct with `new(&device, ..)` and `record(&device, &mut encoder, ..)`; it holds pipelines and nothing of
-//! a frame. Each draws a triangle over its target, so that it needs nothing but render targets: WebGL will do.
+//! a frame. Each but [`fused_strips`] draws a triangle over its target, so that it needs nothing but render targets:
+//! WebGL will do.
 //!
 //! # Targets
 //!

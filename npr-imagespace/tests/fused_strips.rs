@@ -44,7 +44,7 @@ fn open(required: bool) -> Option<Gpu> {
 }
 
 impl Gpu {
-    /// A texture of `words` 32-bit words a texel.
+    /// A texture with bytes in it, rows from the top.
     fn upload(
         &self,
         format: wgpu::TextureFormat,
@@ -113,7 +113,7 @@ impl Numbers {
     }
 
     fn below(&mut self, end: u32) -> u32 {
-        (u64::from(self.next()) * u64::from(end) >> 32) as u32
+        ((u64::from(self.next()) * u64::from(end)) >> 32) as u32
     }
 }
 
@@ -222,15 +222,20 @@ const LAYOUTS: [TexelLayout; 2] = [TexelLayout::Narrow, TexelLayout::Wide];
 fn whatever_is_asked_for_the_ink_is_the_references() {
     let Some(gpu) = gpu() else { return };
     let mut numbers = Numbers(1);
-    let plain = |step| Some(DepthTest { step, plain: true });
     for layout in LAYOUTS {
         for taps in [Taps::Diagonal, Taps::Cross] {
             for normal_cos in [None, Some(0.8)] {
-                for depth in [None, Some(DepthTest { step: 0.001, plain: false }), plain(0.002)] {
+                for plain in [None, Some(false), Some(true)] {
                     for regions in [false, true] {
+                        let depth = plain.map(|plain| DepthTest { step: 0.001, plain });
                         let filter = FusedFilter { normal_cos, depth, regions, taps, softness: 0.0 };
                         let strips = FusedStrips::new(&gpu.device, &filter, layout);
-                        for (kind, size) in [(Kind::Words, UVec2::new(23, 9)), (Kind::Specks, UVec2::new(75, 70))] {
+                        // Among any depths a threshold near the depths themselves, so that it matters whose it is.
+                        let depth = plain.map(|plain| DepthTest { step: 0.7, plain });
+                        let coarse = FusedFilter { depth, ..filter };
+                        let cases =
+                            [(Kind::Words, UVec2::new(53, 29), coarse), (Kind::Specks, UVec2::new(75, 70), filter)];
+                        for (kind, size, filter) in cases {
                             let words = texels(kind, layout, size, &mut numbers);
                             let black = Composite::default();
                             let inked = assert_same(gpu, &strips, &words, size, &filter, layout, &black, None);

@@ -19,9 +19,9 @@
 //! | wide | diagonal | 0.28 | 0.26 |
 //! | wide | cross | 0.27 | 0.26 |
 //!
-//! There the first use compiles for 0.3 s, three times as long as the fragment pass's, unless the driver's cache has
-//! it. Loads in place of gathers: 0.33; loads, and one row a turn of the loop: 0.40; and a store asked for at each
-//! pixel: 0.49. Strips of eight columns gain a tenth in the wide layout and take twice as long to compile.
+//! There the first use compiles for 0.3 to 0.5 s, the fragment pass's for 0.1 to 0.2, unless the driver's cache has it.
+//! Variants, as shares of the same: strips of eight columns 0.21 to 0.24, and twice as long to compile; loads in place
+//! of gathers 0.33; also one row a turn of the loop 0.40; also a store asked for at each pixel 0.49.
 
 use super::Onto;
 use super::fullscreen::uniform;
