@@ -9,7 +9,7 @@ use npr_imagespace::composite::Composite;
 use npr_imagespace::filter::fused::{FilterUniform, FusedFilter, ink_fused};
 use npr_imagespace::format::texel::{DepthCode, TexelLayout, ink_narrow_tap, ink_wide_tap};
 use npr_imagespace::morphology::disc::Disc;
-use npr_imagespace::morphology::flood::{FloodPlan, flood};
+use npr_imagespace::morphology::flood::{FloodPlan, disc_plan, flood};
 use npr_imagespace::picture::filter_picture;
 use npr_imagespace::region::{region_of_index, region_of_pairs, region_of_patches};
 use npr_mesh::edges::{Edge, EdgeKind};
@@ -23,8 +23,8 @@ pub enum Regions {
     Material,
     /// What is one mesh of the file.
     Mesh,
-    /// What is connected by edges less sharp than the style's creases, of one material and one mesh: creases become
-    /// borders, whatever the shading normals are.
+    /// What is connected by edges less sharp than the style's creases, and of one material: creases become borders,
+    /// whatever the shading normals are, and so do meshes that no edge joins.
     #[default]
     Patch,
 }
@@ -86,9 +86,6 @@ pub struct ImagePlan {
     pub flood: Option<FloodPlan>,
 }
 
-/// Texels to each side that a pass of the flood reads.
-const FLOOD_FAN: u32 = 3;
-
 impl ImagePlan {
     /// # Errors
     /// What is wrong with the thresholds or the brush.
@@ -106,7 +103,7 @@ impl ImagePlan {
             code,
             face_region: face_regions(scene, ink.regions, &line_kinds, crease_angle_rad)?,
             line_kinds,
-            flood: ink.brush.map(|disc| FloodPlan::fitted(&disc, FLOOD_FAN)),
+            flood: ink.brush.map(|disc| disc_plan(&disc)),
         })
     }
 
@@ -180,8 +177,6 @@ fn face_regions(
         let each = model.face_mesh.iter().map(|&mesh| region_of_index(mesh));
         each.chain(std::iter::repeat_n(one, faces).flatten())
     };
-    let paired =
-        |a: Vec<u32>, b: &mut dyn Iterator<Item = u32>| region_of_pairs(a.into_iter().zip(b).map(<[u32; 2]>::from));
     match by {
         Regions::One => Ok(vec![1; faces]),
         Regions::Material => Ok(materials().collect()),
@@ -194,12 +189,12 @@ fn face_regions(
             let smooth = scene.edges.edges.iter().filter(|edge| is_smooth(edge)).map(Edge::faces);
             let pairs: Vec<[u32; 2]> = smooth.chain(same_polygon(&model.face_polygon)).collect();
             let mut patches = region_of_patches(faces, &pairs)?;
-            for (patch, &material) in patches.iter_mut().zip(&model.face_material) {
+            for ((patch, &material), mesh) in patches.iter_mut().zip(&model.face_material).zip(meshes()) {
                 if !matches!(line_kinds[material as usize], LineKind::Normals | LineKind::Regions) {
-                    *patch = 1;
+                    *patch = mesh;
                 }
             }
-            Ok(paired(paired(patches, &mut materials()), &mut meshes()))
+            Ok(region_of_pairs(patches.into_iter().zip(materials()).map(<[u32; 2]>::from)))
         }
     }
 }

@@ -245,6 +245,7 @@ fn subdivision_interpolates_and_keeps_polygons() {
         colors: vec![Vec4::ZERO, Vec4::ONE, Vec4::ONE, Vec4::ONE],
         faces: vec![[0, 1, 2], [0, 2, 3]],
         face_material: vec![0, 0],
+        face_mesh: vec![0, 1],
         face_polygon: vec![7, 7],
         materials: vec![Material::default()],
         textures: vec![],
@@ -252,6 +253,7 @@ fn subdivision_interpolates_and_keeps_polygons() {
     let fine = subdivide_midpoint(&square);
     assert_eq!((fine.faces.len(), fine.positions.len()), (8, 9));
     assert_eq!(fine.face_polygon, [7; 8]);
+    assert_eq!(fine.face_mesh, [0, 0, 0, 0, 1, 1, 1, 1]);
     assert_eq!(fine.positions[..4], square.positions);
     // The midpoints of 0-1, 1-2, 2-0, 2-3, 3-0, in this order.
     assert_eq!(fine.positions[4], Vec3::new(0.5, 0.0, 0.0));
@@ -262,6 +264,22 @@ fn subdivision_interpolates_and_keeps_polygons() {
     assert_eq!(fine.faces[..4], [[0, 4, 6], [4, 1, 5], [6, 5, 2], [4, 5, 6]]);
     assert!(subdivide_midpoint(&sphere(8)).face_polygon.is_empty());
     assert_eq!(subdivide_midpoint(&Model::default()), Model::default());
+}
+
+#[test]
+fn meshes_that_are_appended_stay_apart() {
+    let (one, count) = (cube(), cube().faces.len());
+    assert!(one.face_mesh.is_empty());
+    let mut three = Model::default();
+    for _ in 0..3 {
+        three.append(&one);
+    }
+    let numbers = |of: u32| vec![of; count];
+    assert_eq!(three.face_mesh, [numbers(0), numbers(1), numbers(2)].concat());
+    // A model of several meshes keeps them.
+    let mut four = cube();
+    four.append(&three);
+    assert_eq!(four.face_mesh, [numbers(0), numbers(1), numbers(2), numbers(3)].concat());
 }
 
 #[test]

@@ -197,6 +197,13 @@ fn groups_share_vertices_and_materials_keep_positions_equal() {
 }
 
 #[test]
+fn objects_are_meshes_and_materials_are_not() {
+    let m = text(format!("{TRIANGLE}o one\nusemtl a\nf 1 2 3\nusemtl b\nf 3 2 1\no two\nf 1 2 3\n")).model;
+    assert_eq!(m.face_mesh, [0, 0, 1]);
+    assert!(text(format!("{TRIANGLE}o one\nf 1 2 3\n")).model.face_mesh.is_empty());
+}
+
+#[test]
 fn a_position_with_many_normals_takes_no_quadratic_time() {
     let mut file = TRIANGLE.to_owned();
     for i in 0..60_000 {

@@ -94,6 +94,14 @@ impl FloodPlan {
     }
 }
 
+/// Taps to each side in [`disc_plan`]: 2 to 4 were measured alike, 1 and 6 slower.
+const FAN: u32 = 3;
+
+/// The passes that stand for a disc, on a device and here.
+pub fn disc_plan(disc: &Disc) -> FloodPlan {
+    FloodPlan::fitted(disc, FAN)
+}
+
 /// How far a line pixel can matter along one axis.
 fn reach_px(disc: &Disc) -> u32 {
     let beyond = if disc.antialias { (disc.radius_px + 1.0).ceil() - 1.0 } else { disc.radius_px.floor() };

@@ -16,7 +16,7 @@ use crate::ImageSpaceError;
 use crate::composite::Composite;
 use crate::morphology::Operation;
 use crate::morphology::disc::{Disc, RADIUS_MOST_PX};
-use crate::morphology::flood::FloodPlan;
+use crate::morphology::flood::{FloodPlan, disc_plan};
 use bytemuck::{Pod, Zeroable};
 
 const DISC_WGSL: &str = include_str!("disc.wgsl");
@@ -28,14 +28,6 @@ const WORD_PX: u32 = 32;
 const SITE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
 /// Pixels in a texel of them.
 const SITE_PX: u32 = 4;
-/// Taps to each side.
-const FAN: u32 = 3;
-
-/// The passes that [`DiscPass`] runs for a disc.
-pub fn disc_plan(disc: &Disc) -> FloodPlan {
-    FloodPlan::fitted(disc, FAN)
-}
-
 /// `Pass` of the WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]

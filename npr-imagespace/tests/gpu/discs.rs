@@ -7,8 +7,8 @@ use npr_imagespace::ImageSpaceError;
 use npr_imagespace::composite::Composite;
 use npr_imagespace::morphology::Operation;
 use npr_imagespace::morphology::disc::{Disc, DiscBuffers, dilate_disc};
-use npr_imagespace::morphology::flood::flood;
-use npr_imagespace::pass::disc::{DiscPass, DiscScratch, disc_plan};
+use npr_imagespace::morphology::flood::{disc_plan, flood};
+use npr_imagespace::pass::disc::{DiscPass, DiscScratch};
 use npr_imagespace::pass::{INK_FORMAT, InkTarget};
 
 const OPERATIONS: [Operation; 4] = [Operation::Dilate, Operation::Erode, Operation::Open, Operation::Close];

@@ -77,25 +77,24 @@ pub(super) fn load(path: &Path, limits: &Limits) -> Result<Loaded, LoadError> {
     let first_material = model.materials.len();
     load_textures(library.materials, &mut model, &mut warnings, limits);
 
-    let mut builder = Builder { model, path, limits, corners_before: 0, absent: &prepared.absent, repaired: 0 };
+    let mut builder = Builder {
+        model,
+        path,
+        limits,
+        corners_before: 0,
+        absent: &prepared.absent,
+        objects: &prepared.objects,
+        repaired: 0,
+    };
     builder.model.faces.reserve(prepared.counts.triangles as usize);
-    // tobj begins a mesh at each object, group and change of material.
-    let (mut number, mut name) = (0, meshes.first().map_or("", |first| first.name.as_str()));
     for mesh in &meshes {
         let material = mesh.mesh.material_id.map_or(0, |id| first_material + id);
         if material >= builder.model.materials.len() {
             return Err(builder.malformed(format!("material {material} is not there")));
         }
         builder.add(&mesh.mesh, material as u32)?;
-        if mesh.name != name {
-            (number, name) = (number + 1, &mesh.name);
-        }
-        let faces = builder.model.faces.len();
-        builder.model.face_mesh.resize(faces, number);
     }
-    if number == 0 {
-        builder.model.face_mesh.clear();
-    }
+    renumber(&mut builder.model.face_mesh);
     if builder.repaired > 0 {
         warnings.push(format!("{} texture coordinates or colours are not finite", builder.repaired));
     }
@@ -111,4 +110,21 @@ pub(super) fn load(path: &Path, limits: &Limits) -> Result<Loaded, LoadError> {
         *color = linear_from_srgb(color.truncate()).extend(color.w);
     }
     Ok(Loaded { model, warnings })
+}
+
+/// Numbers meshes from 0 in the order of their first faces, without gaps; empty if there is one.
+fn renumber(face_mesh: &mut Vec<u32>) {
+    let mut count = 0;
+    let mut last = None;
+    for mesh in face_mesh.iter_mut() {
+        // An object that is gone back to is another: it has another line.
+        if last.is_some_and(|last| last != *mesh) {
+            count += 1;
+        }
+        last = Some(*mesh);
+        *mesh = count;
+    }
+    if count == 0 {
+        face_mesh.clear();
+    }
 }

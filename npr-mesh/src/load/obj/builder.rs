@@ -19,6 +19,8 @@ pub(super) struct Builder<'a> {
     /// Corners of the meshes already added.
     pub corners_before: u64,
     pub absent: &'a [Runs; 2],
+    /// The corners with which an object or a group begins.
+    pub objects: &'a [u64],
     /// Texture coordinates and colours that were replaced.
     pub repaired: u64,
 }
@@ -111,10 +113,20 @@ impl Builder<'_> {
                 model.colors.push(if color.is_finite() { color } else { Vec3::ONE }.extend(1.0));
             }
         }
-        self.add_faces(mesh, base as u32, vertex_of, material)
+        self.add_faces(mesh, base as u32, vertex_of, material, range.start)
     }
 
-    fn add_faces(&mut self, mesh: &tobj::Mesh, base: u32, vertex_of: &[u32], material: u32) -> Result<(), LoadError> {
+    fn add_faces(
+        &mut self,
+        mesh: &tobj::Mesh,
+        base: u32,
+        vertex_of: &[u32],
+        material: u32,
+        first_corner: u64,
+    ) -> Result<(), LoadError> {
+        let objects = self.objects;
+        // Of one object only there is nothing to say.
+        let object_of = |corner: usize| objects.partition_point(|&begin| begin <= first_corner + corner as u64) as u32;
         let model = &mut self.model;
         let first_face = model.faces.len();
         if mesh.face_arities.is_empty() {
@@ -123,6 +135,9 @@ impl Builder<'_> {
                 return Err(self.malformed("a face with fewer than 3 corners".to_owned()));
             }
             model.faces.extend(triangles.iter().map(|t| t.map(|v| base + v)));
+            if !objects.is_empty() {
+                model.face_mesh.extend((0..triangles.len()).map(|triangle| object_of(3 * triangle)));
+            }
             if !model.face_polygon.is_empty() {
                 extend_polygons(&mut model.face_polygon, triangles.len());
             }
@@ -139,6 +154,7 @@ impl Builder<'_> {
                 let Some(corners) = vertex_of.get(at..at + arity as usize) else {
                     return Err(self.malformed("a face with corners that are not there".to_owned()));
                 };
+                let object = object_of(at);
                 at += arity as usize;
                 if arity == 3 {
                     model.faces.push([base + corners[0], base + corners[1], base + corners[2]]);
@@ -147,6 +163,9 @@ impl Builder<'_> {
                     outline.extend(corners.iter().map(|&v| model.positions[(base + v) as usize]));
                     triangulate_into(&outline, &mut triangles);
                     model.faces.extend(triangles.iter().map(|t| t.map(|i| base + corners[i as usize])));
+                }
+                if !objects.is_empty() {
+                    model.face_mesh.resize(model.faces.len(), object);
                 }
                 if counts_polygons {
                     model.face_polygon.resize(model.faces.len(), polygon);

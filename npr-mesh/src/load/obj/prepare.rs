@@ -23,6 +23,8 @@ pub(super) struct Prepared {
     /// Corners without texture coordinate, and without normal, numbered through all faces that tobj is given.
     pub absent: [Runs; 2],
     pub materials_used: BTreeSet<String>,
+    /// The corners with which an object or a group begins, numbered likewise, ascending.
+    pub objects: Vec<u64>,
     pub warnings: Vec<String>,
 }
 
@@ -81,6 +83,7 @@ pub(super) fn prepare(mut bytes: Vec<u8>, path: &Path, limits: &Limits) -> Resul
     let mut counts = Counts::default();
     let mut absent = [Runs::new(), Runs::new()];
     let mut materials_used = BTreeSet::new();
+    let mut objects = Vec::new();
     let mut repaired = Repaired::default();
     // Per array the highest number that a face names, and that face's line.
     let mut highest = [(0u64, 0u64); 3];
@@ -241,7 +244,15 @@ pub(super) fn prepare(mut bytes: Vec<u8>, path: &Path, limits: &Limits) -> Resul
                     continue;
                 }
             }
-            // Lines that would be parsed as faces or that part the file into meshes, and what may not be UTF-8.
+            // What would part the file into meshes that share no vertices.
+            b"o" | b"g" => {
+                if objects.last() != Some(&counts.corners) {
+                    objects.push(counts.corners);
+                }
+                edit.replace(begin, at, b"");
+                continue;
+            }
+            // Lines that would be parsed as faces, and what may not be UTF-8.
             [] => continue,
             [b'#', ..] if line.is_ascii() => continue,
             _ => {
@@ -274,7 +285,7 @@ pub(super) fn prepare(mut bytes: Vec<u8>, path: &Path, limits: &Limits) -> Resul
         text = color_all(&text);
         repaired.uncolored = counts.arrays[0] - counts.colored;
     }
-    Ok(Prepared { text, counts, absent, materials_used, warnings: repaired.warnings() })
+    Ok(Prepared { text, counts, absent, materials_used, objects, warnings: repaired.warnings() })
 }
 
 /// The length, with its end, of a line of `v`, a space and three numbers.
