@@ -13,6 +13,7 @@ mod targets;
 pub use context::GpuContext;
 pub use error::GpuError;
 pub use scene::GpuScene;
+pub use surface::wgsl as surface_wgsl;
 pub use targets::Targets;
 
 use crate::camera::Camera;

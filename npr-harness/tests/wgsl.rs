@@ -14,13 +14,16 @@ use wgpu::util::DeviceExt;
 
 #[test]
 fn the_surface_shader_validates() {
-    let source = [npr_toon::WGSL, include_str!("../src/gpu/surface.wgsl")].concat();
+    let source = npr_harness::gpu::surface_wgsl();
     let module = naga::front::wgsl::parse_str(&source).unwrap_or_else(|e| panic!("{}", e.emit_to_string(&source)));
     if let Err(error) = Validator::new(ValidationFlags::all(), Capabilities::empty()).validate(&module) {
         panic!("{}", error.emit_to_string(&source));
     }
     let entries: Vec<_> = module.entry_points.iter().map(|entry| entry.name.as_str()).collect();
-    for name in ["vs_depth", "vs_plain", "vs_textured", "fs_lambert", "fs_toon", "fs_cut_out", "fs_nothing"] {
+    let inked = ["vs_plain_inked", "fs_toon_inked", "fs_toon_textured_inked", "fs_texels", "fs_texels_textured"];
+    let plain =
+        ["vs_depth", "vs_plain", "vs_textured", "fs_lambert", "fs_toon", "fs_cut_out", "fs_nothing", "fs_clipped"];
+    for name in plain.into_iter().chain(inked) {
         assert!(entries.contains(&name), "{name} is not there");
     }
     // It has no names of its own in the library's space.

@@ -109,8 +109,8 @@ pub(super) struct SurfacePass {
 
 const SURFACE_WGSL: &str = include_str!("surface.wgsl");
 
-/// The whole shader of the pass.
-pub(super) fn wgsl() -> String {
+/// The whole shader of the geometry pass.
+pub fn wgsl() -> String {
     [npr_toon::WGSL, npr_imagespace::format::FORMAT_WGSL, npr_imagespace::artist::ARTIST_WGSL, SURFACE_WGSL].concat()
 }
 
