@@ -434,8 +434,8 @@ impl<'a> Reference<'a> {
     /// Moves samples by less than [`SHIFT_PX`] too, and in more directions, 64 renders: a sliver that is thinner than
     /// 1/100 px passes between the eight, and a rasteriser, whose corners lie on a grid of 1/256 px, hits it or not. One
     /// more render ends faces [`ROUNDED_PX`] before their boundaries: between two that touch and are not joined, no
-    /// sample of the reference falls, wherever it is moved, and one of a device may. For lines in the image 16 more say
-    /// beside which pixels' neighbours a contour runs as close.
+    /// sample of the reference falls, wherever it is moved, and one of a device may. For lines in the image 17 more say
+    /// what changes where a contour runs as close to a pixel's centre.
     ///
     /// # Errors
     /// None that can occur with pictures of one size.
@@ -449,27 +449,23 @@ impl<'a> Reference<'a> {
     }
 
     /// Where a contour passes within [`ROUNDED_PX`] of a pixel's centre a rasteriser may show the face that turns away
-    /// there, whose normal no sample of the reference has, and lines in the image look at their neighbours.
+    /// there, whose normal no sample of the reference has. Lines in the image look at their neighbours: what changes
+    /// if such a pixel differs from all around it is sensitive.
     fn exempt_around_contours(&mut self) -> Result<(), HarnessError> {
-        let Some(image) = &self.shot.plan.image else { return Ok(()) };
-        let brush_px = image.ink.brush.map_or(0.0, |disc| disc.radius_px + 1.0);
-        let reach = 1 + brush_px.ceil() as i64;
-        let (width, height) = (i64::from(self.shot.size.0), i64::from(self.shot.size.1));
+        let Shot { scene, style, plan, camera, size } = self.shot;
+        if plan.image.is_none() {
+            return Ok(());
+        }
+        let mut unsure = std::collections::BTreeSet::new();
         for direction in 0..16u8 {
             let shift_px = ROUNDED_PX * DVec2::from_angle(f64::from(direction) / 16.0 * std::f64::consts::TAU);
             let moved = self.shot.reference(&CpuOptions { shift_px, ..Default::default() });
-            for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
-                if !self.shows_another_surface(&moved, (y * width + x) as usize, ROUNDED_PX) {
-                    continue;
-                }
-                for y in (y - reach).max(0)..=(y + reach).min(height - 1) {
-                    for x in (x - reach).max(0)..=(x + reach).min(width - 1) {
-                        self.exempt[(y * width + x) as usize] = true;
-                    }
-                }
-            }
+            let other = |&pixel: &usize| self.shows_another_surface(&moved, pixel, ROUNDED_PX);
+            unsure.extend((0..self.exempt.len()).filter(other));
         }
-        Ok(())
+        let unsure: Vec<usize> = unsure.into_iter().collect();
+        let blotted = cpu::render_unsure(scene, style, plan, camera, size, &CpuOptions::default(), &unsure, &|_| {});
+        self.exempt_changes(&blotted)
     }
 
     /// Whether a pixel's depth changes by more than a slope explains when its sample is moved.

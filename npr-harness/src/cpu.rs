@@ -93,8 +93,23 @@ pub fn render(
     style: &Style,
     plan: &Plan,
     camera: &Camera,
+    size: (u32, u32),
+    options: &CpuOptions,
+    progress: &(dyn Fn(f64) + Sync),
+) -> CpuFrame {
+    render_unsure(scene, style, plan, camera, size, options, &[], progress)
+}
+
+/// The same, where lines in the image take it that some pixels, by number, show what differs from all their neighbours.
+#[expect(clippy::too_many_arguments, reason = "each is a thing of its own; a struct would only rename them")]
+pub fn render_unsure(
+    scene: &Scene,
+    style: &Style,
+    plan: &Plan,
+    camera: &Camera,
     (width, height): (u32, u32),
     options: &CpuOptions,
+    unsure: &[usize],
     progress: &(dyn Fn(f64) + Sync),
 ) -> CpuFrame {
     let samples = options.samples.max(1);
@@ -127,7 +142,7 @@ pub fn render(
     let mut frame = if samples == 1 { fine } else { averaged(&fine, width, height, samples) };
     if let Some(image) = &plan.image {
         let (ink_width, ink_height) = image.ink.scale.size((width, height));
-        let texels = if (ink_width, ink_height) == (width, height) && samples == 1 {
+        let mut texels = if (ink_width, ink_height) == (width, height) && samples == 1 {
             shared_texels
         } else {
             // One sample for each pixel of the ink, whatever the picture has: lines are as wide as on a device.
@@ -136,6 +151,7 @@ pub fn render(
             let context = FrameContext { size_px, shift_px, painting: false, ..context };
             context.trace(ink_width, ink_height, options.threads, &|_| {}).texels
         };
+        ink::blot(&mut texels, (ink_width, ink_height), unsure, (width, height));
         ink::draw_ink(image, &texels, &mut frame);
     }
     frame

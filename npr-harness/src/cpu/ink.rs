@@ -53,6 +53,21 @@ impl FrameContext<'_> {
     }
 }
 
+/// Makes some of the picture's pixels differ from all around them: background where there is a surface, a surface where
+/// there is background.
+pub(super) fn blot(texels: &mut [[u32; 2]], size: (u32, u32), pixels: &[usize], picture: (u32, u32)) {
+    for &pixel in pixels {
+        let (x, y) = (pixel as u32 % picture.0, pixel as u32 / picture.0);
+        let along = |at: u32, of: u32, ink: u32| at * ink / of..((at + 1) * ink).div_ceil(of);
+        for row in along(y, picture.1, size.1) {
+            for column in along(x, picture.0, size.0) {
+                let texel = &mut texels[(row * size.0 + column) as usize];
+                *texel = if *texel == BACKGROUND { [u32::MAX; 2] } else { BACKGROUND };
+            }
+        }
+    }
+}
+
 /// Draws the frame's lines over it, from texels of the ink's size.
 pub(super) fn draw_ink(image: &ImagePlan, texels: &[[u32; 2]], frame: &mut CpuFrame) {
     let size = image.ink.scale.size((frame.width, frame.height));
