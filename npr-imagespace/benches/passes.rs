@@ -51,6 +51,7 @@ use npr_imagespace::morphology::flood::{disc_plan, flood};
 use npr_imagespace::morphology::{Kernel, Operation, ping_pong};
 use npr_imagespace::pass::disc::{DiscPass, DiscScratch};
 use npr_imagespace::pass::fused::{FusedPass, texel_format};
+use npr_imagespace::pass::fused_strips::{FusedStrips, STRIPS_FORMAT};
 use npr_imagespace::pass::lay::LayPass;
 use npr_imagespace::pass::printed::PrintedPass;
 use npr_imagespace::pass::separate::{SeparatePass, SeparateTextures};
@@ -299,6 +300,16 @@ fn bench(gpu: &Gpu, size: [u32; 2]) {
         pass.record(device, encoder, &filter, &code(TexelLayout::Wide), wide, &onto_picture).expect("in range");
     };
     timed.add("fused, Wide, hard, over a picture", 8.0 + 8.0, run);
+    let stored = view(&gpu.storable(STRIPS_FORMAT, size));
+    let stored = &stored;
+    for (layout, texels, bytes) in [(TexelLayout::Narrow, &narrow, 4.0), (TexelLayout::Wide, wide, 8.0)] {
+        let pass = FusedStrips::new(device, &filter, layout);
+        let run = move |encoder: &mut wgpu::CommandEncoder| {
+            let onto = Onto { view: stored, ..onto_picture };
+            pass.record(device, encoder, &filter, &code(layout), texels, &onto).expect("in range");
+        };
+        timed.add(&format!("fused by strips, {layout:?}, over a picture"), bytes + 4.0 * inked, run);
+    }
     let separate = SeparateFilter::default();
     let pass = SeparatePass::new(device, &separate, InkTarget::Ink);
     let run = move |encoder: &mut wgpu::CommandEncoder| {

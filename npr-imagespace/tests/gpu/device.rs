@@ -36,7 +36,21 @@ fn open(required: bool) -> Option<Gpu> {
 
 impl Gpu {
     /// A texture, uninitialised, to render to, read and copy.
-    pub fn texture(&self, format: wgpu::TextureFormat, [width, height]: [u32; 2]) -> wgpu::Texture {
+    pub fn texture(&self, format: wgpu::TextureFormat, size: [u32; 2]) -> wgpu::Texture {
+        self.usable(format, size, wgpu::TextureUsages::RENDER_ATTACHMENT)
+    }
+
+    /// The same for compute shaders to write.
+    pub fn storable(&self, format: wgpu::TextureFormat, size: [u32; 2]) -> wgpu::Texture {
+        self.usable(format, size, wgpu::TextureUsages::STORAGE_BINDING)
+    }
+
+    fn usable(
+        &self,
+        format: wgpu::TextureFormat,
+        [width, height]: [u32; 2],
+        usage: wgpu::TextureUsages,
+    ) -> wgpu::Texture {
         self.device.create_texture(&wgpu::TextureDescriptor {
             label: None,
             size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
@@ -44,7 +58,7 @@ impl Gpu {
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
             format,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+            usage: usage
                 | wgpu::TextureUsages::TEXTURE_BINDING
                 | wgpu::TextureUsages::COPY_SRC
                 | wgpu::TextureUsages::COPY_DST,

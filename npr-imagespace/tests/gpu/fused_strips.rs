@@ -1,8 +1,6 @@
-//! The compute form of the hard fused filter against the reference, pixel by pixel. `NPR_GPU` is `auto`, `required` or
-//! `off`.
-#![cfg(feature = "wgpu")]
-#![allow(clippy::print_stdout)]
+//! The compute form of the hard fused filter against the reference, pixel by pixel.
 
+use crate::device::{Gpu, gpu, view};
 use glam::{UVec2, Vec3};
 use npr_imagespace::composite::{AlphaTest, Composite, composite_picture};
 use npr_imagespace::filter::fused::{DepthTest, FilterUniform, FusedFilter, ink_fused};
@@ -11,97 +9,6 @@ use npr_imagespace::pass::Onto;
 use npr_imagespace::pass::fused::texel_format;
 use npr_imagespace::pass::fused_strips::{FusedStrips, STRIPS_FORMAT, serves};
 use npr_imagespace::picture::{Taps, filter_picture};
-use std::sync::OnceLock;
-
-struct Gpu {
-    device: wgpu::Device,
-    queue: wgpu::Queue,
-}
-
-/// The device that the tests share, or `None`, having said so, where `NPR_GPU` is `off`, or there is no adapter and
-/// `NPR_GPU` is not `required`.
-fn gpu() -> Option<&'static Gpu> {
-    static GPU: OnceLock<Option<Gpu>> = OnceLock::new();
-    let wish = std::env::var("NPR_GPU").unwrap_or_else(|_| "auto".into());
-    let gpu = GPU.get_or_init(|| if wish == "off" { None } else { open(wish == "required") }).as_ref();
-    if gpu.is_none() {
-        println!("skipped: no graphics adapter is used (NPR_GPU={wish})");
-    }
-    gpu
-}
-
-fn open(required: bool) -> Option<Gpu> {
-    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
-    let adapter = match pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default())) {
-        Ok(adapter) => adapter,
-        Err(error) if required => panic!("NPR_GPU=required, and there is no adapter: {error}"),
-        Err(_) => return None,
-    };
-    println!("adapter: {}", adapter.get_info().name);
-    let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default()))
-        .expect("an adapter gives a device with the default limits");
-    Some(Gpu { device, queue })
-}
-
-impl Gpu {
-    /// A texture with bytes in it, rows from the top.
-    fn upload(
-        &self,
-        format: wgpu::TextureFormat,
-        size: UVec2,
-        usage: wgpu::TextureUsages,
-        bytes: &[u8],
-    ) -> wgpu::Texture {
-        let texture = self.device.create_texture(&wgpu::TextureDescriptor {
-            label: None,
-            size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format,
-            usage: usage | wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::COPY_SRC,
-            view_formats: &[],
-        });
-        self.queue.write_texture(
-            texture.as_image_copy(),
-            bytes,
-            wgpu::TexelCopyBufferLayout {
-                offset: 0,
-                bytes_per_row: Some(bytes.len() as u32 / size.y),
-                rows_per_image: None,
-            },
-            texture.size(),
-        );
-        texture
-    }
-
-    /// The pixels of an RGBA8 texture.
-    fn pixels(&self, texture: &wgpu::Texture) -> Vec<[u8; 4]> {
-        let row = 4 * texture.width();
-        let padded_row = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-        let copy = self.device.create_buffer(&wgpu::BufferDescriptor {
-            label: None,
-            size: u64::from(padded_row * texture.height()),
-            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-            mapped_at_creation: false,
-        });
-        let mut encoder = self.device.create_command_encoder(&Default::default());
-        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(padded_row), rows_per_image: None };
-        encoder.copy_texture_to_buffer(
-            texture.as_image_copy(),
-            wgpu::TexelCopyBufferInfo { buffer: &copy, layout },
-            texture.size(),
-        );
-        self.queue.submit([encoder.finish()]);
-        copy.map_async(wgpu::MapMode::Read, .., |result| result.expect("a buffer for reading can be mapped"));
-        self.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device is not lost");
-        let bytes = copy.get_mapped_range(..).expect("it is mapped").to_vec();
-        bytes
-            .chunks(padded_row as usize)
-            .flat_map(|padded| bytemuck::cast_slice(&padded[..row as usize]).to_vec())
-            .collect()
-    }
-}
 
 /// The same numbers on every machine, below 2^32.
 struct Numbers(u64);
@@ -191,13 +98,12 @@ fn assert_same(
     let code = DepthCode::perspective(0.5, 60.0, layout).unwrap();
     let count = if layout == TexelLayout::Narrow { 1 } else { 2 };
     let flat: Vec<u32> = words.iter().flat_map(|words| words[..count].to_vec()).collect();
-    let texels =
-        gpu.upload(texel_format(layout), size, wgpu::TextureUsages::TEXTURE_BINDING, bytemuck::cast_slice(&flat));
+    let texels = view(&gpu.upload(texel_format(layout), size.into(), bytemuck::cast_slice(&flat)));
     let mut numbers = Numbers(9);
     let mut expected: Vec<[u8; 4]> =
         words.iter().map(|_| [numbers.next() as u8, numbers.next() as u8, numbers.next() as u8, 255]).collect();
-    let storage = wgpu::TextureUsages::STORAGE_BINDING;
-    let picture = gpu.upload(STRIPS_FORMAT, size, storage, bytemuck::cast_slice(&expected));
+    let picture = gpu.storable(STRIPS_FORMAT, size.into());
+    gpu.write(&picture, bytemuck::cast_slice(&expected));
     let mut ink = ink(words, size, filter, layout, &code);
     let [x, y, width, height] = area.unwrap_or([0, 0, size.x, size.y]);
     for (i, ink) in (0u32..).zip(&mut ink) {
@@ -205,12 +111,10 @@ fn assert_same(
         *ink = if inside { *ink } else { 0 };
     }
     composite_picture(&mut expected, &ink, composite).unwrap();
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    let [texels, view] = [&texels, &picture].map(|texture| texture.create_view(&Default::default()));
-    let onto = Onto { view: &view, composite, area };
-    strips.record(&gpu.device, &mut encoder, filter, &code, &texels, &onto).unwrap();
-    gpu.queue.submit([encoder.finish()]);
-    let differs = expected.iter().zip(gpu.pixels(&picture)).position(|(expected, pixel)| *expected != pixel);
+    let onto = Onto { view: &view(&picture), composite, area };
+    gpu.run(|encoder| strips.record(&gpu.device, encoder, filter, &code, &texels, &onto).unwrap());
+    let actual = gpu.read(&picture);
+    let differs = expected.iter().zip(actual.chunks_exact(4)).position(|(expected, pixel)| expected != pixel);
     let at = differs.map(|i| (i % size.x as usize, i / size.x as usize));
     assert_eq!(at, None, "{size} {filter:?} {layout:?} {area:?}");
     ink.iter().filter(|&&ink| ink > 0).count()
