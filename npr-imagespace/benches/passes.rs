@@ -6,24 +6,27 @@
 //!
 //! # Measured
 //!
-//! On lavapipe (Mesa 22.3.6, LLVM 15, 256 bits) and two cores of a Xeon at 2.5 GHz that did other work, too, 15 rounds,
-//! the crate built for development; minima in ms, and in brackets how often a copy of as many bytes.
+//! On lavapipe (Mesa 22.3.6, LLVM 15, 256 bits) and two cores of a Xeon at 2.5 GHz that did other work, too, 15 rounds;
+//! minima in ms, and in brackets how often a copy of as many bytes. The larger picture at another time than the smaller,
+//! and more of the machine was taken.
 //!
 //! | | 1280 × 720 | 1920 × 1080 |
 //! | --- | --- | --- |
-//! | copy of R8, R32, RG32, RGBA32 | 3.7, 5.9, 7.0, 7.8 | 15, 23, 27, 33 |
-//! | fused, one word, hard; soft | 25 (4.2); 27 (4.6) | 92 (3.9); 81 (3.5) |
-//! | fused, two words, hard; soft | 25 (3.6); 28 (4.0) | 64 (2.4); 106 (3.9) |
-//! | separate, three textures | 48 (6.2) | 178 (5.5) |
-//! | step, diagonal; cross; 3 × 3 | 13 (3.4); 13 (3.5); 22 (6.0) | 34 (2.3); 38 (2.6); 79 (5.4) |
-//! | disc of 1 px, hard; soft | 23 (2.9); 23 (3.0) | 88 (2.7); 87 (2.7) |
-//! | disc of 4 px | 27 (3.5); 27 (3.5) | 109 (3.4); 108 (3.3) |
-//! | disc of 16 px | 38 (4.8); 38 (4.8) | 149 (4.6); 148 (4.6) |
-//! | disc of 64 px | 50 (6.0); 49 (5.9) | 182 (5.2); 207 (6.0) |
-//! | 3 × 3 to and fro, 4 steps; 16 | 87 (15); 338 (44) | 328 (14); 1317 (41) |
-//! | lay; from half the size; from double | 7.0 (1.0); 13 (1.9); 14 (2.1) | 20 (0.7); 52 (1.9); 56 (2.1) |
+//! | copy of R8, R32, RG32, RGBA32 | 3.9, 5.9, 7.4, 8.5 | 15, 23, 27, 33 |
+//! | fused, one word, hard; soft | 25 (4.2); 28 (4.6) | 92 (3.9); 81 (3.5) |
+//! | fused, two words, hard; soft | 27 (3.7); 28 (3.7) | 64 (2.4); 106 (3.9) |
+//! | fused by strips, one word; two | 5.8 (0.97); 6.9 (0.93) | |
+//! | separate, three textures | 51 (6.0) | 178 (5.5) |
+//! | printed edges; inker | 18 (3.0); 13 (2.3) | 54 (2.3); 42 (1.8) |
+//! | step, diagonal; cross; 3 × 3 | 12 (3.1); 13 (3.2); 20 (5.2) | 34 (2.3); 38 (2.6); 79 (5.4) |
+//! | disc of 1 px, hard; soft | 24 (2.8); 23 (2.8) | 88 (2.7); 87 (2.7) |
+//! | disc of 4 px | 31 (3.7); 29 (3.4) | 109 (3.4); 108 (3.3) |
+//! | disc of 16 px | 38 (4.5); 38 (4.5) | 149 (4.6); 148 (4.6) |
+//! | disc of 64 px | 54 (5.9); 58 (6.4) | 182 (5.2); 207 (6.0) |
+//! | 3 × 3 to and fro, 4 steps; 16 | 86 (14); 367 (43) | 328 (14); 1317 (41) |
+//! | lay; from half the size; from double | 7.7 (1.0); 15 (2.0); 17 (2.3) | 20 (0.7); 52 (1.9); 56 (2.1) |
 //!
-//! A disc of 64 px takes 1.7 to 1.9 times as long as one of 4, and 2.2 to 2.6 times as long as one 3 × 3 step. Of its
+//! A disc of 64 px takes 1.7 to 2.0 times as long as one of 4, and 2.2 to 2.9 times as long as one 3 × 3 step. Of its
 //! line pixels 0.004 % at most are wrong, where steps to and fro in as many steps are wrong in 3 to 11 % (diagonal, 3
 //! × 3) and in 0 to 3.5 % (cross).
 //!
@@ -268,6 +271,7 @@ fn bench(gpu: &Gpu, size: [u32; 2]) {
     let double_ink = view(&gpu.upload(INK_FORMAT, double_size, &vec![0; (double_size[0] * double_size[1]) as usize]));
     let [out, other] = [(); 2].map(|()| view(&gpu.texture(INK_FORMAT, size)));
     let picture = view(&gpu.texture(TextureFormat::Rgba8Unorm, size));
+    let stored = view(&gpu.storable(STRIPS_FORMAT, size));
     let scratch = DiscScratch::new(device, size);
     let composite = Composite::default();
     let onto_ink = Onto { view: &out, composite: &composite, area: None };
@@ -300,7 +304,6 @@ fn bench(gpu: &Gpu, size: [u32; 2]) {
         pass.record(device, encoder, &filter, &code(TexelLayout::Wide), wide, &onto_picture).expect("in range");
     };
     timed.add("fused, Wide, hard, over a picture", 8.0 + 8.0, run);
-    let stored = view(&gpu.storable(STRIPS_FORMAT, size));
     let stored = &stored;
     for (layout, texels, bytes) in [(TexelLayout::Narrow, &narrow, 4.0), (TexelLayout::Wide, wide, 8.0)] {
         let pass = FusedStrips::new(device, &filter, layout);
