@@ -52,8 +52,8 @@ pub struct CpuFrame {
     pub color: Vec<DVec4>,
     /// Per pixel the depth buffer's value, 0 where there is nothing.
     pub depth: Vec<f64>,
-    /// Per pixel normal, region and depth, packed, while lines in the image are yet to be found; else empty.
-    texels: Vec<[u32; 2]>,
+    /// Per pixel of the ink normal, region and depth, packed, where lines are found in the image; else empty.
+    pub texels: Vec<[u32; 2]>,
 }
 
 impl CpuFrame {
@@ -153,6 +153,7 @@ pub fn render_unsure(
         };
         ink::blot(&mut texels, (ink_width, ink_height), unsure, (width, height));
         ink::draw_ink(image, &texels, &mut frame);
+        frame.texels = texels;
     }
     frame
 }

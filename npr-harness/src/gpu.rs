@@ -205,6 +205,15 @@ impl<'a> GpuRenderer<'a> {
         Ok(Some(lines))
     }
 
+    /// What the last frame's surfaces left for lines in the image: normal, region and depth of each pixel of the ink,
+    /// packed as [`ImageInk::layout`](crate::image_ink::ImageInk::layout) says. `None` if no frame had such lines.
+    ///
+    /// # Errors
+    /// [`GpuError::Device`].
+    pub fn read_texels(&self, targets: &Targets) -> Result<Option<Vec<[u32; 2]>>, GpuError> {
+        targets.read_texels(self.context)
+    }
+
     /// Waits for a frame and fetches it.
     ///
     /// # Errors

@@ -416,3 +416,45 @@ fn the_fused_filter_finds_the_lines_of_real_models() {
         }
     }
 }
+
+/// Normals within a step of their code, regions the same, depths within some codes, but where another surface is seen.
+#[cfg(feature = "gpu")]
+#[test]
+fn the_device_packs_what_the_reference_packs() {
+    use npr_harness::cpu::{self, CpuOptions};
+    use npr_harness::gallery::{painted_camera, painted_scene, still_life_camera};
+    use npr_harness::gpu::GpuRenderer;
+    use npr_harness::plan::LineMethod;
+    use npr_imagespace::format::texel::{TexelLayout, ink_narrow_tap, ink_wide_tap};
+
+    let Some(Executor::Gpu(context)) = device() else { return };
+    let renderer = GpuRenderer::new(&context);
+    let scenes = [(painted_scene(), painted_camera()), (Scene::new(embedded::scene()), still_life_camera())];
+    let parallel = Camera { projection: Projection::Orthographic { height: 7.0, far: 40.0 }, ..painted_camera() };
+    let cases = [(&scenes[0].0, scenes[0].1), (&scenes[1].0, scenes[1].1), (&scenes[0].0, parallel)];
+    for (scene, camera) in cases {
+        for layout in [TexelLayout::Narrow, TexelLayout::Wide] {
+            let style = black_on_white(ImageInk { artist: true, layout, ..ImageInk::default() });
+            let plan = Plan::new(scene, &style, &camera).expect("a good style");
+            let expected = cpu::render(scene, &style, &plan, &camera, SIZE, &CpuOptions::default(), &|_| {}).texels;
+            let targets = renderer.targets(SIZE.0, SIZE.1).expect("a size");
+            let uploaded = renderer.upload(scene, &plan, LineMethod::Auto).expect("room");
+            renderer.draw(scene, &uploaded, &style, &plan, &camera, &targets).expect("a frame");
+            let actual = renderer.read_texels(&targets).expect("texels").expect("they were asked for");
+            let tap = |words: [u32; 2]| match layout {
+                TexelLayout::Narrow => ink_narrow_tap(words[0]),
+                TexelLayout::Wide => ink_wide_tap(words),
+            };
+            let apart = |(a, b): &(&[u32; 2], &[u32; 2])| {
+                let (a, b) = (tap(**a), tap(**b));
+                let steps = (a.normal - b.normal).abs().max_element();
+                // A rasteriser's depth is an f32 that it interpolates: of 24 bits it has 18 and more.
+                let codes = layout.depth_most() / (1 << 18);
+                a.region != b.region || steps > 2 || a.depth.abs_diff(b.depth) > codes.max(2)
+            };
+            let share = expected.iter().zip(&actual).filter(apart).count() as f64 / expected.len() as f64;
+            println!("{layout:?}: {share:.5} of the texels differ");
+            assert!(expected.len() == actual.len() && share < 1e-4, "{layout:?}: {share}");
+        }
+    }
+}

@@ -63,7 +63,7 @@ impl InkTargets {
         Ok(Self {
             kind: (ink.layout, ink.scale, brushed),
             size,
-            texels: view("normal, region and depth", texel_format(ink.layout), read),
+            texels: view("normal, region and depth", texel_format(ink.layout), read | wgpu::TextureUsages::COPY_SRC),
             depth: scaled.then(|| view("depth of the ink", DEPTH_FORMAT, wgpu::TextureUsages::empty())),
             found: (scaled || brushed).then(|| view("ink", INK_FORMAT, read)),
             brush: brushed.then(|| DiscScratch::new(&context.device, size.into())),
@@ -154,33 +154,43 @@ impl Targets {
     }
 
     pub(super) fn read(&self, context: &GpuContext) -> Result<Image, GpuError> {
-        let row = 4 * self.width;
-        let padded_row = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-        let buffer = context.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("picture"),
-            size: u64::from(padded_row) * u64::from(self.height),
-            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-            mapped_at_creation: false,
-        });
-        let mut encoder = context.device.create_command_encoder(&Default::default());
-        encoder.copy_texture_to_buffer(
-            if self.is_inked.get() { &self.inked } else { &self.color }.as_image_copy(),
-            wgpu::TexelCopyBufferInfo {
-                buffer: &buffer,
-                layout: wgpu::TexelCopyBufferLayout {
-                    offset: 0,
-                    bytes_per_row: Some(padded_row),
-                    rows_per_image: None,
-                },
-            },
-            wgpu::Extent3d { width: self.width, height: self.height, depth_or_array_layers: 1 },
-        );
-        context.queue.submit([encoder.finish()]);
-        let mapped = context.map(&buffer)?;
-        let mut rgba8 = Vec::with_capacity(row as usize * self.height as usize);
-        for padded in mapped.chunks(padded_row as usize) {
-            rgba8.extend_from_slice(&padded[..row as usize]);
-        }
+        let rgba8 = read_texture(context, if self.is_inked.get() { &self.inked } else { &self.color })?;
         Ok(Image::new(self.width, self.height, rgba8).expect("four bytes a pixel"))
     }
+
+    /// Normal, region and depth of the last frame's pixels, packed; of one word the second is 0.
+    pub(super) fn read_texels(&self, context: &GpuContext) -> Result<Option<Vec<[u32; 2]>>, GpuError> {
+        let ink = self.ink.borrow();
+        let Some(ink) = ink.as_ref() else { return Ok(None) };
+        let words: Vec<u32> = bytemuck::pod_collect_to_vec(&read_texture(context, ink.texels.texture())?);
+        Ok(Some(match ink.kind.0 {
+            TexelLayout::Narrow => words.into_iter().map(|word| [word, 0]).collect(),
+            TexelLayout::Wide => words.as_chunks::<2>().0.to_vec(),
+        }))
+    }
+}
+
+/// A texture's texels, rows from the top.
+fn read_texture(context: &GpuContext, texture: &wgpu::Texture) -> Result<Vec<u8>, GpuError> {
+    let bytes = texture.format().block_copy_size(None).expect("a colour format");
+    let row = bytes * texture.width();
+    let padded_row = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+    let buffer = context.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("picture"),
+        size: u64::from(padded_row) * u64::from(texture.height()),
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    });
+    let mut encoder = context.device.create_command_encoder(&Default::default());
+    encoder.copy_texture_to_buffer(
+        texture.as_image_copy(),
+        wgpu::TexelCopyBufferInfo {
+            buffer: &buffer,
+            layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(padded_row), rows_per_image: None },
+        },
+        texture.size(),
+    );
+    context.queue.submit([encoder.finish()]);
+    let mapped = context.map(&buffer)?;
+    Ok(mapped.chunks(padded_row as usize).flat_map(|padded| &padded[..row as usize]).copied().collect())
 }
