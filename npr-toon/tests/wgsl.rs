@@ -4,6 +4,7 @@ use std::mem::{offset_of, size_of};
 
 use glam::Vec3;
 use naga::{Module, TypeInner};
+use npr_toon::ramp::TOON_STOPS_OVERRIDE;
 use npr_toon::{Bands, MAX_BANDS, TOON_BANDS_OVERRIDE, ToonError, ToonUniform, WGSL};
 
 fn validated(source: &str) -> Module {
@@ -19,10 +20,10 @@ fn is_a_library() {
     let module = validated(WGSL);
     assert!(module.entry_points.is_empty());
     assert!(module.global_variables.is_empty());
-    // Its only override has a default.
+    // Its overrides have defaults.
     let overrides: Vec<_> =
         module.overrides.iter().map(|(_, o)| (o.name.as_deref().unwrap(), o.init.is_some())).collect();
-    assert_eq!(overrides, [(TOON_BANDS_OVERRIDE, true)]);
+    assert_eq!(overrides, [(TOON_BANDS_OVERRIDE, true), (TOON_STOPS_OVERRIDE, true)]);
     for (_, function) in module.functions.iter() {
         let name = function.name.as_deref().unwrap();
         assert!(name.starts_with("toon_"), "{name}");
