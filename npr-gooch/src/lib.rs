@@ -37,8 +37,8 @@
 //! - Listing 7 pairs α with k_yellow and β with k_blue, the reverse of both equations, and its comments call the yellow
 //!   term cool and the blue one warm. The lit side is yellow all the same. It is here as [`Gooch::listing_7`],
 //!   [`Tones::Listing7`].
-//! - Listing 7's example for k_d is {0.0, 0.0, 0.4}, the same as for k_blue in the line before: perhaps a slip. It is kept as
-//!   [`LISTING_7_K_D`].
+//! - Listing 7's example for k_d is {0.0, 0.0, 0.4}, the same as for k_blue in the line before: perhaps a slip. It is
+//!   kept as [`LISTING_7_K_D`].
 //! - No listing has the highlight that the text keeps clear.
 //!
 //! # Colours and clamping
@@ -51,9 +51,9 @@
 //!
 //! # Several lights
 //!
-//! The model has one. Since N·L is not clamped at zero, the sum of several directions, each by its brightness, gives just
-//! the sum of their N·L, for every normal: [`gooch_aggregate`] is that direction. It is found once for an object, and
-//! has no form in WGSL.
+//! The model has one. Since N·L is not clamped at zero, the sum of several directions, each by its brightness, gives
+//! just the sum of their N·L, for every normal: [`gooch_aggregate`] is that direction. It is found once for an
+//! object, and has no form in WGSL.
 #![warn(missing_docs)]
 
 mod error;

@@ -33,8 +33,8 @@ pub enum Tones {
     /// k_cool = k_blue + α k_d, k_warm = k_yellow + β k_d: Gooch 1998, and Card & Mitchell's equation.
     #[default]
     Equation,
-    /// The lit side is k_yellow + α k_d and the other one k_blue + β k_d: Card & Mitchell's listing 7 as printed, with α and
-    /// β the other way around.
+    /// The lit side is k_yellow + α k_d and the other one k_blue + β k_d: Card & Mitchell's listing 7 as printed,
+    /// with α and β the other way around.
     Listing7,
 }
 
@@ -50,8 +50,8 @@ pub struct Highlight {
 }
 
 impl Gooch {
-    /// The paper's four numbers: k_blue = (0, 0, `b`), k_yellow = (`y`, `y`, 0), all usually within 0..=1. With the highlight
-    /// of [`Gooch::default`].
+    /// The paper's four numbers: k_blue = (0, 0, `b`), k_yellow = (`y`, `y`, 0), all usually within 0..=1. With the
+    /// highlight of [`Gooch::default`].
     pub fn from_numbers(b: f32, y: f32, alpha: f32, beta: f32) -> Self {
         Self {
             blue: Vec3::new(0.0, 0.0, b),

@@ -27,8 +27,8 @@ pub fn gooch_warm(model: &Gooch, k_d: DVec3) -> DVec3 {
     (model.yellow.as_dvec3() + f64::from(model.shares()[1]) * k_d).clamp(DVec3::ZERO, DVec3::ONE)
 }
 
-/// The colour without a highlight: w k_warm + (1 − w) k_cool with w = (1 + N·L) / 2. `k_d` is the object's own colour at the
-/// point, display-referred, from its material or its texture.
+/// The colour without a highlight: w k_warm + (1 − w) k_cool with w = (1 + N·L) / 2. `k_d` is the object's own colour
+/// at the point, display-referred, from its material or its texture.
 pub fn gooch_tone(model: &Gooch, k_d: DVec3, n_dot_l: f64) -> DVec3 {
     let weight = gooch_weight(n_dot_l);
     gooch_warm(model, k_d) * weight + gooch_cool(model, k_d) * (1.0 - weight)
@@ -56,8 +56,8 @@ pub fn gooch_over(model: &Gooch, tone: DVec3, opacity: f64) -> DVec3 {
     model.highlight.map_or(tone, |highlight| tone * (1.0 - opacity) + highlight.color.as_dvec3() * opacity)
 }
 
-/// The colour of a point, display-referred: [`gooch_tone`] under the highlight. Vectors may have any length and be in any
-/// one space; they point away from the surface.
+/// The colour of a point, display-referred: [`gooch_tone`] under the highlight. Vectors may have any length and be in
+/// any one space; they point away from the surface.
 pub fn gooch_shade(model: &Gooch, k_d: DVec3, normal: DVec3, to_light: DVec3, to_eye: DVec3) -> DVec3 {
     let n_dot_l = gooch_n_dot_l(normal, to_light);
     let opacity = gooch_highlight(model, n_dot_l, gooch_r_dot_e(normal, to_light, to_eye));

@@ -24,7 +24,8 @@ fn the_equation_by_hand() {
 
 #[test]
 fn listing_7_by_hand() {
-    // The lit side is c2 + c0 c4 = (0.5, 0.5, 0) + 0.4 (0, 0, 0.4), the other c3 + c1 c4 = (0, 0, 0.4) + 0.5 (0, 0, 0.4).
+    // The lit side is c2 + c0 c4 = (0.5, 0.5, 0) + 0.4 (0, 0, 0.4), the other c3 + c1 c4 = (0, 0, 0.4) + 0.5 (0, 0,
+    // 0.4).
     let (printed, k_d) = (Gooch::listing_7(), LISTING_7_K_D.as_dvec3());
     assert_near(gooch_tone(&printed, k_d, 1.0), [0.5, 0.5, 0.16]);
     assert_near(gooch_tone(&printed, k_d, -1.0), [0.0, 0.0, 0.6]);
@@ -175,7 +176,9 @@ proptest! {
     }
 
     #[test]
-    fn the_aggregate_points_where_all_light_comes_from(lights in prop::collection::vec(vector(), 1..5), normal in vector()) {
+    fn the_aggregate_points_where_all_light_comes_from(
+        lights in prop::collection::vec(vector(), 1..5), normal in vector(),
+    ) {
         let normal = normal.normalize_or_zero();
         let each: f64 = lights.iter().map(|light| normal.dot(*light)).sum();
         let sum: DVec3 = lights.iter().sum();

@@ -1,7 +1,7 @@
 //! A sphere under two lights, as a PPM picture: `cargo run -p npr-toon --example two_lights -- sphere.ppm`.
 //!
-//! Above, a warm light from the upper left and a dim cool one from the right, through a 2D ramp with a shade for bright
-//! lights in its corner; below, the ramp itself, dark at its upper left.
+//! Above, a warm light from the upper left and a dim cool one from the lower right, through a 2D ramp with a shade
+//! for bright lights in its corner; below, the ramp itself, dark at its upper left.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -20,7 +20,8 @@ const TABLE: u32 = 96;
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let path = std::env::args().nth(1).unwrap_or_else(|| "sphere.ppm".into());
     let sun = Light { color: Vec3::new(1.0, 0.95, 0.8), ..Light::directional(Vec3::new(-0.6, 0.7, 0.5)) };
-    let sky = Light { color: Vec3::new(0.7, 0.85, 1.0), brightness: 0.6, ..Light::directional(Vec3::X) };
+    let sky =
+        Light { color: Vec3::new(0.7, 0.85, 1.0), brightness: 0.6, ..Light::directional(Vec3::new(0.8, -0.5, 0.3)) };
     let (painter, ramps) = (Painter::new(vec![sun, sky])?, ramps()?);
     let table = RampTable::from_ramps(&ramps, UVec2::splat(TABLE), TexelFilter::Nearest)?;
     Ok(write(&path, |at| {

@@ -12,12 +12,12 @@
 //!   a rounding breaks into specks of both tones.
 //!
 //! [`toon_border_width`] therefore stays within [`MIN_BORDER`] and [`MAX_BORDER`]. On a sphere of radius r pixels N·L
-//! changes by about 1/r, so borders are a pixel wide from a radius of 2 pixels to one of 16,384; on what is smaller they
-//! are narrower, on what is flatter wider.
+//! changes by about 1/r, so borders are a pixel wide from a radius of 2 pixels to one of 16,384; on what is smaller
+//! they are narrower, on what is flatter wider.
 //!
 //! The largest width is measured: three gray tones (the thresholds of [`crate::Bands::default`]) on spheres that move
-//! by 1/16 pixel a frame, against the mean over 24 × 24 samples of the part of the pixel that is sphere. What the picture
-//! changes from frame to frame more or less than it should, in 1/1000 of white, root mean square (largest):
+//! by 1/16 pixel a frame, against the mean over 24 × 24 samples of the part of the pixel that is sphere. What the
+//! picture changes from frame to frame more or less than it should, in 1/1000 of white, root mean square (largest):
 //!
 //! | radius, px | no limit | 1 | 0.5 | 0.25 | 0.125 |
 //! | --- | --- | --- | --- | --- | --- |
@@ -26,8 +26,7 @@
 //! | 20 | 2.8 (140) | 2.4 (80) | 1.9 (60) | 1.4 (40) | 1.6 (80) |
 //! | 200 | 0.6 (170) | 0.5 (130) | 0.5 (110) | 0.5 (100) | 0.4 (60) |
 //!
-//! 0.5 is the smallest limit that is nowhere worse than a larger one by more than the measurement's last digit where
-//! models are small.
+//! 0.5 is the smallest limit that is at no radius notably worse than a larger one.
 
 use crate::toon_width;
 
@@ -48,6 +47,6 @@ pub const MAX_BORDER: f64 = 0.5;
 /// assert_eq!(toon_border_width(0.0, 0.0), MIN_BORDER);
 /// ```
 pub fn toon_border_width(along_x: f64, along_y: f64) -> f64 {
-    // In this order NaN becomes the narrowest.
-    toon_width(along_x, along_y).max(MIN_BORDER).min(MAX_BORDER)
+    let width = toon_width(along_x, along_y);
+    if width > MIN_BORDER { width.min(MAX_BORDER) } else { MIN_BORDER }
 }

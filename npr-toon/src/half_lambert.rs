@@ -2,9 +2,9 @@
 //!
 //! K. Birdwell's light for the characters of *Half-Life*, as Card & Mitchell tell it (section "Gooch Lighting"): N·L
 //! of one aggregate light ([`crate::source::aggregate`]), -1..=1, is scaled and biased to 0..=1 instead of being
-//! clamped at zero, so that the far side is not flat. The engine that came after it squares the result (J. L. Mitchell, M.
-//! McTaggart, C. Green: *Shading in Valve's Source Engine*, SIGGRAPH 2006), which darkens the terminator from 1/2 to
-//! 1/4.
+//! clamped at zero, so that the far side is not flat. The engine that came after it squares the result (J. L.
+//! Mitchell, M. McTaggart, C. Green: *Shading in Valve's Source Engine*, SIGGRAPH 2006), which darkens the terminator
+//! from 1/2 to 1/4.
 //!
 //! What comes out is what a [`crate::ramp::Ramp`] or [`crate::Bands`] can be looked up with. Borders take their
 //! width from the derivative of what they are looked up with: of the result, not of N·L.

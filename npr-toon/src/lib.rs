@@ -43,12 +43,13 @@
 //!
 //! # Borders
 //!
-//! A hard band is a sum of steps, and a pixel's colour the mean of the bands that it covers. Where N·L changes linearly
-//! across the pixel by `width`, the share of the pixel above a threshold t is `clamp((N·L - t) / width + 1/2, 0, 1)`,
-//! and band i covers what is above its lower border less what is above its upper one. These shares are never
-//! negative and sum to 1, however many borders fall into one pixel, and where they are 0 or 1 the tone comes out bit
-//! for bit. In a shader the width is [`border::toon_border_width`] of N·L's derivatives. (Mixing border by border, `mix(c, tone, share)`, agrees for one border in a pixel, but counts a band
-//! thinner than a pixel wrongly.) What is left is that a pixel is a square and its gradient seldom runs along a side.
+//! A hard band is a sum of steps, and a pixel's colour the mean of the bands that it covers. Where N·L changes
+//! linearly across the pixel by `width`, the share of the pixel above a threshold t is `clamp((N·L - t) / width +
+//! 1/2, 0, 1)`, and band i covers what is above its lower border less what is above its upper one. These shares are
+//! never negative and sum to 1, however many borders fall into one pixel, and where they are 0 or 1 the tone comes
+//! out bit for bit. In a shader the width is [`border::toon_border_width`] of N·L's derivatives. (Mixing border by
+//! border, `mix(c, tone, share)`, agrees for one border in a pixel, but counts a band thinner than a pixel wrongly.)
+//! What is left is that a pixel is a square and its gradient seldom runs along a side.
 #![warn(missing_docs)]
 
 mod bands;
@@ -75,8 +76,8 @@ pub use uniform::{MAX_BANDS, ToonUniform};
 /// The functions of this crate in WGSL: no bindings, no entry points, every name begins with `toon_` or `Toon`.
 ///
 /// Set the override [`TOON_BANDS_OVERRIDE`] to the number of bands in use (in wgpu,
-/// `PipelineCompilationOptions::constants`), and [`ramp::TOON_STOPS_OVERRIDE`] to that of stops. Unset, the result is the
-/// same and slower.
+/// `PipelineCompilationOptions::constants`), and [`ramp::TOON_STOPS_OVERRIDE`] to that of stops. Unset, the result is
+/// the same and slower.
 ///
 /// `toon_band` and `toon_shade` take [`ToonUniform`] by value, as WGSL cannot pass a uniform by reference. Since the
 /// loop over the bands has a length that is known when the pipeline is made, compilers unroll it and read only the

@@ -1,10 +1,10 @@
 //! Where on a triangle the light is computed, and from which normal.
 //!
-//! A rasteriser interpolates linearly between a triangle's corners. A normal that is interpolated so is shorter than 1:
-//! halfway between unit normals that are θ apart its length is cos(θ/2), and N·L shrinks by as much. At 60° the 0.8 of
-//! Card & Mitchell's bright band is reached up to 22° from the light instead of 37°; from 74° on there is no bright band
-//! in the middle of the edge at all. The cartoon renderer's figure 1 draws this; its normalising cube map mends it, as
-//! does [`crate::toon_n_dot_l`].
+//! A rasteriser interpolates linearly between a triangle's corners. A normal that is interpolated so is shorter than
+//! 1: halfway between unit normals that are θ apart its length is cos(θ/2), and N·L shrinks by as much. At 60° the
+//! 0.8 of Card & Mitchell's bright band is reached up to 22° from the light instead of 37°; from 74° on there is no
+//! bright band in the middle of the edge at all. The cartoon renderer's figure 1 draws this; its normalising cube map
+//! mends it, as does [`crate::toon_n_dot_l`].
 
 use glam::DVec3;
 
@@ -13,9 +13,9 @@ use crate::{toon_n_dot_l, toon_n_dot_l_interpolated};
 /// What becomes of a triangle's three normals.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum NormalUse {
-    /// N·L at the corners, interpolated. The cheapest: one dot product a vertex and one interpolated number. N·L is linear
-    /// within each triangle, so borders are straight in it and bend at its edges, and a bright spot
-    /// inside of a triangle is lost.
+    /// N·L at the corners, interpolated. The cheapest: one dot product a vertex and one interpolated number. N·L is
+    /// linear within each triangle, so borders are straight in it and bend at its edges, and a bright spot inside of
+    /// a triangle is lost.
     PerVertex,
     /// Normals and light vectors of unit length at the corners, interpolated, and multiplied as they are (Card &
     /// Mitchell, listing 3). Six interpolated numbers, three for a directional light, and one dot product a pixel.

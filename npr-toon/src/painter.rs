@@ -1,7 +1,7 @@
 //! The painter of *The Evolution of a Cartoon Renderer* (listings 1 and 2): two lights, a 2D ramp, one light colour.
 //!
-//! 1. u and v are N·L of the first and the second light, each times the light's brightness ([`toon_painter_uv`]), so that a
-//!    bright light reaches further around. The listing scales the light vectors before the vertex shader; the
+//! 1. u and v are N·L of the first and the second light, each times the light's brightness ([`toon_painter_uv`]), so
+//!    that a bright light reaches further around. The listing scales the light vectors before the vertex shader; the
 //!    product is the same.
 //! 2. The ramp's shade at (u, v): [`crate::table::toon_ramp_2d`], or [`crate::table::toon_table`] from an image.
 //! 3. Times the material's colour or a texture, whichever the material's alpha says ([`toon_material`]).
@@ -10,8 +10,9 @@
 //!
 //! # What the listings leave open
 //!
-//! - u and v come out of listing 2 as they are, −b..=b for a light of brightness b, and the sampler clamps them. So do the
-//!   ramps here. Derivatives for borders are taken of these: once clamped, they would be too small beside the terminator.
+//! - u and v come out of listing 2 as they are, −b..=b for a light of brightness b, and the sampler clamps them. So
+//!   do the ramps here. Derivatives for borders are taken of these: once clamped, they would be too small beside the
+//!   terminator.
 //! - The listing's lights are directional though their registers are called `LIGHT_POSITION`. Here both are possible.
 //! - The normal is brought to unit length by a cube map of 8 bits a component; here exactly.
 //! - `c1` is defined, "black", and never read.

@@ -1,8 +1,8 @@
 //! 1D ramps: light in, colour out.
 //!
-//! A ramp is looked up with N·L, with what [`crate::half_lambert`] makes of it, or with anything else that says how much
-//! light there is; its stops' positions are in the same unit. [`crate::Bands`] are a hard ramp ([`Ramp::from_bands`]);
-//! as an image there is [`crate::row`].
+//! A ramp is looked up with N·L, with what [`crate::half_lambert`] makes of it, or with anything else that says how
+//! much light there is; its stops' positions are in the same unit. [`crate::Bands`] are a hard ramp
+//! ([`Ramp::from_bands`]); as an image there is [`crate::row`].
 //!
 //! Lake 2000 and the simplest painter of the cartoon renderer read such a ramp from a 1D texture, whose filter
 //! antialiases the steps (over a part of a texel, wide or narrow as the surface lies). Computed from stops a hard step
@@ -55,8 +55,8 @@ pub struct Ramp {
 }
 
 impl Ramp {
-    /// The bands as a hard ramp over N·L, without their highlight. Its first stop is at -1, or 1 below the first threshold
-    /// if that is lower.
+    /// The bands as a hard ramp over N·L, without their highlight. Its first stop is at -1, or 1 below the first
+    /// threshold if that is lower.
     pub fn from_bands(bands: &Bands) -> Result<Self, ToonError> {
         bands.validate()?;
         let first = bands.thresholds.first().map_or(-1.0, |&threshold| (threshold - 1.0).min(-1.0));

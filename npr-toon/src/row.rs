@@ -33,8 +33,8 @@ pub enum TexelFilter {
 pub struct RampRow {
     /// From dark to light; at least one.
     pub texels: Vec<[u8; 4]>,
-    /// What the row is looked up with at the left side of its first texel: 0 where N·L is to be clamped, as in the cartoon
-    /// renderer; −1 for all of N·L.
+    /// What the row is looked up with at the left side of its first texel: 0 where N·L is to be clamped, as in the
+    /// cartoon renderer; −1 for all of N·L.
     pub from: f32,
     /// And at the right side of its last, 1 for N·L.
     pub to: f32,

@@ -108,8 +108,8 @@ pub struct Aggregate {
     pub color: DVec3,
 }
 
-/// The one light that stands for all of them at a point, for instance an object's centre, so that it is one for all of the
-/// object (Half-Life, after Card & Mitchell).
+/// The one light that stands for all of them at a point, for instance an object's centre, so that it is one for all
+/// of the object (Half-Life, after Card & Mitchell).
 ///
 /// It is the sum A of the lights' directions, each by its brightness b. For light that is not clamped at zero, such as
 /// [`crate::half_lambert`], nothing is lost by it: Σ b (N·L) = N·A for every normal. How the sum was formed is not said

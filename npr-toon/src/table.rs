@@ -76,8 +76,8 @@ impl Ramp2d {
 /// The shade at `uv`, the reach of the first and of the second light ([`crate::painter::toon_painter_uv`]), of any
 /// value: below 0 is dark, above 1 as bright as it gets.
 ///
-/// `widths` are the changes of u and v across the pixel; each ramp is antialiased by its own, and the corner by the most
-/// that its distance can change. Where two steps cross in one pixel the lighter of two means is not the mean of
+/// `widths` are the changes of u and v across the pixel; each ramp is antialiased by its own, and the corner by the
+/// most that its distance can change. Where two steps cross in one pixel the lighter of two means is not the mean of
 /// the lighter ones; everywhere else it is exact.
 pub fn toon_ramp_2d(ramps: &Ramp2d, uv: DVec2, widths: DVec2) -> DVec3 {
     let shade = toon_ramp(&ramps.a, uv.x, widths.x).max(toon_ramp(&ramps.b, uv.y, widths.y));

@@ -95,7 +95,8 @@ fn row_colours() {
 
 #[test]
 fn row_made_from_bands() {
-    // Ten texels over 0..1 with steps at 0.1 and 0.8: one dark, seven average, two bright (0.9 of f32 is a little less).
+    // Ten texels over 0..1 with steps at 0.1 and 0.8: one dark, seven average, two bright (0.9 of f32 is a little
+    // less).
     let ramp = Ramp::from_bands(&Bands::listing_3()).unwrap();
     let row = RampRow::from_ramp(&ramp, 10, 0.0, 1.0, TexelFilter::Nearest).unwrap();
     let (dark, average, bright) = ([51, 51, 51, 255], [153, 153, 153, 255], [229, 229, 255, 255]);
@@ -267,7 +268,8 @@ proptest! {
     #[test]
     fn an_antialiased_ramp_keeps_the_mean(ramp in any_ramp(false), width in 0.01..0.3_f64) {
         prop_assume!(ramp.blend == RampBlend::Hard);
-        let mean = |width| (0..8000).map(|i| toon_ramp(&ramp, -2.0 + f64::from(i) / 1000.0, width).x).sum::<f64>() / 8000.0;
+        let at = |i: u32, width| toon_ramp(&ramp, -2.0 + f64::from(i) / 1000.0, width).x;
+        let mean = |width| (0..8000).map(|i| at(i, width)).sum::<f64>() / 8000.0;
         prop_assert!((mean(width) - mean(0.0)).abs() < 1.0 / 1000.0);
     }
 
