@@ -1,7 +1,9 @@
 //! What a surface's light is cut into.
 
 use glam::Vec3;
-use thiserror::Error;
+
+use crate::ToonError;
+use crate::error::is_color;
 
 /// Bands of diffuse light, and perhaps a highlight.
 ///
@@ -32,75 +34,6 @@ pub struct Highlight {
     /// Whether there is a highlight only at N·L >= 0. At grazing angles N·H can be large on a surface that is
     /// turned away from the light; the chapter does not exclude it.
     pub lit_only: bool,
-}
-
-/// Why [`Bands`] cannot be used.
-#[derive(Clone, Copy, Debug, Error, PartialEq)]
-#[non_exhaustive]
-pub enum ToonError {
-    /// There is no tone.
-    #[error("at least one tone is needed")]
-    NoTones,
-    /// N tones have N - 1 borders.
-    #[error("{tones} tones need {} thresholds, not {thresholds}", tones - 1)]
-    Counts {
-        /// How many there are.
-        tones: usize,
-        /// How many there are.
-        thresholds: usize,
-    },
-    /// A threshold is NaN or infinite.
-    #[error("threshold {index} is {value}, which is not finite")]
-    ThresholdNotFinite {
-        /// Into [`Bands::thresholds`].
-        index: usize,
-        /// What stands there.
-        value: f32,
-    },
-    /// A threshold is not above the one before it.
-    #[error("threshold {index} is {value}, not above the {before} before it")]
-    ThresholdOrder {
-        /// Into [`Bands::thresholds`].
-        index: usize,
-        /// What stands there.
-        value: f32,
-        /// What stands before it.
-        before: f32,
-    },
-    /// A tone has a component that is negative, NaN or infinite.
-    #[error("tone {index} is {value}: components must be finite and not negative")]
-    Tone {
-        /// Into [`Bands::tones`].
-        index: usize,
-        /// What stands there.
-        value: Vec3,
-    },
-    /// The highlight's threshold is NaN or infinite.
-    #[error("the highlight's threshold is {value}, which is not finite")]
-    HighlightThreshold {
-        /// What it is.
-        value: f32,
-    },
-    /// The highlight's colour has a component that is negative, NaN or infinite.
-    #[error("the highlight's colour is {value}: components must be finite and not negative")]
-    HighlightColor {
-        /// What it is.
-        value: Vec3,
-    },
-    /// The highlight's strength is not within 0..=1.
-    #[error("the highlight's strength is {value}, not within 0..=1")]
-    HighlightStrength {
-        /// What it is.
-        value: f32,
-    },
-    /// More bands than a [`crate::ToonUniform`] holds. (The Rust functions take any number.)
-    #[error("{tones} tones are too many for the uniform, which holds {max}")]
-    TooManyTones {
-        /// How many there are.
-        tones: usize,
-        /// [`crate::MAX_BANDS`].
-        max: usize,
-    },
 }
 
 impl Bands {
@@ -188,8 +121,4 @@ impl Default for Bands {
             antialias: true,
         }
     }
-}
-
-fn is_color(value: Vec3) -> bool {
-    value.is_finite() && value.min_element() >= 0.0
 }

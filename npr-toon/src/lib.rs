@@ -1,4 +1,4 @@
-//! Banded light: cartoon shading with any number of N·L bands and an N·H highlight.
+//! Banded light: cartoon shading with any number of N·L bands and an N·H highlight, with ramps, and with two lights.
 //!
 //! ```
 //! use glam::DVec3;
@@ -14,7 +14,13 @@
 //!
 //! The same things under the same names stand here twice: as Rust functions in f64, the reference, and in
 //! [`WGSL`], a library without bindings or entry points to put in front of a shader. [`ToonUniform`] is what
-//! carries [`Bands`] from one to the other.
+//! carries [`Bands`] from one to the other. Functions that stand in both begin with `toon_`.
+//!
+//! - [`Bands`], [`toon_shade`]: steps of N·L and a highlight, here at the crate's root.
+//! - [`ramp`], [`row`]: any colours by light, computed from stops or read from an image.
+//! - [`table`], [`painter`]: two lights, each an axis of a 2D ramp, under one colour.
+//! - [`half_lambert`]: light that reaches around; [`source`]: lights, and several of them as one.
+//! - [`border`]: how wide a border is where derivatives are of no use; [`normal`]: what interpolated normals cost.
 //!
 //! # Sources
 //!
@@ -22,7 +28,9 @@
 //!   Animation*, NPAR 2000. Two colours, the border where N·L crosses zero, antialiased by a 1D texture
 //!   ([`Bands::hard_shading`]).
 //! - D. Card, J. L. Mitchell: *Non-Photorealistic Rendering with Pixel and Vertex Shaders*, in *Direct3D ShaderX*,
-//!   2002, listings 2 (vertex shader) and 3 (pixel shader). The bands are computed, no texture is read.
+//!   2002, listings 2 (vertex shader) and 3 (pixel shader). The bands are computed, no texture is read. The
+//!   light of *Half-Life* is told in its section "Gooch Lighting".
+//! - *The Evolution of a Cartoon Renderer*, GDNet: the painter, listings 1 and 2, figures 1 and 2.
 //!
 //! What was wrong in print: the last instruction but one of listing 2, which normalises the half vector, has lost its
 //! opcode (`mul`). The text describes one threshold on N·L and one on N·H; listing 3 has two on N·L and never
@@ -35,19 +43,30 @@
 //!
 //! # Borders
 //!
-//! A hard band is a sum of steps, and a pixel's colour the mean of the bands that it covers. Where N·L changes linearly
-//! across the pixel by `width`, the share of the pixel above a threshold t is `clamp((N·L - t) / width + 1/2, 0, 1)`,
-//! and band i covers what is above its lower border less what is above its upper one. These shares are never
-//! negative and sum to 1, however many borders fall into one pixel, and where they are 0 or 1 the tone comes out bit
-//! for bit. (Mixing border by border, `mix(c, tone, share)`, agrees for one border in a pixel, but counts a band
-//! thinner than a pixel wrongly.) What is left is that a pixel is a square and its gradient seldom runs along a side.
+//! A hard band is a sum of steps, and a pixel's colour the mean of the bands that it covers. Where N·L changes
+//! linearly across the pixel by `width`, the share of the pixel above a threshold t is `clamp((N·L - t) / width +
+//! 1/2, 0, 1)`, and band i covers what is above its lower border less what is above its upper one. These shares are
+//! never negative and sum to 1, however many borders fall into one pixel, and where they are 0 or 1 the tone comes
+//! out bit for bit. In a shader the width is [`border::toon_border_width`] of N·L's derivatives. (Mixing border by
+//! border, `mix(c, tone, share)`, agrees for one border in a pixel, but counts a band thinner than a pixel wrongly.)
+//! What is left is that a pixel is a square and its gradient seldom runs along a side.
 #![warn(missing_docs)]
 
 mod bands;
+pub mod border;
+mod error;
+pub mod half_lambert;
 mod light;
+pub mod normal;
+pub mod painter;
+pub mod ramp;
+pub mod row;
+pub mod source;
+pub mod table;
 mod uniform;
 
-pub use bands::{Bands, Highlight, ToonError};
+pub use bands::{Bands, Highlight};
+pub use error::ToonError;
 pub use light::{
     MIN_WIDTH, toon_band_hard, toon_band_smooth, toon_coverage, toon_half, toon_highlight, toon_n_dot_h,
     toon_n_dot_h_interpolated, toon_n_dot_h_of, toon_n_dot_l, toon_n_dot_l_interpolated, toon_shade, toon_width,
@@ -57,13 +76,23 @@ pub use uniform::{MAX_BANDS, ToonUniform};
 /// The functions of this crate in WGSL: no bindings, no entry points, every name begins with `toon_` or `Toon`.
 ///
 /// Set the override [`TOON_BANDS_OVERRIDE`] to the number of bands in use (in wgpu,
-/// `PipelineCompilationOptions::constants`). Unset, the result is the same and slower.
+/// `PipelineCompilationOptions::constants`), and [`ramp::TOON_STOPS_OVERRIDE`] to that of stops. Unset, the result is
+/// the same and slower.
 ///
 /// `toon_band` and `toon_shade` take [`ToonUniform`] by value, as WGSL cannot pass a uniform by reference. Since the
 /// loop over the bands has a length that is known when the pipeline is made, compilers unroll it and read only the
 /// fields they need; with a length from the uniform a software rasteriser copies the whole struct for every pixel,
 /// and took ten times as long.
-pub const WGSL: &str = include_str!("toon.wgsl");
+pub const WGSL: &str = concat!(
+    include_str!("toon.wgsl"),
+    include_str!("border.wgsl"),
+    include_str!("half_lambert.wgsl"),
+    include_str!("source.wgsl"),
+    include_str!("ramp.wgsl"),
+    include_str!("row.wgsl"),
+    include_str!("table.wgsl"),
+    include_str!("painter.wgsl"),
+);
 
 /// The name of the override in [`WGSL`] that says how many bands its functions look at: 1..=[`MAX_BANDS`], at least
 /// as many as [`ToonUniform::count`], by default all.

@@ -7,6 +7,11 @@ use crate::Bands;
 /// Below this change across a pixel a border is hard: 2^-23, the spacing of f32 just above 1.
 pub const MIN_WIDTH: f64 = f32::EPSILON as f64;
 
+/// 0..=1; not a number becomes 0.
+pub(crate) fn saturate(x: f64) -> f64 {
+    if x > 0.0 { x.min(1.0) } else { 0.0 }
+}
+
 /// N·L at a pixel, -1..=1: the interpolated normal and light vector are brought to unit length first.
 ///
 /// `to_light` points from the surface to the light. A zero vector gives 0.
@@ -48,10 +53,10 @@ pub fn toon_width(along_x: f64, along_y: f64) -> f64 {
 }
 
 /// The share of a pixel, 0..=1, where `x` is at least `threshold`, if `x` is its value at the centre and it changes by
-/// `width` across the pixel. Up to [`MIN_WIDTH`] this is the comparison `x >= threshold`.
+/// `width` across the pixel. Up to [`MIN_WIDTH`] this is the comparison `x >= threshold`. Not a number reaches none.
 pub fn toon_coverage(x: f64, threshold: f64, width: f64) -> f64 {
     if width > MIN_WIDTH {
-        ((x - threshold) / width + 0.5).clamp(0.0, 1.0)
+        saturate((x - threshold) / width + 0.5)
     } else if x >= threshold {
         1.0
     } else {

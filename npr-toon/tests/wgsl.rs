@@ -1,10 +1,14 @@
-//! The WGSL is valid, and the uniform lies in memory as naga lays it out.
+//! The WGSL is valid, and the uniforms lie in memory as naga lays them out.
 
 use std::mem::{offset_of, size_of};
 
 use glam::Vec3;
 use naga::{Module, TypeInner};
-use npr_toon::{Bands, MAX_BANDS, TOON_BANDS_OVERRIDE, ToonError, ToonUniform, WGSL};
+use npr_toon::border::{MAX_BORDER, MIN_BORDER};
+use npr_toon::painter::PainterUniform;
+use npr_toon::ramp::{MAX_STOPS, Ramp, RampBlend, RampUniform, TOON_STOPS_OVERRIDE};
+use npr_toon::table::{Corner, Ramp2d, Ramp2dUniform};
+use npr_toon::{Bands, MAX_BANDS, MIN_WIDTH, TOON_BANDS_OVERRIDE, ToonError, ToonUniform, WGSL};
 
 fn validated(source: &str) -> Module {
     let module = naga::front::wgsl::parse_str(source).unwrap_or_else(|e| panic!("{}", e.emit_to_string(source)));
@@ -19,10 +23,10 @@ fn is_a_library() {
     let module = validated(WGSL);
     assert!(module.entry_points.is_empty());
     assert!(module.global_variables.is_empty());
-    // Its only override has a default.
+    // Its overrides have defaults.
     let overrides: Vec<_> =
         module.overrides.iter().map(|(_, o)| (o.name.as_deref().unwrap(), o.init.is_some())).collect();
-    assert_eq!(overrides, [(TOON_BANDS_OVERRIDE, true)]);
+    assert_eq!(overrides, [(TOON_BANDS_OVERRIDE, true), (TOON_STOPS_OVERRIDE, true)]);
     for (_, function) in module.functions.iter() {
         let name = function.name.as_deref().unwrap();
         assert!(name.starts_with("toon_"), "{name}");
@@ -31,24 +35,75 @@ fn is_a_library() {
         let name = constant.name.as_deref().unwrap();
         assert!(name.starts_with("TOON_"), "{name}");
     }
+    for (_, kind) in module.types.iter() {
+        if let Some(name) = kind.name.as_deref() {
+            assert!(name.starts_with("Toon"), "{name}");
+        }
+    }
+}
+
+/// Every function of the WGSL stands in the Rust files, but for helpers of the WGSL that have no Rust form.
+#[test]
+fn functions_have_the_names_of_the_rust_ones() {
+    let mut rust = String::new();
+    for entry in std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/src")).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|extension| extension == "rs") {
+            rust += &std::fs::read_to_string(path).unwrap();
+        }
+    }
+    // toon_band is toon_band_smooth, width 0 is toon_band_hard.
+    let helpers = ["toon_unit", "toon_step", "toon_band", "toon_pixel_width", "toon_pixel_border_width"];
+    for (_, function) in validated(WGSL).functions.iter() {
+        let name = function.name.as_deref().unwrap();
+        let known = rust.contains(&format!("fn {name}("));
+        assert!(known != helpers.contains(&name), "{name}");
+    }
+}
+
+/// Where the members of a struct of the WGSL lie, but for its padding, and its size.
+fn layout(name: &str) -> (Vec<(String, usize)>, usize) {
+    let module = validated(WGSL);
+    let (_, found) = module.types.iter().find(|(_, t)| t.name.as_deref() == Some(name)).unwrap();
+    let TypeInner::Struct { members, span } = &found.inner else { panic!("{name} is no struct") };
+    let members = members.iter().map(|m| (m.name.clone().unwrap(), m.offset as usize));
+    (members.filter(|(name, _)| !name.starts_with("padding")).collect(), *span as usize)
+}
+
+macro_rules! assert_layout {
+    ($wgsl:literal, $rust:ty, [$($field:ident),*]) => {{
+        let (members, span) = layout($wgsl);
+        assert_eq!(members, [$((stringify!($field).to_owned(), offset_of!($rust, $field))),*]);
+        assert_eq!(span, size_of::<$rust>());
+    }};
 }
 
 #[test]
-fn uniform_has_the_layout_of_the_shader() {
-    let module = validated(WGSL);
-    let (_, bands) = module.types.iter().find(|(_, t)| t.name.as_deref() == Some("ToonBands")).unwrap();
-    let TypeInner::Struct { members, span } = &bands.inner else { panic!("not a struct") };
-    let theirs: Vec<_> = members.iter().map(|m| (m.name.as_deref().unwrap(), m.offset as usize)).collect();
-    let ours = [
-        ("bands", offset_of!(ToonUniform, bands)),
-        ("highlight", offset_of!(ToonUniform, highlight)),
-        ("count", offset_of!(ToonUniform, count)),
-        ("highlight_strength", offset_of!(ToonUniform, highlight_strength)),
-        ("highlight_lit_only", offset_of!(ToonUniform, highlight_lit_only)),
-        ("antialias", offset_of!(ToonUniform, antialias)),
-    ];
-    assert_eq!(theirs, ours);
-    assert_eq!(*span as usize, size_of::<ToonUniform>());
+fn uniforms_have_the_layout_of_the_shader() {
+    assert_layout!(
+        "ToonBands",
+        ToonUniform,
+        [bands, highlight, count, highlight_strength, highlight_lit_only, antialias]
+    );
+    assert_layout!("ToonRamp", RampUniform, [stops, is_smooth]);
+    assert_layout!("ToonRamp2d", Ramp2dUniform, [a, b, corner]);
+    assert_layout!("ToonPainter", PainterUniform, [place_a, place_b, light_color, brightness]);
+    let sizes = [size_of::<ToonUniform>(), size_of::<RampUniform>(), size_of::<Ramp2dUniform>()];
+    assert_eq!((sizes, size_of::<PainterUniform>()), ([160, 144, 304], 64));
+}
+
+/// The limits and counts of the WGSL are those of the Rust files.
+#[test]
+fn constants_are_the_same() {
+    for constant in [
+        format!("const TOON_MAX_BANDS: u32 = {MAX_BANDS}u;"),
+        format!("const TOON_MAX_STOPS: u32 = {MAX_STOPS}u;"),
+        format!("const TOON_MIN_WIDTH: f32 = {MIN_WIDTH:e};"),
+        format!("const TOON_MIN_BORDER: f32 = {MIN_BORDER:e};"),
+        format!("const TOON_MAX_BORDER: f32 = {MAX_BORDER};"),
+    ] {
+        assert!(WGSL.contains(&constant), "{constant}");
+    }
 }
 
 #[test]
@@ -79,6 +134,54 @@ fn serves_a_fragment_shader() {
             return vec4(tone + share * u_bands.bands[u_bands.count - 1u].rgb, 1.0);
         }";
     assert_eq!(validated(&format!("{WGSL}{shader}")).entry_points.len(), 2);
+}
+
+#[test]
+fn serves_a_painter() {
+    let shader = "
+        @group(0) @binding(0) var<uniform> u_painter: ToonPainter;
+        @group(0) @binding(1) var<uniform> u_ramps: ToonRamp2d;
+        @group(0) @binding(2) var shades: texture_2d<f32>;
+        @group(0) @binding(3) var<uniform> u_material: vec4<f32>;
+        @fragment
+        fn computed(@location(0) at: vec3<f32>, @location(1) normal: vec3<f32>) -> @location(0) vec4<f32> {
+            let uv = toon_painter_uv(u_painter, at, normal);
+            let widths = vec2(toon_pixel_border_width(uv.x), toon_pixel_border_width(uv.y));
+            let shade = toon_ramp_2d(u_ramps, uv, widths);
+            return toon_paint(u_painter, shade, toon_material(u_material, vec4(1.0)));
+        }
+        @fragment
+        fn from_an_image(@location(0) at: vec3<f32>, @location(1) normal: vec3<f32>) -> @location(0) vec4<f32> {
+            let uv = toon_painter_uv(u_painter, at, normal);
+            let size = textureDimensions(shades);
+            let across = toon_row_taps(toon_half_lambert(0.5, 0.5, 1u, uv.x), 0.0, 1.0, size.x);
+            let down = toon_row_taps(uv.y, 0.0, 1.0, size.y);
+            let shade = toon_table_mix(
+                textureLoad(shades, vec2(across.left, down.left), 0),
+                textureLoad(shades, vec2(across.right, down.left), 0),
+                textureLoad(shades, vec2(across.left, down.right), 0),
+                textureLoad(shades, vec2(across.right, down.right), 0),
+                across.share, down.share);
+            return toon_paint(u_painter, shade.rgb, u_material);
+        }";
+    assert_eq!(validated(&format!("{WGSL}{shader}")).entry_points.len(), 2);
+}
+
+#[test]
+fn packs_ramps() {
+    let ramps = Ramp2d {
+        corner: Some(Corner { threshold: 0.9, color: Vec3::X }),
+        ..Ramp2d::from_bands(&Bands::listing_3()).unwrap()
+    };
+    let uniform = Ramp2dUniform::new(&ramps).unwrap();
+    assert_eq!(uniform.a.stops[0], [0.2, 0.2, 0.2, -1.0]);
+    assert_eq!(uniform.a.stops[2], [0.9, 0.9, 1.0, 0.8]);
+    // Those not in use repeat the last colour.
+    assert_eq!(uniform.b.stops[7], [0.9, 0.9, 1.0, 1e4]);
+    assert_eq!((uniform.a.is_smooth, uniform.corner), (0, [1.0, 0.0, 0.0, 0.9]));
+    let smooth = Ramp { blend: RampBlend::Smooth, ..ramps.a.clone() };
+    assert_eq!(RampUniform::new(&smooth).unwrap().is_smooth, 1);
+    assert_eq!(Ramp2dUniform::new(&Ramp2d { corner: None, ..ramps }).unwrap().corner[3], 1e4);
 }
 
 #[test]

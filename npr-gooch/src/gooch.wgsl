@@ -1,0 +1,74 @@
+// Cool-to-warm light. No bindings, no entry points; the names and meanings are those of the crate npr-gooch.
+// Colours are display-referred. Vectors may be in any one space; they point away from the surface.
+
+struct GoochModel {
+    // rgb k_blue, w the share of the object's colour in the cool tone.
+    blue: vec4<f32>,
+    // rgb k_yellow, w the share in the warm tone.
+    yellow: vec4<f32>,
+    // rgb the highlight's colour, w its strength (0: none).
+    highlight: vec4<f32>,
+    exponent: f32,
+    padding_a: u32,
+    padding_b: u32,
+    padding_c: u32,
+}
+
+// Unit length; a zero vector stays zero.
+fn gooch_unit(v: vec3<f32>) -> vec3<f32> {
+    return v * inverseSqrt(max(dot(v, v), 1e-30));
+}
+
+fn gooch_n_dot_l(normal: vec3<f32>, to_light: vec3<f32>) -> f32 {
+    return dot(gooch_unit(normal), gooch_unit(to_light));
+}
+
+// How warm, 0..1.
+fn gooch_weight(n_dot_l: f32) -> f32 {
+    return saturate((1.0 + n_dot_l) * 0.5);
+}
+
+fn gooch_cool(model: GoochModel, k_d: vec3<f32>) -> vec3<f32> {
+    return saturate(model.blue.rgb + model.blue.w * k_d);
+}
+
+fn gooch_warm(model: GoochModel, k_d: vec3<f32>) -> vec3<f32> {
+    return saturate(model.yellow.rgb + model.yellow.w * k_d);
+}
+
+// The colour without a highlight. k_d is the object's own, from its material or its texture.
+fn gooch_tone(model: GoochModel, k_d: vec3<f32>, n_dot_l: f32) -> vec3<f32> {
+    return mix(gooch_cool(model, k_d), gooch_warm(model, k_d), gooch_weight(n_dot_l));
+}
+
+// The cosine between the light's mirrored direction and the direction to the eye.
+fn gooch_r_dot_e(normal: vec3<f32>, to_light: vec3<f32>, to_eye: vec3<f32>) -> f32 {
+    let n = gooch_unit(normal);
+    let l = gooch_unit(to_light);
+    let e = gooch_unit(to_eye);
+    return 2.0 * dot(n, l) * dot(n, e) - dot(l, e);
+}
+
+// How opaque the highlight is.
+fn gooch_highlight(model: GoochModel, n_dot_l: f32, r_dot_e: f32) -> f32 {
+    // The power of 0 is left to no compiler.
+    let opacity = model.highlight.w * pow(clamp(r_dot_e, 1e-30, 1.0), model.exponent);
+    return select(0.0, opacity, n_dot_l > 0.0 && r_dot_e > 0.0);
+}
+
+fn gooch_over(model: GoochModel, tone: vec3<f32>, opacity: f32) -> vec3<f32> {
+    return mix(tone, model.highlight.rgb, opacity);
+}
+
+// The colour of a point.
+fn gooch_shade(
+    model: GoochModel,
+    k_d: vec3<f32>,
+    normal: vec3<f32>,
+    to_light: vec3<f32>,
+    to_eye: vec3<f32>,
+) -> vec3<f32> {
+    let n_dot_l = gooch_n_dot_l(normal, to_light);
+    let opacity = gooch_highlight(model, n_dot_l, gooch_r_dot_e(normal, to_light, to_eye));
+    return gooch_over(model, gooch_tone(model, k_d, n_dot_l), opacity);
+}

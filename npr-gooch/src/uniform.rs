@@ -1,0 +1,41 @@
+//! The model as the shader reads it.
+
+use bytemuck::{Pod, Zeroable};
+
+use crate::{Gooch, GoochError};
+
+/// `GoochModel` of the WGSL: what to write into the uniform buffer, 64 bytes.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct GoochUniform {
+    /// k_blue, and the cool tone's share of the object's colour: α, or β for [`crate::Tones::Listing7`].
+    pub blue: [f32; 4],
+    /// k_yellow, and the warm tone's share.
+    pub yellow: [f32; 4],
+    /// The highlight's colour and strength; strength 0 where there is none.
+    pub highlight: [f32; 4],
+    /// The highlight's exponent.
+    pub exponent: f32,
+    /// Unused, 0.
+    pub padding: [u32; 3],
+}
+
+impl GoochUniform {
+    /// Checks and packs `model`.
+    pub fn new(model: &Gooch) -> Result<Self, GoochError> {
+        model.validate()?;
+        let [cool, warm] = model.shares();
+        let mut uniform = Self {
+            blue: model.blue.extend(cool).to_array(),
+            yellow: model.yellow.extend(warm).to_array(),
+            highlight: [0.0; 4],
+            exponent: 1.0,
+            padding: [0; 3],
+        };
+        if let Some(highlight) = model.highlight {
+            uniform.highlight = highlight.color.extend(highlight.strength).to_array();
+            uniform.exponent = highlight.exponent;
+        }
+        Ok(uniform)
+    }
+}
