@@ -136,7 +136,7 @@ impl fmt::Display for Report {
             };
             writeln!(
                 f,
-                "{:widest$}  {:12} {:14} {:44} {:>10.5}  {:10} {verdict}",
+                "{:widest$}  {:12} {:15} {:44} {:>10.5}  {:10} {verdict}",
                 m.model, m.view, m.technique, m.metric, m.value, limit
             )?;
         }

@@ -7,6 +7,7 @@
 
 use super::{Checker, SIZE, WITHIN_PX, darkness, one_px_style};
 use crate::camera::Camera;
+use crate::cpu::{self, CpuOptions};
 use crate::error::HarnessError;
 use crate::image_ink::{ImageInk, Regions};
 use crate::line_truth::{
@@ -16,8 +17,17 @@ use crate::line_truth::{
 use crate::plan::Plan;
 use crate::scene::Scene;
 use crate::style::Lines;
-use npr_imagespace::filter::depth::ANY_OS;
+use glam::UVec2;
+use npr_imagespace::filter::depth::{ANY_OS, DepthPlain, SUM_CM};
 use npr_imagespace::filter::fused::{DepthTest, FusedFilter};
+use npr_imagespace::filter::inker::{Inker, InkerForm};
+use npr_imagespace::filter::normal::COS_CM;
+use npr_imagespace::filter::printed::{
+    PrintedDepth, PrintedEdges, PrintedFilter, PrintedNormal, PrintedUniform, ink_printed_edges, ink_printed_inker,
+};
+use npr_imagespace::format::printed::{CLEAR, CLEAR_PRINTED, ink_printed_encode};
+use npr_imagespace::format::texel::{TexelLayout, ink_wide_tap};
+use npr_imagespace::picture::{Taps, filter_picture};
 use npr_outline::LineKind;
 
 /// Silhouettes and boundaries behind which the next surface is nearer than this share of the model's size, the
@@ -64,22 +74,83 @@ impl Checker<'_> {
         let style = one_px_style(Lines::Image(ImageInk::default()));
         let uncarried = uncarried_share(scene, &of_edges, &Plan::new(scene, &style, camera)?);
         self.add(model, view, "image lines", "share of creases within one patch", uncarried, None);
+        let judge = |checker: &mut Self, technique, darkness: &[f64]| {
+            let drawn = drawn_centreline(darkness, SIZE.0, SIZE.1);
+            let found = accuracy(&asked, &drawn, WITHIN_PX);
+            checker.add(model, view, technique, "F1 within 1.5 px", found.f1, None);
+            checker.add(model, view, technique, "precision within 1.5 px", found.precision, None);
+            checker.add(model, view, technique, "recall within 1.5 px", found.recall, None);
+            let near_any = accuracy(&all, &drawn, WITHIN_PX).precision;
+            checker.add(model, view, technique, "precision, any step or meeting a line", near_any, None);
+            let without = accuracy(&of_edges, &drawn, WITHIN_PX).f1;
+            checker.add(model, view, technique, "F1, meetings of surfaces no lines", without, None);
+        };
         for (technique, ink) in filters() {
             let style = one_px_style(Lines::Image(ink));
             let plan = Plan::new(scene, &style, camera)?;
             let image = self.executor.render(scene, &style, &plan, camera, SIZE, 1, &|_| {})?;
-            let drawn = drawn_centreline(&darkness(&image), SIZE.0, SIZE.1);
-            let found = accuracy(&asked, &drawn, WITHIN_PX);
-            self.add(model, view, technique, "F1 within 1.5 px", found.f1, None);
-            self.add(model, view, technique, "precision within 1.5 px", found.precision, None);
-            self.add(model, view, technique, "recall within 1.5 px", found.recall, None);
-            let near_any = accuracy(&all, &drawn, WITHIN_PX).precision;
-            self.add(model, view, technique, "precision, any step or meeting a line", near_any, None);
-            let without = accuracy(&of_edges, &drawn, WITHIN_PX).f1;
-            self.add(model, view, technique, "F1, meetings of surfaces no lines", without, None);
+            judge(self, technique, &darkness(&image));
+        }
+        let plan = Plan::new(scene, &style, camera)?;
+        let texels = cpu::render(scene, &style, &plan, camera, SIZE, &CpuOptions::default(), &|_| {}).texels;
+        for (technique, filter, clear) in printed_filters() {
+            judge(self, technique, &printed_ink(&texels, &plan, &filter, clear)?);
         }
         Ok(())
     }
+}
+
+/// The filters of 2002 over the RGBA8 target that they were made for, as printed and mended, and what it is cleared to.
+fn printed_filters() -> [(&'static str, PrintedFilter, [u8; 4]); 4] {
+    let mended = PrintedEdges::default();
+    let printed = PrintedEdges {
+        normal: Some(PrintedNormal { cos: COS_CM, printed_background: true }),
+        depth: Some(PrintedDepth { form: DepthPlain::SumPrinted, threshold: SUM_CM }),
+        taps: Taps::Diagonal,
+    };
+    let inker = |form| PrintedFilter::Inker(Inker { form, ..Inker::default() });
+    [
+        ("2002, printed", PrintedFilter::Edges(printed), CLEAR_PRINTED),
+        ("2002, mended", PrintedFilter::Edges(mended), CLEAR),
+        ("inker, printed", inker(InkerForm::Printed), CLEAR),
+        ("inker, mended", inker(InkerForm::Explicit), CLEAR),
+    ]
+}
+
+/// Their ink 0..=1, from packed texels whose depths lie within the code's range.
+fn printed_ink(
+    texels: &[[u32; 2]],
+    plan: &Plan,
+    filter: &PrintedFilter,
+    clear: [u8; 4],
+) -> Result<Vec<f64>, HarnessError> {
+    let Some(image) = &plan.image else { return Ok(vec![0.0; texels.len()]) };
+    let depth = |code: u32| image.code.depth(code);
+    let (near, far) = (depth(TexelLayout::Wide.depth_most()), depth(0));
+    let bytes: Vec<[u8; 4]> = texels
+        .iter()
+        .map(|&words| {
+            let tap = ink_wide_tap(words);
+            if tap.region == 0 {
+                return clear;
+            }
+            let fraction = (depth(tap.depth as u32) - near) / (far - near);
+            ink_printed_encode(tap.normal.as_vec3().normalize_or_zero(), fraction as f32)
+        })
+        .collect();
+    let size_px = UVec2::from(SIZE);
+    let ink = match filter {
+        PrintedFilter::Edges(edges) => {
+            let uniform = PrintedUniform::new(edges)?;
+            filter_picture(&bytes, size_px, edges.taps, |centre, taps| {
+                f32::from(u8::from(ink_printed_edges(edges, &uniform, centre, taps)))
+            })?
+        }
+        PrintedFilter::Inker(inker) => {
+            filter_picture(&bytes, size_px, Taps::Diagonal, |_, taps| ink_printed_inker(inker, taps) as f32)?
+        }
+    };
+    Ok(ink.into_iter().map(|ink| f64::from(ink) / 255.0).collect())
 }
 
 /// The share of the lines' length that are creases with one region on both sides: found only if the shading normals
