@@ -117,38 +117,39 @@ impl Report {
     }
 }
 
+impl fmt::Display for Metric {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (limit, verdict) = match self.limit {
+            None => (String::new(), ""),
+            Some(Limit::AtLeast(limit)) => (format!(">= {limit}"), if self.pass { "pass" } else { "FAIL" }),
+            Some(Limit::AtMost(limit)) => (format!("<= {limit}"), if self.pass { "pass" } else { "FAIL" }),
+        };
+        // The names of models that can be foreseen are shorter.
+        let Metric { model, view, technique, metric, value, .. } = self;
+        write!(f, "{model:22}  {view:12} {technique:15} {metric:44} {value:>10.5}  {limit:10} {verdict}")
+    }
+}
+
+/// All of it; [`Report::summary`] after the metrics.
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "on {}", self.executor)?;
-        let widest = self.metrics.iter().map(|m| m.model.len()).max().unwrap_or(0);
-        for m in &self.metrics {
-            let limit = match m.limit {
-                None => String::new(),
-                Some(Limit::AtLeast(limit)) => format!(">= {limit}"),
-                Some(Limit::AtMost(limit)) => format!("<= {limit}"),
-            };
-            let verdict = if m.limit.is_none() {
-                ""
-            } else if m.pass {
-                "pass"
-            } else {
-                "FAIL"
-            };
-            writeln!(
-                f,
-                "{:widest$}  {:12} {:15} {:44} {:>10.5}  {:10} {verdict}",
-                m.model, m.view, m.technique, m.metric, m.value, limit
-            )?;
+        for metric in &self.metrics {
+            writeln!(f, "{metric}")?;
         }
-        for skipped in &self.skipped {
-            writeln!(f, "skipped: {skipped}")?;
-        }
-        for path in &self.left_behind {
-            writeln!(f, "see {}", path.display())?;
-        }
+        write!(f, "{}", self.summary())
+    }
+}
+
+impl Report {
+    /// What was skipped, where pictures lie, and how many limits hold: a line each.
+    pub fn summary(&self) -> String {
+        let skipped = self.skipped.iter().map(|skipped| format!("skipped: {skipped}\n"));
+        let left_behind = self.left_behind.iter().map(|path| format!("see {}\n", path.display()));
         let failed = self.metrics.iter().filter(|m| !m.pass).count();
         let limited = self.metrics.iter().filter(|m| m.limit.is_some()).count();
-        writeln!(f, "{} passed, {failed} failed", limited - failed)
+        let verdict = format!("{} passed, {failed} failed\n", limited - failed);
+        skipped.chain(left_behind).chain([verdict]).collect()
     }
 }
 
@@ -156,12 +157,13 @@ impl fmt::Display for Report {
 struct Checker<'a> {
     executor: &'a Executor,
     out: &'a Path,
+    tell: &'a dyn Fn(&Metric),
     skipped: Vec<String>,
     metrics: Vec<Metric>,
     rows: Vec<ReportRow>,
 }
 
-/// Checks the models, or without any the built-in scene.
+/// Checks the models, or without any the built-in scenes. `tell` is called with each metric as soon as it is known.
 ///
 /// # Errors
 /// [`HarnessError`]; an exceeded limit is none.
@@ -169,9 +171,10 @@ pub fn run(
     executor: &Executor,
     inputs: &[PathBuf],
     out: &Path,
+    tell: &dyn Fn(&Metric),
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<Report, HarnessError> {
-    let mut checker = Checker { executor, out, skipped: Vec::new(), metrics: Vec::new(), rows: Vec::new() };
+    let mut checker = Checker { executor, out, tell, skipped: Vec::new(), metrics: Vec::new(), rows: Vec::new() };
     checker.widths()?;
     let total = inputs.len().max(1) as f64;
     if inputs.is_empty() {
@@ -204,7 +207,8 @@ pub fn scene(
     views: &[(String, Camera)],
     out: &Path,
 ) -> Result<Report, HarnessError> {
-    let mut checker = Checker { executor, out, skipped: Vec::new(), metrics: Vec::new(), rows: Vec::new() };
+    let tell = &|_: &Metric| {};
+    let mut checker = Checker { executor, out, tell, skipped: Vec::new(), metrics: Vec::new(), rows: Vec::new() };
     checker.model(name, scene, views, &|_| {})?;
     checker.finish()
 }
@@ -271,7 +275,9 @@ impl Checker<'_> {
         limit: Option<Limit>,
     ) {
         let pass = limit.is_none_or(|limit| limit.holds(value));
-        self.metrics.push(Metric { model: model.into(), view: view.into(), technique, metric, value, limit, pass });
+        let metric = Metric { model: model.into(), view: view.into(), technique, metric, value, limit, pass };
+        (self.tell)(&metric);
+        self.metrics.push(metric);
     }
 
     /// The device's picture against the reference.

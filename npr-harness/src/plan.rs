@@ -86,11 +86,13 @@ impl Plan {
         };
         let outlined = style.lines.is_some();
         add(painted, "geometry: colour and depth", "surfaces are painted", "the style paints no surface");
+        let image = if let Some(Lines::Image(ink)) = &style.lines { Some(ink) } else { None };
+        let another_size = image.is_some_and(|ink| ink.scale != InkScale::One);
         add(
-            !painted && outlined,
+            !painted && outlined && !another_size,
             "geometry: depth alone",
             "lines are hidden behind surfaces",
-            "colour is drawn with it",
+            if painted { "colour is drawn with it" } else { "nothing in the picture itself needs it" },
         );
         add(textured, "texture and vertex colour lookups", "materials have them", "no material needs them");
         add(cut_out, "alpha test", "materials have a cutoff", "no material has a cutoff");
@@ -110,27 +112,27 @@ impl Plan {
             "the style asks for the printed form",
             "only edges that are lines are sent",
         );
-        let image = if let Some(Lines::Image(ink)) = &style.lines { Some(ink) } else { None };
-        let one_pass = image.is_some_and(|ink| ink.scale == InkScale::One);
-        let another_size = image.is_some_and(|ink| ink.scale != InkScale::One);
+        let one_pass = image.is_some() && !another_size;
         add(
             one_pass,
-            "normal, region and depth beside colour",
+            "normal, region, depth beside colour",
             "lines are found in the image",
             if another_size { "they are drawn at another size" } else { "no line is found in the image" },
         );
         add(
             another_size,
-            "geometry: normal, region and depth",
+            "geometry: normal, region, depth",
             "the ink has another size than the picture",
-            "the ink has the picture's size",
+            if image.is_some() { "the ink has the picture's size" } else { "no line is found in the image" },
         );
-        let in_one = one_pass && image.is_some_and(|ink| ink.brush.is_none());
-        add(in_one, "filter and composite in one", "nothing needs the ink in between", "the ink is no picture's own");
-        add(image.is_some() && !in_one, "filter", "the ink is worked on before it is laid", "see above");
         let thick = image.is_some_and(|ink| ink.brush.is_some());
+        let in_one = one_pass && !thick;
+        let apart = image.is_some() && !in_one;
+        let none = if image.is_some() { "the ink is needed by itself" } else { "no line is found in the image" };
+        add(in_one, "filter and composite in one", "nothing needs the ink in between", none);
+        add(apart, "filter", "the ink is worked on before it is laid", "it is in the composite, or not there");
         add(thick, "dilation by a disc", "the style has a brush", "lines are as wide as they are found");
-        add(image.is_some() && !in_one && !thick, "composite", "the ink has another size", "see above");
+        add(another_size, "composite", "the ink has another size", "the pass before lays the ink, or there is none");
         add(false, "second light", "", "there is one light");
         add(false, "multisampling", "", "lines and band borders carry their own coverage");
         let contours = match &style.lines {

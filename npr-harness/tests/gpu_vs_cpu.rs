@@ -94,7 +94,7 @@ fn plain(base_color: Vec4, alpha_mode: AlphaMode, double_sided: bool) -> Materia
 fn the_built_in_scene() {
     let Some(executor) = device() else { return };
     let folder = Folder::new();
-    let report = check::run(&executor, &[], &folder.0, &|_| {}).expect("pictures");
+    let report = check::run(&executor, &[], &folder.0, &|_| {}, &|_| {}).expect("pictures");
     println!("{report}");
     assert!(report.passed() && report.skipped.is_empty(), "{report}");
     let pictures = ["cartoon", "lines", "printed-fins", "ink-image", "ink-thick", "ink-fine", "artist"];

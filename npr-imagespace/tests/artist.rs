@@ -142,3 +142,19 @@ fn regions_are_never_background_and_pairs_stay_apart() {
     assert!(dark[1..].iter().all(|region| *region != 0 && !lit.contains(region)));
     assert!((1..50).all(|region| lit[region..].iter().filter(|&&other| other == lit[region]).count() == 1));
 }
+
+#[test]
+fn hashed_pairs_of_regions_stay_apart_and_fit_a_texel() {
+    let (mut known, mut alike) = (std::collections::HashSet::new(), 0);
+    // Patches with colours, whose low bits are alike.
+    for patch in 1..=40u32 {
+        for color in (1..=0x00ff_ffffu32).step_by(65_793) {
+            let pair = ink_region_pair(patch, color);
+            assert!((1..=0x00ff_ffff).contains(&pair), "{pair}");
+            alike += u32::from(!known.insert(pair));
+        }
+    }
+    // Of so many numbers among 2^24 three are expected to be there already.
+    assert!(known.len() > 10_000 && alike < 12, "{alike} of {}", known.len());
+    assert_eq!((ink_region_pair(0, 5), ink_region_pair(5, 0)), (0, 0));
+}

@@ -220,6 +220,8 @@ fn a_deep_chain_and_an_instanced_mesh() {
     let faces = corners(&model);
     assert_eq!((faces.len(), model.materials.len()), (2, 1));
     assert_eq!((faces[0][0].x, faces[1][0].x), (depth as f32, 0.0));
+    // Two nodes show one mesh of the file: two meshes.
+    assert_eq!(model.face_mesh, [0, 1]);
 }
 
 #[test]

@@ -327,12 +327,20 @@ fn run_check(inputs: &[PathBuf], as_json: bool, out: &Path) -> Result<bool, Harn
     let executor = Executor::choose(Backend::Auto)?;
     announce(&executor);
     let bar = progress_bar("checking");
-    let report = check::run(&executor, inputs, out, &|share| bar.set_position((share * 1000.0) as u64))?;
+    if !as_json {
+        println!("on {}", executor.describe());
+    }
+    let tell = |metric: &check::Metric| {
+        if !as_json {
+            bar.suspend(|| println!("{metric}"));
+        }
+    };
+    let report = check::run(&executor, inputs, out, &tell, &|share| bar.set_position((share * 1000.0) as u64))?;
     bar.finish_and_clear();
     if as_json {
         println!("{}", serde_json::to_string_pretty(&report)?);
     } else {
-        print!("{report}");
+        print!("{}", report.summary());
     }
     Ok(report.passed())
 }

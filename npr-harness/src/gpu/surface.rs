@@ -291,7 +291,9 @@ impl SurfacePass {
                 pass.draw_indexed(batch.indices.clone(), 0, 0..1);
             }
         };
-        for batch in &uploaded.batches {
+        // Lines in the image that are found at another size hide nothing behind what the picture itself has.
+        let needed = paint != Paint::Nothing || targets.texels.is_some() || plan.image.is_none();
+        for batch in uploaded.batches.iter().filter(|_| needed) {
             draw(batch, false);
         }
         let material_of = |face: &u32| scene.model.face_material[*face as usize];
