@@ -7,7 +7,7 @@ use npr_imagespace::ImageSpaceError;
 use npr_imagespace::artist::LineKind;
 use npr_imagespace::composite::Composite;
 use npr_imagespace::filter::fused::{FilterUniform, FusedFilter, ink_fused};
-use npr_imagespace::format::texel::{DepthCode, TexelLayout, ink_narrow_tap, ink_wide_tap};
+use npr_imagespace::format::texel::{DepthCode, TexelLayout, ink_fold_region, ink_narrow_tap, ink_wide_tap};
 use npr_imagespace::morphology::disc::Disc;
 use npr_imagespace::morphology::flood::{FloodPlan, disc_plan, flood};
 use npr_imagespace::picture::filter_picture;
@@ -78,7 +78,7 @@ pub struct ImagePlan {
     pub ink: ImageInk,
     /// How eye depth is packed: the scene's own range, as far as the near plane leaves it.
     pub code: DepthCode,
-    /// Per face its region, from 1.
+    /// Per face its region, folded to what a texel holds: from 1.
     pub face_region: Vec<u32>,
     /// Per material where its inner lines come from.
     pub line_kinds: Vec<LineKind>,
@@ -101,7 +101,10 @@ impl ImagePlan {
         Ok(Self {
             ink: *ink,
             code,
-            face_region: face_regions(scene, ink.regions, &line_kinds, crease_angle_rad)?,
+            face_region: face_regions(scene, ink.regions, &line_kinds, crease_angle_rad)?
+                .into_iter()
+                .map(|region| ink_fold_region(region, ink.layout.region_most()))
+                .collect(),
             line_kinds,
             flood: ink.brush.map(|disc| disc_plan(&disc)),
         })

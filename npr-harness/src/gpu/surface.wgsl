@@ -294,6 +294,9 @@ fn textured_words(in: InkedTexturedSurface, front: bool, texel: vec4<f32>) -> ve
     var region = in.region;
     if surface_region_of_texture {
         region = ink_region_pair(in.region, texture_region(in.uv));
+        if surface_narrow {
+            region = ink_fold_region(region, INK_NARROW_REGION_MOST);
+        }
     }
     return words(inked_normal(facing(in.normal, front), texel, in.color, in.position.xy), region, in.position);
 }

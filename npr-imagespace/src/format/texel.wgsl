@@ -55,10 +55,9 @@ fn ink_region_in_shadow(region: u32, shadowed: bool) -> u32 {
     return select(2u * region - select(1u, 0u, shadowed), 0u, region == 0u);
 }
 
-// A surface in one word, for an r32uint target.
-fn ink_narrow_word(normal: vec3<f32>, region: u32, depth_code: u32) -> u32 {
+// A surface in one word, for an r32uint target. The region is folded.
+fn ink_narrow_word(normal: vec3<f32>, folded: u32, depth_code: u32) -> u32 {
     let oct = ink_oct_encode(normal, INK_OCT5_MOST);
-    let folded = ink_fold_region(region, INK_NARROW_REGION_MOST);
     return depth_code | (folded << 14u) | (oct.x << 22u) | (oct.y << 27u);
 }
 
@@ -67,7 +66,7 @@ fn ink_narrow_pack(normal: vec3<f32>, region: u32, depth: f32, code: InkDepthCod
     if region == 0u || !ink_is_surface(depth) {
         return 0u;
     }
-    return ink_narrow_word(normal, region, ink_depth_code(depth, code));
+    return ink_narrow_word(normal, ink_fold_region(region, INK_NARROW_REGION_MOST), ink_depth_code(depth, code));
 }
 
 fn ink_narrow_tap(word: u32) -> InkTap {
@@ -75,10 +74,9 @@ fn ink_narrow_tap(word: u32) -> InkTap {
     return InkTap(ink_oct_load(oct, INK_OCT5_MOST), (word >> 14u) & 255u, i32(word & 0x3fffu));
 }
 
-// A surface in two words, for an rg32uint target.
-fn ink_wide_words(normal: vec3<f32>, region: u32, depth_code: u32) -> vec2<u32> {
+// A surface in two words, for an rg32uint target. The region is folded.
+fn ink_wide_words(normal: vec3<f32>, folded: u32, depth_code: u32) -> vec2<u32> {
     let oct = ink_oct_encode(normal, INK_OCT8_MOST);
-    let folded = ink_fold_region(region, INK_WIDE_REGION_MOST);
     return vec2<u32>(depth_code | (folded << 24u), oct.x | (oct.y << 8u) | ((folded >> 8u) << 16u));
 }
 
@@ -87,7 +85,7 @@ fn ink_wide_pack(normal: vec3<f32>, region: u32, depth: f32, code: InkDepthCode)
     if region == 0u || !ink_is_surface(depth) {
         return vec2<u32>(0u);
     }
-    return ink_wide_words(normal, region, ink_depth_code(depth, code));
+    return ink_wide_words(normal, ink_fold_region(region, INK_WIDE_REGION_MOST), ink_depth_code(depth, code));
 }
 
 fn ink_wide_tap(words: vec2<u32>) -> InkTap {
