@@ -96,9 +96,13 @@ pub fn styles() -> Vec<Style> {
         ),
         style(
             "ink-thick",
-            "the same lines, widened by a round brush",
+            "the same at twice the size, widened by a round brush",
             Shade::Toon(Bands::default()),
-            image_lines(ImageInk { brush: Some(Disc { radius_px: 1.5, antialias: true }), ..ImageInk::default() }),
+            image_lines(ImageInk {
+                brush: Some(Disc { radius_px: 3.0, antialias: true }),
+                scale: InkScale::Double,
+                ..ImageInk::default()
+            }),
         ),
         style(
             "ink-fine",
