@@ -25,6 +25,7 @@
 
 use super::Onto;
 use super::fullscreen::uniform;
+use super::fused::TAPS_WGSL;
 use crate::ImageSpaceError;
 use crate::composite::{Composite, ink_alpha_passes};
 use crate::filter::fused::{FilterUniform, FusedFilter};
@@ -95,7 +96,7 @@ impl FusedStrips {
         let bindings = bindings(device);
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("fused strips"),
-            source: wgpu::ShaderSource::Wgsl([crate::WGSL, STRIPS_WGSL].concat().into()),
+            source: wgpu::ShaderSource::Wgsl([crate::WGSL, TAPS_WGSL, STRIPS_WGSL].concat().into()),
         });
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("fused strips"),

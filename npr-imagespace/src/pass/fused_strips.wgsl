@@ -1,5 +1,5 @@
 // The hard fused filter by strips of four columns, from the top down; and apart from it on the picture's border.
-// Appended to the library.
+// Appended to the library and `fused_taps.wgsl`.
 //
 // A software rasteriser runs eight invocations as one vector, and both sides of what they branch at. A loop goes on
 // until the last of them leaves it, and where it is left from its head the rest of its body is run once more for
@@ -15,12 +15,9 @@ struct Strips {
 
 @group(0) @binding(0) var<uniform> what: InkFilter;
 @group(0) @binding(1) var<uniform> strips: Strips;
-@group(0) @binding(2) var texels: texture_2d<u32>;
 @group(0) @binding(3) var picture: texture_storage_2d<rgba8unorm, write>;
 @group(0) @binding(4) var nearest: sampler;
 
-override narrow: bool;
-override cross_taps: bool;
 override asks_normals: bool;
 override asks_bends: bool;
 override asks_steps: bool;
@@ -260,21 +257,6 @@ fn fused_strips(@builtin(global_invocation_id) id: vec3<u32>) {
             break;
         }
     }
-}
-
-fn tap_at(pixel: vec2<i32>) -> InkTap {
-    let words = textureLoad(texels, pixel, 0).xy;
-    if narrow {
-        return ink_narrow_tap(words.x);
-    }
-    return ink_wide_tap(words);
-}
-
-fn tap_beside(pixel: vec2<i32>, tap: u32, reach: vec2<i32>) -> InkTap {
-    if cross_taps {
-        return tap_at(pixel + ink_tap_cross(tap, reach));
-    }
-    return tap_at(pixel + ink_tap_diagonal(tap, reach));
 }
 
 // The pixels on the picture's border: first and last row, first and last column.
