@@ -19,7 +19,7 @@ pub use targets::Targets;
 use crate::camera::Camera;
 use crate::compare::Image;
 use crate::plan::{LineMethod, Plan};
-use crate::scene::{Scene, key_light};
+use crate::scene::Scene;
 use crate::style::{Lines, Shade, Style};
 use glam::DVec2;
 use npr_outline::fin_pass::FinPass;
@@ -28,7 +28,7 @@ use npr_outline::line_strokes::{LineStrokes, StrokeTargets};
 use npr_outline::normal_format::NormalFormat;
 use npr_toon::ToonUniform;
 use std::cell::{OnceCell, RefCell};
-use surface::{SurfacePass, SurfaceTargets, SurfaceUniform};
+use surface::{SurfacePass, SurfaceTargets};
 
 /// Renders frames. Pipelines are made when they are first needed, and kept.
 pub struct GpuRenderer<'a> {
@@ -113,21 +113,7 @@ impl<'a> GpuRenderer<'a> {
     ) -> Result<(), GpuError> {
         let device = &self.context.device;
         let size_px = DVec2::new(f64::from(targets.width), f64::from(targets.height));
-        let clip_from_world = camera.clip_from_world(size_px.x / size_px.y);
         let eye = camera.homogeneous_eye();
-        let ambient = if let Shade::Lambert { ambient } = style.shade { ambient } else { 0.0 };
-        // To the eye from what a pixel shows, which is against its ray: a linear function of the pixel.
-        let against = |x, y| -camera.ray(DVec2::new(x, y), size_px).1;
-        let to_eye = against(0.0, 0.0);
-        let column = |vector: glam::DVec3| vector.as_vec3().extend(0.0).to_array();
-        let uniform = SurfaceUniform {
-            clip_from_world: clip_from_world.as_mat4().to_cols_array_2d(),
-            to_eye: column(to_eye),
-            to_eye_dx: column(against(1.0, 0.0) - to_eye),
-            to_eye_dy: column(against(0.0, 1.0) - to_eye),
-            to_light: key_light(camera).as_vec3().extend(ambient).to_array(),
-            clip_px: scene.clip.map_or(glam::DVec4::ONE, |plane| camera.plane_px(plane, size_px)).as_vec4().to_array(),
-        };
         let toon = match &style.shade {
             Shade::Toon(bands) => ToonUniform::new(bands)?,
             _ => bytemuck::Zeroable::zeroed(),
@@ -138,19 +124,20 @@ impl<'a> GpuRenderer<'a> {
             Some(image) => Some((image, targets.ink(self.context, &image.ink)?)),
             None => None,
         };
-        let uniforms = (&uniform, &toon);
         let drawn = SurfaceTargets {
             color: Some(&targets.color_view),
             texels: ink.as_ref().filter(|(_, ink)| ink.depth.is_none()).map(|(_, ink)| &ink.texels),
             depth: &targets.depth_view,
+            size_px,
         };
-        self.surface.record(device, &mut encoder, uploaded, scene, style, plan, camera, uniforms, &drawn);
+        self.surface.record(device, &mut encoder, uploaded, scene, style, plan, camera, &toon, &drawn);
         if let Some((image, ink)) = &ink {
             if let Some(depth) = &ink.depth {
-                let drawn = SurfaceTargets { color: None, texels: Some(&ink.texels), depth };
-                self.surface.record(device, &mut encoder, uploaded, scene, style, plan, camera, uniforms, &drawn);
+                let size_px = DVec2::new(ink.size.0.into(), ink.size.1.into());
+                let drawn = SurfaceTargets { color: None, texels: Some(&ink.texels), depth, size_px };
+                self.surface.record(device, &mut encoder, uploaded, scene, style, plan, camera, &toon, &drawn);
             }
-            self.ink.record(self.context, &mut encoder, scene, image, camera, ink, targets)?;
+            self.ink.record(self.context, &mut encoder, uploaded.bounds, image, camera, ink, targets)?;
         }
         if let (Some(Lines::Fins(look)), Some(contours)) = (&style.lines, &plan.contours) {
             let mut scratch = self.scratch.borrow_mut();
@@ -181,7 +168,7 @@ impl<'a> GpuRenderer<'a> {
             }
         }
         if let (Some(Lines::Printed { width_px, ink }), Some(fins), Some(bounds)) =
-            (&style.lines, &uploaded.fins, scene.model.bounds())
+            (&style.lines, &uploaded.fins, uploaded.bounds)
         {
             let view = camera.fin_view(size_px, f64::from(*width_px), bounds);
             let ink = ink.extend(1.0).to_array();

@@ -4,7 +4,7 @@ use super::targets::{COLOR_FORMAT, InkTargets, Targets};
 use super::{GpuContext, GpuError};
 use crate::camera::Camera;
 use crate::image_ink::ImagePlan;
-use crate::scene::Scene;
+use glam::Vec3;
 use npr_imagespace::format::texel::TexelLayout;
 use npr_imagespace::morphology::Operation;
 use npr_imagespace::pass::disc::DiscPass;
@@ -42,14 +42,14 @@ impl InkPasses {
         &self,
         context: &GpuContext,
         encoder: &mut wgpu::CommandEncoder,
-        scene: &Scene,
+        bounds: Option<(Vec3, Vec3)>,
         image: &ImagePlan,
         camera: &Camera,
         ink: &InkTargets,
         targets: &Targets,
     ) -> Result<(), GpuError> {
         let device = &context.device;
-        let area = |size, around_px| scene.model.bounds().map(|bounds| camera.area(bounds, size, around_px));
+        let area = |size, around_px| bounds.map(|bounds| camera.area(bounds, size, around_px));
         let onto = |view, size, around_px| Onto { view, composite: &image.ink.composite, area: area(size, around_px) };
         // Beside a surface there is a pixel of line, and then what the brush adds.
         let brush_px = image.ink.brush.map_or(0, |disc| disc.radius_px.ceil() as u32 + 1);

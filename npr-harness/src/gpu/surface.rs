@@ -5,8 +5,9 @@ use super::targets::{COLOR_FORMAT, DEPTH_FORMAT};
 use crate::camera::Camera;
 use crate::image_ink::ImagePlan;
 use crate::plan::Plan;
-use crate::scene::Scene;
+use crate::scene::{Scene, key_light};
 use crate::style::{Shade, Style};
+use glam::{DVec2, DVec3, DVec4};
 use npr_imagespace::artist::LineKind;
 use npr_imagespace::format::texel::{DepthCode, TexelLayout};
 use npr_imagespace::pass::fused::texel_format;
@@ -18,13 +19,32 @@ use wgpu::util::DeviceExt;
 /// `SurfaceView` of `surface.wgsl`.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
-pub(super) struct SurfaceUniform {
-    pub(super) clip_from_world: [[f32; 4]; 4],
-    pub(super) to_eye: [f32; 4],
-    pub(super) to_eye_dx: [f32; 4],
-    pub(super) to_eye_dy: [f32; 4],
-    pub(super) to_light: [f32; 4],
-    pub(super) clip_px: [f32; 4],
+struct SurfaceUniform {
+    clip_from_world: [[f32; 4]; 4],
+    to_eye: [f32; 4],
+    to_eye_dx: [f32; 4],
+    to_eye_dy: [f32; 4],
+    to_light: [f32; 4],
+    clip_px: [f32; 4],
+}
+
+impl SurfaceUniform {
+    /// For targets of a size: what is said per px is per px of these.
+    fn new(scene: &Scene, style: &Style, camera: &Camera, size_px: DVec2) -> Self {
+        let ambient = if let Shade::Lambert { ambient } = style.shade { ambient } else { 0.0 };
+        // To the eye from what a pixel shows, which is against its ray: a linear function of the pixel.
+        let against = |x, y| -camera.ray(DVec2::new(x, y), size_px).1;
+        let to_eye = against(0.0, 0.0);
+        let column = |vector: DVec3| vector.as_vec3().extend(0.0).to_array();
+        Self {
+            clip_from_world: camera.clip_from_world(size_px.x / size_px.y).as_mat4().to_cols_array_2d(),
+            to_eye: column(to_eye),
+            to_eye_dx: column(against(1.0, 0.0) - to_eye),
+            to_eye_dy: column(against(0.0, 1.0) - to_eye),
+            to_light: key_light(camera).as_vec3().extend(ambient).to_array(),
+            clip_px: scene.clip.map_or(DVec4::ONE, |plane| camera.plane_px(plane, size_px)).as_vec4().to_array(),
+        }
+    }
 }
 
 /// `SurfaceMaterial` of `surface.wgsl`.
@@ -51,7 +71,7 @@ pub(super) struct InkUniform {
 
 impl InkUniform {
     fn new(image: &ImagePlan, camera: &Camera) -> Self {
-        let axis = |axis: glam::DVec3| axis.as_vec3().extend(0.0).to_array();
+        let axis = |axis: DVec3| axis.as_vec3().extend(0.0).to_array();
         let [right, up, back] = camera.axes().map(axis);
         Self { code: image.buffer_code(camera), right, up, back }
     }
@@ -80,6 +100,7 @@ pub(super) struct SurfaceTargets<'a> {
     pub(super) color: Option<&'a wgpu::TextureView>,
     pub(super) texels: Option<&'a wgpu::TextureView>,
     pub(super) depth: &'a wgpu::TextureView,
+    pub(super) size_px: DVec2,
 }
 
 /// What tells one pipeline from another.
@@ -190,12 +211,12 @@ impl SurfacePass {
         style: &Style,
         plan: &Plan,
         camera: &Camera,
-        (uniform, toon_uniform): (&SurfaceUniform, &ToonUniform),
+        toon_uniform: &ToonUniform,
         targets: &SurfaceTargets<'_>,
     ) {
         let ink = plan.image.as_ref().map_or_else(bytemuck::Zeroable::zeroed, |image| InkUniform::new(image, camera));
         let (view, toon, ink) = (
-            uniform_buffer(device, bytemuck::bytes_of(uniform)),
+            uniform_buffer(device, bytemuck::bytes_of(&SurfaceUniform::new(scene, style, camera, targets.size_px))),
             uniform_buffer(device, bytemuck::bytes_of(toon_uniform)),
             uniform_buffer(device, bytemuck::bytes_of(&ink)),
         );
@@ -404,7 +425,7 @@ impl SurfacePass {
 fn back_to_front(scene: &Scene, faces: &[u32], camera: &Camera) -> Vec<u32> {
     let back = camera.axes()[2];
     let depth = |face: u32| {
-        let middle: glam::DVec3 =
+        let middle: DVec3 =
             scene.model.faces[face as usize].iter().map(|&v| scene.model.positions[v as usize].as_dvec3()).sum();
         middle.dot(back)
     };
