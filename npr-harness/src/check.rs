@@ -250,7 +250,7 @@ impl Checker<'_> {
             let often = |style: &&&str| number == 0 || !matches!(**style, "ink-thick" | "ink-fine");
             for name_of_style in all.iter().filter(wanted).filter(often) {
                 let style = style(name_of_style).expect("a style of this crate");
-                self.picture(name, view, scene, camera, &style)?;
+                self.picture(name, view, scene, camera, name_of_style, &style)?;
             }
             if of_edges {
                 self.lines(name, view, scene, camera)?;
@@ -287,6 +287,7 @@ impl Checker<'_> {
         view: &str,
         scene: &Scene,
         camera: &Camera,
+        technique: &'static str,
         style: &Style,
     ) -> Result<(), HarnessError> {
         if self.executor.is_cpu() {
@@ -295,7 +296,6 @@ impl Checker<'_> {
         let plan = Plan::new(scene, style, camera)?;
         let actual = self.executor.render(scene, style, &plan, camera, SIZE, 1, &|_| {})?;
         let magnitude = magnitude(&plan);
-        let technique = style.name;
         let tolerance = Tolerance { magnitude, count: 0 };
         let mut reference = Reference::new(Shot { scene, style, plan: &plan, camera, size: SIZE })?;
         let mut comparison = compare(&reference.image, &actual, &reference.exempt)?;
@@ -517,10 +517,12 @@ impl Shot<'_> {
 /// Lines alone, black on white.
 fn one_px_style(lines: Lines) -> Style {
     Style {
-        name: "one-px",
-        about: "",
+        name: "one-px".into(),
+        about: String::new(),
         paper: Vec3::ONE,
         shade: Shade::Paper,
+        normals: Default::default(),
+        lights: vec![Default::default()],
         lines: Some(lines),
         crease_angle_rad: 45f32.to_radians(),
     }

@@ -6,6 +6,7 @@
 
 mod ink;
 mod lines;
+mod shade;
 mod surface;
 
 pub use lines::draw_lines;
@@ -13,11 +14,13 @@ pub use lines::draw_lines;
 use crate::camera::Camera;
 use crate::color::to_bytes;
 use crate::compare::Image;
+use crate::light::lights_in_world;
 use crate::plan::Plan;
 use crate::rays::Hit;
-use crate::scene::{Scene, key_light};
+use crate::scene::Scene;
 use crate::style::{Lines, Style};
 use glam::{DVec2, DVec3, DVec4};
+use npr_toon::source::{Light, combined_color};
 
 /// What is asked of a frame on the CPU.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,8 +77,10 @@ pub struct FrameContext<'a> {
     pub camera: &'a Camera,
     /// Px, of the grid that is sampled.
     pub size_px: DVec2,
-    /// Unit vector to the light.
-    pub to_light: DVec3,
+    /// As the style's shade asks for them: one, or two for the painter.
+    pub lights: Vec<Light>,
+    /// Of all of them.
+    light_color: DVec3,
     textures: &'a [crate::texture::MipMapped],
     shift_px: DVec2,
     plan: &'a Plan,
@@ -118,12 +123,14 @@ pub fn render_unsure(
     } else {
         Vec::new()
     };
+    let lights = lights_in_world(style, scene, camera);
     let context = FrameContext {
         scene,
         style,
         camera,
         size_px: DVec2::new(f64::from(width * samples), f64::from(height * samples)),
-        to_light: key_light(camera),
+        light_color: combined_color(&lights),
+        lights,
         textures: &textures,
         shift_px: options.shift_px * f64::from(samples),
         plan,

@@ -13,9 +13,18 @@ pub enum HarnessError {
     /// The lines in the image.
     #[error(transparent)]
     ImageSpace(#[from] npr_imagespace::ImageSpaceError),
-    /// The bands.
+    /// Bands, ramps or lights.
     #[error(transparent)]
     Toon(#[from] npr_toon::ToonError),
+    /// The cool and warm tones.
+    #[error(transparent)]
+    Gooch(#[from] npr_gooch::GoochError),
+    /// A style without a light.
+    #[error("a style needs one light or two")]
+    NoLight,
+    /// A style's file.
+    #[error(transparent)]
+    StyleFile(#[from] crate::style::StyleFileError),
     /// A picture file.
     #[error(transparent)]
     Image(#[from] crate::compare::ImageError),
@@ -41,7 +50,7 @@ pub enum HarnessError {
     #[error("style {style} draws a model's edges, which a clip plane does not cut; lines in the image are cut with it")]
     ClippedEdges {
         /// Which.
-        style: &'static str,
+        style: String,
     },
     /// A style that does not exist.
     #[error("no style is called {name:?} (there are: {known})")]

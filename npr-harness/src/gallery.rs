@@ -24,7 +24,7 @@ pub struct Row {
     /// Where it is.
     pub path: PathBuf,
     /// What it shows.
-    pub about: &'static str,
+    pub about: String,
     /// Its passes.
     pub passes: Vec<&'static str>,
     /// From the plan to the picture in memory.
@@ -63,7 +63,7 @@ pub fn render(executor: &Executor, dir: &Path, progress: &(dyn Fn(f64) + Sync)) 
         let path = dir.join(format!("{}.png", style.name));
         image.save_png(&path)?;
         let passes = plan.passes.iter().map(|reason| reason.pass).collect();
-        rows.push(Row { path, about: style.about, passes, time_ms });
+        rows.push(Row { path, about: style.about.clone(), passes, time_ms });
     }
     Ok(rows)
 }

@@ -6,6 +6,7 @@
 mod context;
 mod error;
 mod ink;
+mod light;
 mod scene;
 mod surface;
 mod targets;
@@ -18,15 +19,16 @@ pub use targets::Targets;
 
 use crate::camera::Camera;
 use crate::compare::Image;
+use crate::light::lights_in_world;
 use crate::plan::{LineMethod, Plan};
 use crate::scene::Scene;
-use crate::style::{Lines, Shade, Style};
+use crate::style::{Lines, Style};
 use glam::DVec2;
+use light::LightOnDevice;
 use npr_outline::fin_pass::FinPass;
 use npr_outline::line_pass::{LineRecord, LineSource, LineTargets, line_records};
 use npr_outline::line_strokes::{LineStrokes, StrokeTargets};
 use npr_outline::normal_format::NormalFormat;
-use npr_toon::ToonUniform;
 use std::cell::{OnceCell, RefCell};
 use surface::{SurfacePass, SurfaceTargets};
 
@@ -114,10 +116,7 @@ impl<'a> GpuRenderer<'a> {
         let device = &self.context.device;
         let size_px = DVec2::new(f64::from(targets.width), f64::from(targets.height));
         let eye = camera.homogeneous_eye();
-        let toon = match &style.shade {
-            Shade::Toon(bands) => ToonUniform::new(bands)?,
-            _ => bytemuck::Zeroable::zeroed(),
-        };
+        let light = LightOnDevice::new(self.context, style, &lights_in_world(style, scene, camera))?;
         targets.begin();
         let mut encoder = device.create_command_encoder(&Default::default());
         let ink = match &plan.image {
@@ -130,12 +129,12 @@ impl<'a> GpuRenderer<'a> {
             depth: &targets.depth_view,
             size_px,
         };
-        self.surface.record(device, &mut encoder, uploaded, scene, style, plan, camera, &toon, &drawn);
+        self.surface.record(device, &mut encoder, uploaded, scene, style, plan, camera, &light, &drawn);
         if let Some((image, ink)) = &ink {
             if let Some(depth) = &ink.depth {
                 let size_px = DVec2::new(ink.size.0.into(), ink.size.1.into());
                 let drawn = SurfaceTargets { color: None, texels: Some(&ink.texels), depth, size_px };
-                self.surface.record(device, &mut encoder, uploaded, scene, style, plan, camera, &toon, &drawn);
+                self.surface.record(device, &mut encoder, uploaded, scene, style, plan, camera, &light, &drawn);
             }
             self.ink.record(self.context, &mut encoder, uploaded.bounds, image, camera, ink, targets)?;
         }

@@ -146,7 +146,7 @@ impl ImagePlan {
 /// The range of eye depth in which the scene lies, before the camera.
 fn depth_range(scene: &Scene, camera: &Camera) -> (f64, f64) {
     let back = camera.axes()[2];
-    let (low, high) = scene.model.bounds().map_or((DVec3::ZERO, DVec3::ZERO), |(l, h)| (l.as_dvec3(), h.as_dvec3()));
+    let (low, high) = scene.bounds().map_or((DVec3::ZERO, DVec3::ZERO), |(l, h)| (l.as_dvec3(), h.as_dvec3()));
     let depth = |corner: DVec3| (camera.eye - corner).dot(back);
     let nearest = depth(DVec3::select(back.cmpgt(DVec3::ZERO), high, low));
     let farthest = depth(DVec3::select(back.cmpgt(DVec3::ZERO), low, high));

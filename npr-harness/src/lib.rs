@@ -13,6 +13,7 @@ pub mod gallery;
 pub mod gpu;
 pub mod image_ink;
 pub mod inspect;
+pub mod light;
 pub mod line_truth;
 pub mod plan;
 pub mod rays;

@@ -11,6 +11,8 @@ use npr_mesh::AlphaMode;
 use npr_outline::LineKind;
 use npr_outline::contour::{ContourEdges, ContourOptions, contour_edges};
 use npr_outline::fin_printed::{PrintedFins, printed_fins};
+use npr_toon::normal::NormalUse;
+use npr_toon::source::LightPlace;
 use std::fmt;
 
 /// How lines are found and drawn on a device.
@@ -42,6 +44,8 @@ pub struct Reason {
 pub struct Plan {
     /// Whether surfaces are painted at all; otherwise only their depth is needed.
     pub painted: bool,
+    /// Whether light is more than normals at pixels and directions that are the same everywhere.
+    pub lit: bool,
     /// Whether some material looks up a texture or has vertex colours.
     pub textured: bool,
     /// Whether some material is cut out by alpha.
@@ -66,17 +70,23 @@ impl Plan {
     /// Decides what a style needs for a scene seen by a camera.
     ///
     /// # Errors
-    /// What is wrong with the style's lines; [`HarnessError::ClippedEdges`].
+    /// What is wrong with the style, [`Style::validate`], or with its lines; [`HarnessError::ClippedEdges`].
     pub fn new(scene: &Scene, style: &Style, camera: &Camera) -> Result<Self, HarnessError> {
+        style.validate()?;
         let model = &scene.model;
         let painted = style.shade != Shade::Paper;
         let used = |test: &dyn Fn(&npr_mesh::Material) -> bool| model.materials.iter().any(test);
         let textured = painted && (used(&|m| m.texture.is_some()) || !model.colors.is_empty());
+        let placed = style.lights.iter().any(|light| matches!(light.light.place, LightPlace::Positional { .. }));
+        let two = style.lights.len() > 1;
+        let each = matches!(style.shade, Shade::Painter(_));
+        // Several lights taken together are a direction.
+        let lit = painted && (style.normals != NormalUse::PerPixel || placed && (each || !two));
         let cut_out = used(&|m| matches!(m.alpha_mode, AlphaMode::Mask { .. }));
         let blended = painted && scene.has_blend();
         let cull_back = scene.closed && scene.clip.is_none() && !sees_the_inside(scene, camera);
         if scene.clip.is_some() && matches!(style.lines, Some(Lines::Fins(_) | Lines::Printed { .. })) {
-            return Err(HarnessError::ClippedEdges { style: style.name });
+            return Err(HarnessError::ClippedEdges { style: style.name.clone() });
         }
         let mut passes = Vec::new();
         let mut left_out = Vec::new();
@@ -133,7 +143,18 @@ impl Plan {
         add(apart, "filter", "the ink is worked on before it is laid", "it is in the composite, or not there");
         add(thick, "dilation by a disc", "the style has a brush", "lines are as wide as they are found");
         add(another_size, "composite", "the ink has another size", "the pass before lays the ink, or there is none");
-        add(false, "second light", "", "there is one light");
+        add(
+            painted && two && each,
+            "second light",
+            "the ramp has an axis for it",
+            if painted && two { "the shade knows one: the two are taken together" } else { "there is one light" },
+        );
+        add(
+            lit,
+            "positions or light between vertices",
+            "a light is near, or the style asks for vertices' light",
+            "the light comes from far away, and meets normals at pixels",
+        );
         add(false, "multisampling", "", "lines and band borders carry their own coverage");
         let contours = match &style.lines {
             Some(Lines::Fins(look)) => {
@@ -148,7 +169,19 @@ impl Plan {
             Some(Lines::Image(ink)) => Some(ImagePlan::new(scene, ink, style.crease_angle_rad, camera)?),
             _ => None,
         };
-        Ok(Self { painted, textured, cut_out, blended, cull_back, contours, printed_fins, image, passes, left_out })
+        Ok(Self {
+            painted,
+            lit,
+            textured,
+            cut_out,
+            blended,
+            cull_back,
+            contours,
+            printed_fins,
+            image,
+            passes,
+            left_out,
+        })
     }
 
     /// Whether texture coordinates, textures or vertex colours are read at all.
@@ -175,7 +208,7 @@ impl Plan {
 
 /// Whether the eye, or the near plane, is within the model's box: then the back of a face can be seen.
 fn sees_the_inside(scene: &Scene, camera: &Camera) -> bool {
-    let Some((low, high)) = scene.model.bounds() else { return false };
+    let Some((low, high)) = scene.bounds() else { return false };
     let margin = scene.radius() * 1e-3 + 2.0 * camera.near;
     let (low, high) = (low.as_dvec3() - margin, high.as_dvec3() + margin);
     camera.eye.cmpge(low).all() && camera.eye.cmple(high).all()

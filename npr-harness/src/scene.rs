@@ -1,6 +1,5 @@
 //! What a picture shows: a model, ready for both executors, and its light.
 
-use crate::camera::Camera;
 use crate::color::encode_rgb;
 use crate::error::HarnessError;
 use crate::rays::RayCaster;
@@ -32,6 +31,7 @@ pub struct Scene {
     pub line_kinds: Vec<LineKind>,
     rays: OnceLock<RayCaster>,
     boundary_sides: OnceLock<Vec<u8>>,
+    bounds: OnceLock<Option<(Vec3, Vec3)>>,
 }
 
 impl Scene {
@@ -61,6 +61,7 @@ impl Scene {
             line_kinds,
             rays: OnceLock::new(),
             boundary_sides: OnceLock::new(),
+            bounds: OnceLock::new(),
         }
     }
 
@@ -119,16 +120,20 @@ impl Scene {
         self.model.faces.iter().flatten().map(|&v| self.model.positions[v as usize])
     }
 
+    /// Of the model's box, found when it is first asked for; `None` without faces.
+    pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
+        *self.bounds.get_or_init(|| self.model.bounds())
+    }
+
+    /// The middle of the bounding box.
+    pub fn middle(&self) -> DVec3 {
+        self.bounds().map_or(DVec3::ZERO, |(low, high)| low.as_dvec3().midpoint(high.as_dvec3()))
+    }
+
     /// The half of the bounding box's diagonal.
     pub fn radius(&self) -> f64 {
-        self.model.bounds().map_or(0.0, |(low, high)| f64::from((high - low).length()) / 2.0)
+        self.bounds().map_or(0.0, |(low, high)| f64::from((high - low).length()) / 2.0)
     }
-}
-
-/// Unit vector to the one light: over the viewer's left shoulder, so that any model is well lit from any side.
-pub fn key_light(camera: &Camera) -> DVec3 {
-    let [right, up, back] = camera.axes();
-    (right * -0.5 + up * 0.7 + back * 0.6).normalize()
 }
 
 /// Moves a model that is far from the origin, measured in its own size, to the origin.

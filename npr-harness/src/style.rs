@@ -1,11 +1,25 @@
 //! What a picture looks like, whatever it shows.
 
-use crate::image_ink::{ImageInk, InkScale};
+mod file;
+mod form;
+mod presets;
+
+pub use file::StyleFileError;
+pub use presets::{style, styles};
+
+use crate::error::HarnessError;
+use crate::image_ink::ImageInk;
+use crate::light::StyleLight;
 use glam::Vec3;
-use npr_imagespace::composite::Composite;
-use npr_imagespace::morphology::disc::Disc;
+use npr_gooch::{Gooch, GoochUniform};
 use npr_outline::line_look::LineLook;
-use npr_toon::Bands;
+use npr_toon::half_lambert::HalfLambert;
+use npr_toon::normal::NormalUse;
+use npr_toon::painter::Painter;
+use npr_toon::ramp::{Ramp, RampUniform};
+use npr_toon::row::RampRow;
+use npr_toon::table::{Ramp2d, Ramp2dUniform, RampTable};
+use npr_toon::{Bands, ToonUniform};
 
 /// How surfaces are painted.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,6 +33,51 @@ pub enum Shade {
     },
     /// Bands of light.
     Toon(Bands),
+    /// Any colours by light.
+    Ramp(RampShade),
+    /// Two lights, each an axis of a 2D ramp.
+    Painter(PainterShade),
+    /// From cool to warm.
+    Gooch(Gooch),
+}
+
+/// A 1D ramp, and what it is looked up with.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RampShade {
+    /// The colours, factors on the surface's own.
+    pub ramp: RampSource,
+    /// What becomes of N·L first; without it the ramp is looked up with N·L itself.
+    pub half_lambert: Option<HalfLambert>,
+}
+
+/// Where a 1D ramp's colours come from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum RampSource {
+    /// Computed from stops.
+    Stops(Ramp),
+    /// Read from a row of texels.
+    Image(RampRow),
+}
+
+/// The cartoon renderer's painter, without its lights, which are the style's.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PainterShade {
+    /// The shades.
+    pub ramp: Ramp2dSource,
+    /// [`Painter::light_scale`].
+    pub light_scale: f32,
+    /// Whether a material is its colour *or* its texture, whichever its colour's alpha says
+    /// ([`npr_toon::painter::toon_material`]), as in listing 2; else the product of both, as files mean it.
+    pub material_by_alpha: bool,
+}
+
+/// Where a 2D ramp's shades come from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Ramp2dSource {
+    /// Computed from the stops of two ramps.
+    Ramps(Ramp2d),
+    /// Read from an image.
+    Image(RampTable),
 }
 
 /// How lines are drawn.
@@ -41,97 +100,75 @@ pub enum Lines {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Style {
     /// What `--style` calls it.
-    pub name: &'static str,
+    pub name: String,
     /// One line.
-    pub about: &'static str,
+    pub about: String,
     /// Display-referred colour of what no surface covers.
     pub paper: Vec3,
     /// How surfaces are painted.
     pub shade: Shade,
+    /// What becomes of a triangle's three normals.
+    pub normals: NormalUse,
+    /// One or two. What knows only one light takes the two together, see [`crate::light::lights_in_world`]. A light's
+    /// brightness multiplies its N·L, and its colour the surface's; Gooch's tones take notice of neither.
+    pub lights: Vec<StyleLight>,
     /// How lines are drawn, if they are.
     pub lines: Option<Lines>,
     /// Edges whose faces meet at more than this angle are lines.
     pub crease_angle_rad: f32,
 }
 
-/// A warm white.
-const PAPER: Vec3 = Vec3::new(0.98, 0.97, 0.94);
-/// Not quite black.
-const INK: [f32; 4] = [0.10, 0.09, 0.11, 1.0];
-
-fn ink_lines(silhouette_px: f32, crease_px: f32) -> Option<Lines> {
-    Some(Lines::Fins(LineLook {
-        width_px: npr_outline::line_look::widths_px(silhouette_px, silhouette_px, crease_px, crease_px),
-        ink: INK,
-    }))
-}
-
-fn image_lines(ink: ImageInk) -> Option<Lines> {
-    let [r, g, b, opacity] = INK;
-    Some(Lines::Image(ImageInk { composite: Composite::Over { color: Vec3::new(r, g, b), opacity }, ..ink }))
-}
-
-/// The styles there are; the first is the default.
-pub fn styles() -> Vec<Style> {
-    let style = |name, about, shade, lines| Style {
-        name,
-        about,
-        paper: PAPER,
-        shade,
-        lines,
-        crease_angle_rad: 45f32.to_radians(),
-    };
-    let hard = Bands { antialias: false, ..Bands::hard_shading() };
-    vec![
-        style("cartoon", "banded light, highlight, ink lines", Shade::Toon(Bands::default()), ink_lines(2.0, 1.3)),
-        style("toon", "banded light alone", Shade::Toon(Bands::default()), None),
-        style("lines", "ink on paper, hidden lines removed", Shade::Paper, ink_lines(1.4, 1.0)),
-        style("bold", "two tones and a heavy pen", Shade::Toon(Bands::hard_shading()), ink_lines(4.0, 2.0)),
-        style("lambert", "plain diffuse light, no bands, no lines", Shade::Lambert { ambient: 0.25 }, None),
-        style(
-            "ink-image",
-            "banded light, lines found in the image",
-            Shade::Toon(Bands::default()),
-            image_lines(ImageInk::default()),
-        ),
-        style(
-            "ink-thick",
-            "the same at twice the size, widened by a round brush",
-            Shade::Toon(Bands::default()),
-            image_lines(ImageInk {
-                brush: Some(Disc { radius_px: 3.0, antialias: true }),
-                scale: InkScale::Double,
-                ..ImageInk::default()
-            }),
-        ),
-        style(
-            "ink-fine",
-            "lines on paper, found at twice the picture's size",
-            Shade::Paper,
-            image_lines(ImageInk { scale: InkScale::Double, ..ImageInk::default() }),
-        ),
-        style(
-            "artist",
-            "lines where an artist painted them, material by material",
-            Shade::Toon(Bands::default()),
-            image_lines(ImageInk { artist: true, ..ImageInk::default() }),
-        ),
-        style(
-            "printed-bands",
-            "the three bands of the 2002 chapter's listing 3, aliased",
-            Shade::Toon(Bands::listing_3()),
-            None,
-        ),
-        style(
-            "printed-fins",
-            "the outline of the 2002 chapter's listing 1, as printed",
-            Shade::Toon(hard),
-            Some(Lines::Printed { width_px: 2.0, ink: Vec3::ZERO }),
-        ),
-    ]
-}
-
-/// The style of a name.
-pub fn style(name: &str) -> Option<Style> {
-    styles().into_iter().find(|style| style.name == name)
+impl Style {
+    /// Which rule is broken, if one is; the first found. What lines ask of a scene is checked by
+    /// [`crate::plan::Plan::new`].
+    ///
+    /// # Errors
+    /// [`HarnessError::Toon`], [`HarnessError::Gooch`], [`HarnessError::Range`], [`HarnessError::NoLight`].
+    pub fn validate(&self) -> Result<(), HarnessError> {
+        let within = |what, value: f32, low: f32, high: f32, range| {
+            if (low..=high).contains(&value) {
+                Ok(())
+            } else {
+                Err(HarnessError::Range { what, value: f64::from(value), range })
+            }
+        };
+        for component in self.paper.to_array() {
+            within("a component of the paper", component, 0.0, 1.0, "0..=1")?;
+        }
+        within("a crease's angle", self.crease_angle_rad.to_degrees(), 0.0, 180.0, "0..=180 degrees")?;
+        if self.lights.is_empty() {
+            return Err(HarnessError::NoLight);
+        }
+        // The most that any shade knows.
+        Painter::new(self.lights.iter().map(|light| light.light).collect())?;
+        match &self.shade {
+            Shade::Paper => {}
+            Shade::Lambert { ambient } => within("ambient light", *ambient, 0.0, 1.0, "0..=1")?,
+            Shade::Toon(bands) => {
+                ToonUniform::new(bands)?;
+            }
+            Shade::Ramp(RampShade { ramp, half_lambert }) => {
+                half_lambert.map_or(Ok(()), |how| how.validate())?;
+                match ramp {
+                    RampSource::Stops(ramp) => {
+                        RampUniform::new(ramp)?;
+                    }
+                    RampSource::Image(row) => row.validate()?,
+                }
+            }
+            Shade::Painter(PainterShade { ramp, light_scale, .. }) => {
+                Painter { lights: Vec::new(), light_scale: *light_scale }.validate()?;
+                match ramp {
+                    Ramp2dSource::Ramps(ramps) => {
+                        Ramp2dUniform::new(ramps)?;
+                    }
+                    Ramp2dSource::Image(table) => table.validate()?,
+                }
+            }
+            Shade::Gooch(model) => {
+                GoochUniform::new(model)?;
+            }
+        }
+        Ok(())
+    }
 }

@@ -53,6 +53,11 @@ enum Command {
     },
     /// The styles there are.
     Styles,
+    /// Prints a style as TOML, to start one's own from.
+    Style {
+        /// See `npr styles`.
+        name: String,
+    },
 }
 
 #[derive(Args)]
@@ -62,7 +67,7 @@ struct Render {
     /// The picture, PNG.
     #[arg(short, long)]
     output: PathBuf,
-    /// See `npr styles`.
+    /// One of `npr styles`, or a file.toml (see `npr style`).
     #[arg(long, default_value = "cartoon")]
     style: String,
     /// Width and height, px.
@@ -154,6 +159,7 @@ fn main() -> ExitCode {
             }
             Ok(true)
         }
+        Some(Command::Style { name }) => run_style(&name),
     };
     match done {
         Ok(true) => ExitCode::SUCCESS,
@@ -304,10 +310,20 @@ fn run_render(options: &Render) -> Result<bool, HarnessError> {
     Ok(true)
 }
 
+fn run_style(name: &str) -> Result<bool, HarnessError> {
+    print!("{}", known_style(name)?.to_toml()?);
+    Ok(true)
+}
+
+/// What ends in `.toml` is a file.
 fn known_style(name: &str) -> Result<Style, HarnessError> {
+    let path = Path::new(name);
+    if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml")) {
+        return Ok(Style::read(path)?);
+    }
     style(name).ok_or_else(|| HarnessError::UnknownStyle {
         name: name.to_owned(),
-        known: styles().iter().map(|s| s.name).collect::<Vec<_>>().join(", "),
+        known: styles().into_iter().map(|s| s.name).collect::<Vec<_>>().join(", "),
     })
 }
 

@@ -64,7 +64,7 @@ fn line_coverage(context: &FrameContext<'_>, frame: &CpuFrame, look: &LineLook, 
 /// Draws the fins of the printed listing over `frame`. They are sampled where the surfaces are, so that a moved sample
 /// shows where their aliased borders are sensitive.
 pub fn draw_printed(context: &FrameContext<'_>, frame: &mut CpuFrame, width_px: f64, ink: Vec3) {
-    let (Some(fins), Some(bounds)) = (&context.plan.printed_fins, context.scene.model.bounds()) else { return };
+    let (Some(fins), Some(bounds)) = (&context.plan.printed_fins, context.scene.bounds()) else { return };
     let view = context.camera.fin_view(context.size_px, width_px, bounds);
     // Clip space is 2 w wide and high, and its y points up.
     let moved = DVec2::new(-2.0, 2.0) * context.shift_px / context.size_px;

@@ -7,20 +7,21 @@ use crate::style::Shade;
 use glam::{DVec2, DVec3, DVec4};
 use npr_imagespace::artist::LineKind;
 use npr_mesh::{AlphaMode, Material};
-use npr_toon::{toon_n_dot_h, toon_n_dot_l, toon_shade, toon_width};
+use npr_toon::painter::toon_material;
 
 /// What is interpolated over a face.
 pub(super) struct Surface {
     pub(super) normal: DVec3,
-    to_eye: DVec3,
+    pub(super) at: DVec3,
+    pub(super) to_eye: DVec3,
 }
 
 /// Weights of a face's corners at the two pixels beside a pixel with which a 2×2 block of fragments takes its
 /// differences, each with the sign that makes the difference a derivative.
-struct Footprint {
-    along_x: [f64; 3],
+pub(super) struct Footprint {
+    pub(super) along_x: [f64; 3],
     dx: f64,
-    along_y: [f64; 3],
+    pub(super) along_y: [f64; 3],
     dy: f64,
 }
 
@@ -78,7 +79,7 @@ impl FrameContext<'_> {
         })
     }
 
-    fn footprint(&self, hit: &Hit, x: u32, y: u32) -> Footprint {
+    pub(super) fn footprint(&self, hit: &Hit, x: u32, y: u32) -> Footprint {
         let beside = |index: u32| if index.is_multiple_of(2) { 1.0 } else { -1.0 };
         let (dx, dy) = (beside(x), beside(y));
         let (px, py) = (f64::from(x), f64::from(y));
@@ -101,25 +102,27 @@ impl FrameContext<'_> {
         let corners = model.faces[hit.face as usize];
         let sum =
             |of: &[glam::Vec3]| -> DVec3 { (0..3).map(|i| of[corners[i] as usize].as_dvec3() * weights[i]).sum() };
-        let normal = sum(&model.normals);
+        let (normal, at) = (sum(&model.normals), sum(&model.positions));
         let eye = self.camera.homogeneous_eye();
-        Surface {
-            normal: if hit.front { normal } else { -normal },
-            to_eye: eye.truncate() - sum(&model.positions) * eye.w,
-        }
+        Surface { normal: if hit.front { normal } else { -normal }, at, to_eye: eye.truncate() - at * eye.w }
     }
 
-    /// Linear colour and alpha: material × texture × vertex colour, without what says where lines are.
+    /// Linear colour and alpha: material × texture × vertex colour, without what says where lines are. Where the shade
+    /// has it so, the texture alone or the rest alone.
     fn base_color(&self, hit: &Hit, x: u32, y: u32) -> DVec4 {
         let mut color = self.material(hit).base_color.as_dvec4();
         let kind = self.line_kind(hit);
         if kind != LineKind::VertexColor {
             color *= self.vertex_color(hit);
         }
-        if kind != LineKind::Texture {
-            color *= self.texture_color(hit, x, y);
+        if kind == LineKind::Texture || self.material(hit).texture.is_none() {
+            return color;
         }
-        color
+        let texel = self.texture_color(hit, x, y);
+        match &self.style.shade {
+            Shade::Painter(painter) if painter.material_by_alpha => toon_material(color, texel),
+            _ => color * texel,
+        }
     }
 
     /// Linear; white where there is none.
@@ -159,34 +162,8 @@ impl FrameContext<'_> {
             let linear = self.base_color(hit, x, y);
             (encode_rgb(linear.truncate()), linear.w)
         };
-        let lit = match &self.style.shade {
-            Shade::Paper => self.style.paper.as_dvec3(),
-            Shade::Lambert { ambient } => {
-                let here = self.interpolate(hit, hit.barycentric);
-                let ambient = f64::from(*ambient);
-                base * (ambient + (1.0 - ambient) * toon_n_dot_l(here.normal, self.to_light).max(0.0))
-            }
-            Shade::Toon(bands) => {
-                let light = |weights| {
-                    let here = self.interpolate(hit, weights);
-                    let n_dot_h = if bands.highlight.is_some() {
-                        toon_n_dot_h(here.normal, self.to_light, here.to_eye)
-                    } else {
-                        0.0
-                    };
-                    DVec2::new(toon_n_dot_l(here.normal, self.to_light), n_dot_h)
-                };
-                let here = light(hit.barycentric);
-                let width = if bands.antialias {
-                    let Footprint { along_x, along_y, .. } = self.footprint(hit, x, y);
-                    let (dx, dy) = (light(along_x) - here, light(along_y) - here);
-                    DVec2::new(toon_width(dx.x, dy.x), toon_width(dx.y, dy.y))
-                } else {
-                    DVec2::ZERO
-                };
-                toon_shade(bands, base, here.x, width.x, here.y, width.y)
-            }
-        };
+        // As a target holds it before it is blended.
+        let lit = self.shaded(hit, base, x, y).clamp(DVec3::ZERO, DVec3::ONE);
         let opacity = match self.scene.model.materials[material].alpha_mode {
             AlphaMode::Blend => alpha.clamp(0.0, 1.0),
             _ => 1.0,

@@ -28,6 +28,18 @@ pub enum GpuError {
         /// Px.
         limit: u32,
     },
+    /// A ramp's image larger than the device's textures can be.
+    #[error(
+        "a ramp of {width} × {height} texels: this device's textures are at most {limit} × {limit} (the CPU has no such limit)"
+    )]
+    RampTooLarge {
+        /// Columns.
+        width: u32,
+        /// Rows.
+        height: u32,
+        /// Texels along a side.
+        limit: u32,
+    },
     /// A buffer larger than the device's can be.
     #[error("{what} needs {bytes} bytes, this device's buffers hold at most {limit}")]
     BufferTooLarge {
@@ -50,7 +62,10 @@ pub enum GpuError {
     /// Lines in the image that cannot be found.
     #[error(transparent)]
     ImageSpace(#[from] npr_imagespace::ImageSpaceError),
-    /// Bands that cannot be shaded.
+    /// Bands or ramps that cannot be shaded.
     #[error(transparent)]
     Toon(#[from] npr_toon::ToonError),
+    /// Tones that cannot be shaded.
+    #[error(transparent)]
+    Gooch(#[from] npr_gooch::GoochError),
 }

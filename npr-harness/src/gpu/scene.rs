@@ -71,7 +71,7 @@ impl GpuScene {
             })
             .collect();
         let vertices = buffer("vertices", bytemuck::cast_slice(&vertices), wgpu::BufferUsages::VERTEX)?;
-        let lookups = if plan.looks_up() {
+        let lookups = if plan.looks_up() || plan.lit {
             let lookups: Vec<[f32; 6]> = sources()
                 .map(|i| {
                     let uv = model.uvs.get(i).copied().unwrap_or_default();
@@ -83,8 +83,9 @@ impl GpuScene {
         } else {
             None
         };
-        let regions = match &split {
-            Some(split) => Some(buffer("regions", bytemuck::cast_slice(&split.regions), wgpu::BufferUsages::VERTEX)?),
+        let no_regions = (split.is_none() && plan.lit).then(|| vec![0u32; model.positions.len()]);
+        let regions = match split.as_ref().map(|split| &split.regions).or(no_regions.as_ref()) {
+            Some(regions) => Some(buffer("regions", bytemuck::cast_slice(regions), wgpu::BufferUsages::VERTEX)?),
             None => None,
         };
         let faces = split.as_ref().map_or(&model.faces, |split| &split.faces);
@@ -98,7 +99,7 @@ impl GpuScene {
         Ok(Self {
             vertices,
             lookups,
-            bounds: model.bounds(),
+            bounds: scene.bounds(),
             regions,
             indices,
             batches,

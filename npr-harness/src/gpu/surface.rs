@@ -1,17 +1,17 @@
 //! The geometry pass.
 
+use super::light::{Blank, LightOnDevice, LightVariant, uniform_buffer};
 use super::scene::{Batch, GpuScene, is_looked_up};
 use super::targets::{COLOR_FORMAT, DEPTH_FORMAT};
 use crate::camera::Camera;
 use crate::image_ink::ImagePlan;
 use crate::plan::Plan;
-use crate::scene::{Scene, key_light};
+use crate::scene::Scene;
 use crate::style::{Shade, Style};
 use glam::{DVec2, DVec3, DVec4};
 use npr_imagespace::artist::LineKind;
 use npr_imagespace::format::texel::{DepthCode, TexelLayout};
 use npr_imagespace::pass::fused::texel_format;
-use npr_toon::ToonUniform;
 use std::cell::RefCell;
 use std::collections::HashMap;
 use wgpu::util::DeviceExt;
@@ -24,14 +24,13 @@ struct SurfaceUniform {
     to_eye: [f32; 4],
     to_eye_dx: [f32; 4],
     to_eye_dy: [f32; 4],
-    to_light: [f32; 4],
+    eye: [f32; 4],
     clip_px: [f32; 4],
 }
 
 impl SurfaceUniform {
     /// For targets of a size: what is said per px is per px of these.
-    fn new(scene: &Scene, style: &Style, camera: &Camera, size_px: DVec2) -> Self {
-        let ambient = if let Shade::Lambert { ambient } = style.shade { ambient } else { 0.0 };
+    fn new(scene: &Scene, camera: &Camera, size_px: DVec2) -> Self {
         // To the eye from what a pixel shows, which is against its ray: a linear function of the pixel.
         let against = |x, y| -camera.ray(DVec2::new(x, y), size_px).1;
         let to_eye = against(0.0, 0.0);
@@ -41,7 +40,7 @@ impl SurfaceUniform {
             to_eye: column(to_eye),
             to_eye_dx: column(against(1.0, 0.0) - to_eye),
             to_eye_dy: column(against(0.0, 1.0) - to_eye),
-            to_light: key_light(camera).as_vec3().extend(ambient).to_array(),
+            eye: camera.homogeneous_eye().as_vec4().to_array(),
             clip_px: scene.clip.map_or(DVec4::ONE, |plane| camera.plane_px(plane, size_px)).as_vec4().to_array(),
         }
     }
@@ -82,8 +81,10 @@ impl InkUniform {
 enum Paint {
     /// Not at all.
     Nothing,
-    Lambert,
-    Toon,
+    /// By light that is the same for all of a face but for its normals.
+    Painted,
+    /// By any other.
+    Lit,
 }
 
 /// What a fragment writes for lines in the image.
@@ -108,11 +109,10 @@ pub(super) struct SurfaceTargets<'a> {
 struct Variant {
     paint: Paint,
     looked_up: bool,
+    by_alpha: bool,
     cull_back: bool,
     blended: bool,
-    /// How many tones.
-    bands: u32,
-    highlight: bool,
+    light: LightVariant,
     /// Whether there is a picture to paint, even if it is left as it is.
     colored: bool,
     clipped: bool,
@@ -125,14 +125,17 @@ pub(super) struct SurfacePass {
     view_layout: wgpu::BindGroupLayout,
     material_layout: wgpu::BindGroupLayout,
     layout: wgpu::PipelineLayout,
+    blank: Blank,
     pipelines: RefCell<HashMap<Variant, wgpu::RenderPipeline>>,
 }
 
+const SURFACE_LIGHT_WGSL: &str = include_str!("surface_light.wgsl");
 const SURFACE_WGSL: &str = include_str!("surface.wgsl");
 
 /// The whole shader of the geometry pass.
 pub fn wgsl() -> String {
-    [npr_toon::WGSL, npr_imagespace::format::FORMAT_WGSL, npr_imagespace::artist::ARTIST_WGSL, SURFACE_WGSL].concat()
+    let ink = [npr_imagespace::format::FORMAT_WGSL, npr_imagespace::artist::ARTIST_WGSL].concat();
+    [npr_toon::WGSL, npr_gooch::WGSL, &ink, SURFACE_LIGHT_WGSL, SURFACE_WGSL].concat()
 }
 
 impl SurfacePass {
@@ -162,7 +165,10 @@ impl SurfacePass {
         let layout = |label, entries: &[_]| {
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
         };
-        let view_layout = layout("surface view", &[uniform(0), uniform(1), uniform(2)]);
+        let view_layout = layout(
+            "surface view",
+            &[uniform(0), uniform(1), uniform(2), uniform(3), uniform(4), uniform(5), uniform(6), fragment(7, texture)],
+        );
         let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
         let material_layout = layout("surface material", &[uniform(0), fragment(1, texture), fragment(2, sampler)]);
         Self {
@@ -177,6 +183,7 @@ impl SurfacePass {
             }),
             view_layout,
             material_layout,
+            blank: Blank::new(device),
             pipelines: RefCell::default(),
         }
     }
@@ -211,29 +218,36 @@ impl SurfacePass {
         style: &Style,
         plan: &Plan,
         camera: &Camera,
-        toon_uniform: &ToonUniform,
+        light: &LightOnDevice,
         targets: &SurfaceTargets<'_>,
     ) {
         let ink = plan.image.as_ref().map_or_else(bytemuck::Zeroable::zeroed, |image| InkUniform::new(image, camera));
-        let (view, toon, ink) = (
-            uniform_buffer(device, bytemuck::bytes_of(&SurfaceUniform::new(scene, style, camera, targets.size_px))),
-            uniform_buffer(device, bytemuck::bytes_of(toon_uniform)),
-            uniform_buffer(device, bytemuck::bytes_of(&ink)),
-        );
+        let view = uniform_buffer(device, bytemuck::bytes_of(&SurfaceUniform::new(scene, camera, targets.size_px)));
+        let ink = uniform_buffer(device, bytemuck::bytes_of(&ink));
+        let blank = &self.blank.uniform;
+        let ramp_image = light.ramp_image.as_ref().unwrap_or(&self.blank.ramp_image);
+        let bound = [
+            view.as_entire_binding(),
+            light.bands.as_ref().unwrap_or(blank).as_entire_binding(),
+            ink.as_entire_binding(),
+            light.lights.as_entire_binding(),
+            light.shade.as_entire_binding(),
+            light.ramps.as_ref().unwrap_or(blank).as_entire_binding(),
+            light.gooch.as_ref().unwrap_or(blank).as_entire_binding(),
+            wgpu::BindingResource::TextureView(ramp_image),
+        ];
+        let entry = |(binding, resource)| wgpu::BindGroupEntry { binding, resource };
+        let entries: Vec<_> = (0..).zip(bound).map(entry).collect();
         let view_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("surface view"),
             layout: &self.view_layout,
-            entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: view.as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 1, resource: toon.as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 2, resource: ink.as_entire_binding() },
-            ],
+            entries: &entries,
         });
         let paint = match style.shade {
             _ if targets.color.is_none() => Paint::Nothing,
             Shade::Paper => Paint::Nothing,
-            Shade::Lambert { .. } => Paint::Lambert,
-            Shade::Toon(_) => Paint::Toon,
+            _ if light.variant.needs_more() => Paint::Lit,
+            _ => Paint::Painted,
         };
         let blended = if plan.blended && paint != Paint::Nothing {
             back_to_front(scene, &uploaded.blended_faces, camera)
@@ -295,10 +309,10 @@ impl SurfacePass {
             let variant = Variant {
                 paint,
                 looked_up: is_looked_up(scene, batch.material) && wanted,
+                by_alpha: light.variant.by_alpha && material.texture.is_some(),
                 cull_back: plan.cull_back || !double_sided,
                 blended,
-                bands: toon_uniform.count.max(1),
-                highlight: toon_uniform.highlight_strength > 0.0,
+                light: light.variant,
                 colored: targets.color.is_some(),
                 clipped: scene.clip.is_some(),
                 inking,
@@ -327,22 +341,20 @@ impl SurfacePass {
     }
 
     fn pipeline(&self, device: &wgpu::Device, variant: Variant) -> wgpu::RenderPipeline {
-        let Variant { paint, looked_up, cull_back, blended, bands, highlight, colored, clipped, inking } = variant;
+        let Variant { paint, looked_up, by_alpha, cull_back, blended, light, colored, clipped, inking } = variant;
         // A blended surface is no surface to lines in the image.
         let inked = inking.is_some() && !blended;
         let (vertex, fragment) = match (paint, looked_up, inked) {
             (Paint::Nothing, false, false) => ("vs_depth", if clipped { "fs_clipped" } else { "fs_nothing" }),
             (Paint::Nothing, true, false) => ("vs_textured", "fs_cut_out"),
-            (Paint::Lambert, false, false) => ("vs_plain", "fs_lambert"),
-            (Paint::Lambert, true, false) => ("vs_textured", "fs_lambert_textured"),
-            (Paint::Toon, false, false) => ("vs_plain", "fs_toon"),
-            (Paint::Toon, true, false) => ("vs_textured", "fs_toon_textured"),
+            (Paint::Painted, false, false) => ("vs_plain", "fs_painted"),
+            (Paint::Painted, true, false) => ("vs_textured", "fs_painted_textured"),
+            (Paint::Lit, _, false) => ("vs_lit", "fs_lit"),
             (Paint::Nothing, false, true) => ("vs_plain_inked", "fs_texels"),
             (Paint::Nothing, true, true) => ("vs_textured_inked", "fs_texels_textured"),
-            (Paint::Lambert, false, true) => ("vs_plain_inked", "fs_lambert_inked"),
-            (Paint::Lambert, true, true) => ("vs_textured_inked", "fs_lambert_textured_inked"),
-            (Paint::Toon, false, true) => ("vs_plain_inked", "fs_toon_inked"),
-            (Paint::Toon, true, true) => ("vs_textured_inked", "fs_toon_textured_inked"),
+            (Paint::Painted, false, true) => ("vs_plain_inked", "fs_painted_inked"),
+            (Paint::Painted, true, true) => ("vs_textured_inked", "fs_painted_textured_inked"),
+            (Paint::Lit, _, true) => ("vs_lit", "fs_lit_inked"),
         };
         let geometry = wgpu::VertexBufferLayout {
             array_stride: 24,
@@ -359,7 +371,8 @@ impl SurfacePass {
             step_mode: wgpu::VertexStepMode::Vertex,
             attributes: &wgpu::vertex_attr_array![4 => Uint32],
         };
-        let buffers = [Some(geometry), looked_up.then_some(lookups), inked.then_some(regions)];
+        let lit = paint == Paint::Lit;
+        let buffers = [Some(geometry), (lit || looked_up).then_some(lookups), (lit || inked).then_some(regions)];
         let target = wgpu::ColorTargetState {
             format: COLOR_FORMAT,
             blend: blended.then_some(wgpu::BlendState::ALPHA_BLENDING),
@@ -380,13 +393,28 @@ impl SurfacePass {
         let (narrow, line_kind, region_of_texture) = inking.map_or((false, LineKind::Normals, false), |inking| {
             (inking.layout == TexelLayout::Narrow, inking.line_kind, inking.region_of_texture)
         });
+        let flag = |flag: bool| f64::from(u8::from(flag));
+        let constants: Vec<_> = light
+            .constants()
+            .into_iter()
+            .chain([
+                ("surface_clipped", flag(clipped)),
+                ("surface_narrow", flag(narrow)),
+                ("surface_line_kind", f64::from(line_kind as u32)),
+                ("surface_region_of_texture", flag(region_of_texture)),
+                ("surface_by_alpha", flag(by_alpha)),
+                ("surface_looked_up", flag(looked_up)),
+            ])
+            .collect();
+        // The vertex stage computes light, too.
+        let options = || wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() };
         device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some("surface"),
             layout: Some(&self.layout),
             vertex: wgpu::VertexState {
                 module: &self.module,
                 entry_point: Some(vertex),
-                compilation_options: Default::default(),
+                compilation_options: options(),
                 buffers: &buffers,
             },
             primitive: wgpu::PrimitiveState { cull_mode: cull_back.then_some(wgpu::Face::Back), ..Default::default() },
@@ -401,18 +429,7 @@ impl SurfacePass {
             fragment: Some(wgpu::FragmentState {
                 module: &self.module,
                 entry_point: Some(fragment),
-                compilation_options: wgpu::PipelineCompilationOptions {
-                    // The loop over bands is unrolled for as many as there are.
-                    constants: &[
-                        (npr_toon::TOON_BANDS_OVERRIDE, f64::from(bands)),
-                        ("surface_highlight", f64::from(u8::from(highlight))),
-                        ("surface_clipped", f64::from(u8::from(clipped))),
-                        ("surface_narrow", f64::from(u8::from(narrow))),
-                        ("surface_line_kind", f64::from(line_kind as u32)),
-                        ("surface_region_of_texture", f64::from(u8::from(region_of_texture))),
-                    ],
-                    ..Default::default()
-                },
+                compilation_options: options(),
                 targets: &[colored.then_some(target), texels][..if inking.is_some() { 2 } else { 1 }],
             }),
             multiview_mask: None,
@@ -434,16 +451,9 @@ fn back_to_front(scene: &Scene, faces: &[u32], camera: &Camera) -> Vec<u32> {
     keyed.into_iter().map(|(_, face)| face).collect()
 }
 
-fn uniform_buffer(device: &wgpu::Device, contents: &[u8]) -> wgpu::Buffer {
-    device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-        label: Some("uniform"),
-        contents,
-        usage: wgpu::BufferUsages::UNIFORM,
-    })
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::light::ShadeUniform;
     use super::*;
     use naga::TypeInner;
     use std::mem::offset_of;
@@ -466,7 +476,7 @@ mod tests {
             ("to_eye", offset_of!(SurfaceUniform, to_eye)),
             ("to_eye_dx", offset_of!(SurfaceUniform, to_eye_dx)),
             ("to_eye_dy", offset_of!(SurfaceUniform, to_eye_dy)),
-            ("to_light", offset_of!(SurfaceUniform, to_light)),
+            ("eye", offset_of!(SurfaceUniform, eye)),
             ("clip_px", offset_of!(SurfaceUniform, clip_px)),
         ];
         assert_eq!(layout("SurfaceView"), ours(&view, size_of::<SurfaceUniform>()));
@@ -486,5 +496,14 @@ mod tests {
             ("back", offset_of!(InkUniform, back)),
         ];
         assert_eq!(layout("SurfaceInk"), ours(&ink, size_of::<InkUniform>()));
+        let shade = [
+            ("ambient", offset_of!(ShadeUniform, ambient)),
+            ("half_scale", offset_of!(ShadeUniform, half_scale)),
+            ("half_bias", offset_of!(ShadeUniform, half_bias)),
+            ("half_squared", offset_of!(ShadeUniform, half_squared)),
+            ("row_ends", offset_of!(ShadeUniform, row_ends)),
+            ("padding", offset_of!(ShadeUniform, padding)),
+        ];
+        assert_eq!(layout("SurfaceShade"), ours(&shade, size_of::<ShadeUniform>()));
     }
 }

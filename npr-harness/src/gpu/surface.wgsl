@@ -1,4 +1,5 @@
-// The geometry pass. Appended to npr-toon's library.
+// The geometry pass. Appended to `surface_light.wgsl`, and that to the libraries of npr-toon, npr-gooch and
+// npr-imagespace.
 
 struct SurfaceView {
     clip_from_world: mat4x4<f32>,
@@ -7,8 +8,8 @@ struct SurfaceView {
     to_eye: vec4<f32>,
     to_eye_dx: vec4<f32>,
     to_eye_dy: vec4<f32>,
-    // xyz: unit vector to the light; w: what Lambert leaves where no light falls.
-    to_light: vec4<f32>,
+    // A point with w = 1, or in a parallel view the direction to the eye with w = 0.
+    eye: vec4<f32>,
     // Of what is kept: positive where the product with (x px, y px, depth, 1) is.
     clip_px: vec4<f32>,
 }
@@ -35,9 +36,6 @@ struct SurfaceInk {
     back: vec4<f32>,
 }
 
-// Whether the bands have a highlight. Known when the pipeline is made, since a software rasteriser runs through what it
-// branches around.
-override surface_highlight: bool = true;
 // Whether a plane cuts the scene.
 override surface_clipped: bool = false;
 // Whether normal, region and depth are packed into one word.
@@ -46,9 +44,12 @@ override surface_narrow: bool = false;
 override surface_line_kind: u32 = 0u;
 // Whether its texture's colours are its regions.
 override surface_region_of_texture: bool = false;
+// Whether the material is its texture alone or the rest alone, whichever the rest's alpha says.
+override surface_by_alpha: bool = false;
+// Whether texture coordinates and vertex colours are looked up, where one entry point does both.
+override surface_looked_up: bool = false;
 
 @group(0) @binding(0) var<uniform> view: SurfaceView;
-@group(0) @binding(1) var<uniform> toon: ToonBands;
 @group(0) @binding(2) var<uniform> ink: SurfaceInk;
 @group(1) @binding(0) var<uniform> material: SurfaceMaterial;
 @group(1) @binding(1) var base_texture: texture_2d<f32>;
@@ -79,6 +80,18 @@ struct InkedTexturedSurface {
     @location(1) uv: vec2<f32>,
     @location(2) color: vec4<f32>,
     @location(3) @interpolate(flat) region: u32,
+}
+
+// With everything, and with what the light needs that is not the same for all of a face: a position, or vectors to the
+// light and the second vector, or light from the vertices.
+struct LitSurface {
+    @builtin(position) position: vec4<f32>,
+    @location(0) normal: vec3<f32>,
+    @location(1) uv: vec2<f32>,
+    @location(2) color: vec4<f32>,
+    @location(3) @interpolate(flat) region: u32,
+    @location(4) first: vec3<f32>,
+    @location(5) second: vec3<f32>,
 }
 
 // Colour, and normal, region and depth as one or two words.
@@ -128,6 +141,25 @@ fn vs_textured_inked(
     return InkedTexturedSurface(view.clip_from_world * vec4<f32>(position, 1.0), normal, uv, color, region);
 }
 
+@vertex
+fn vs_lit(
+    @location(0) position: vec3<f32>, @location(1) normal: vec3<f32>, @location(2) uv: vec2<f32>,
+    @location(3) color: vec4<f32>, @location(4) region: u32,
+) -> LitSurface {
+    let n = toon_unit(normal);
+    let eye = view.eye.xyz - position * view.eye.w;
+    // Brought to unit length at the pixel, all it takes is where that is.
+    var lit = LitSurface(view.clip_from_world * vec4<f32>(position, 1.0), normal, uv, color, region, position, n);
+    if surface_normals == 1u {
+        lit.normal = n;
+        lit.first = to_first_light(position);
+        lit.second = second_at(position, eye);
+    } else if surface_normals == 2u {
+        lit.first = vec3<f32>(light_at(n, position, eye), 0.0);
+    }
+    return lit;
+}
+
 fn encode_srgb(linear: vec3<f32>) -> vec3<f32> {
     let c = clamp(linear, vec3<f32>(0.0), vec3<f32>(1.0));
     return select(1.055 * pow(c, vec3<f32>(1.0 / 2.4)) - 0.055, c * 12.92, c <= vec3<f32>(0.0031308));
@@ -148,39 +180,18 @@ fn base_color(texel: vec4<f32>, color: vec4<f32>) -> vec4<f32> {
     if surface_line_kind != 1u {
         base *= color;
     }
-    if surface_line_kind != 2u {
-        base *= texel;
+    if surface_line_kind == 2u {
+        return base;
     }
-    return base;
+    if surface_by_alpha {
+        return toon_material(base, texel);
+    }
+    return base * texel;
 }
 
-fn lambert(base: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
-    let ambient = view.to_light.w;
-    return base * (ambient + (1.0 - ambient) * max(dot(toon_unit(normal), view.to_light.xyz), 0.0));
-}
-
-// `toon_shade`, with the highlight left out when the pipeline is made. In uniform control flow.
-fn banded(base: vec3<f32>, normal: vec3<f32>, eye: vec3<f32>) -> vec3<f32> {
-    let n = toon_unit(normal);
-    let n_dot_l = dot(n, view.to_light.xyz);
-    var nl_width = 0.0;
-    if toon.antialias != 0u {
-        nl_width = toon_pixel_width(n_dot_l);
-    }
-    let color = base * toon_band(toon, n_dot_l, nl_width);
-    if !surface_highlight {
-        return color;
-    }
-    let e = toon_unit(eye);
-    let n_dot_h = toon_n_dot_h_of(n_dot_l, dot(n, e), dot(view.to_light.xyz, e));
-    var nh_width = 0.0;
-    if toon.antialias != 0u {
-        nh_width = toon_pixel_width(n_dot_h);
-    }
-    let opacity = toon_highlight(
-        toon.highlight.w, toon.highlight_strength, toon.highlight_lit_only, n_dot_l, nl_width, n_dot_h, nh_width,
-    );
-    return mix(color, toon.highlight.rgb, opacity);
+// Per-pixel light from directions that are the same everywhere. In uniform control flow.
+fn painted(base: vec3<f32>, normal: vec3<f32>, position_px: vec2<f32>) -> vec3<f32> {
+    return shaded(base, light_at(toon_unit(normal), vec3<f32>(0.0), to_eye(position_px)));
 }
 
 // Cuts off what lies beyond the plane. After all derivatives.
@@ -195,36 +206,21 @@ fn facing(normal: vec3<f32>, front: bool) -> vec3<f32> {
 }
 
 @fragment
-fn fs_lambert(in: Surface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
+fn fs_painted(in: Surface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
+    let color = painted(material.base_color.rgb, facing(in.normal, front), in.position.xy);
     clip_off(in.position);
-    return vec4<f32>(lambert(material.base_color.rgb, facing(in.normal, front)), material.base_color.a);
+    return vec4<f32>(color, material.base_color.a);
 }
 
 @fragment
-fn fs_toon(in: Surface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
-    clip_off(in.position);
-    return vec4<f32>(banded(material.base_color.rgb, facing(in.normal, front), to_eye(in.position.xy)), material.base_color.a);
-}
-
-@fragment
-fn fs_lambert_textured(in: TexturedSurface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
+fn fs_painted_textured(in: TexturedSurface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
     let base = base_color(texture_color(in.uv), in.color);
+    let color = painted(encode_srgb(base.rgb), facing(in.normal, front), in.position.xy);
     if base.a < material.cutoff {
         discard;
     }
     clip_off(in.position);
-    return vec4<f32>(lambert(encode_srgb(base.rgb), facing(in.normal, front)), base.a);
-}
-
-@fragment
-fn fs_toon_textured(in: TexturedSurface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
-    let base = base_color(texture_color(in.uv), in.color);
-    let shaded = banded(encode_srgb(base.rgb), facing(in.normal, front), to_eye(in.position.xy));
-    if base.a < material.cutoff {
-        discard;
-    }
-    clip_off(in.position);
-    return vec4<f32>(shaded, base.a);
+    return vec4<f32>(color, base.a);
 }
 
 @fragment
@@ -302,41 +298,77 @@ fn textured_words(in: InkedTexturedSurface, front: bool, texel: vec4<f32>) -> ve
 }
 
 @fragment
-fn fs_lambert_inked(in: InkedSurface, @builtin(front_facing) front: bool) -> Inked {
-    let color = lambert(material.base_color.rgb, facing(in.normal, front));
+fn fs_painted_inked(in: InkedSurface, @builtin(front_facing) front: bool) -> Inked {
+    let color = painted(material.base_color.rgb, facing(in.normal, front), in.position.xy);
     clip_off(in.position);
     return Inked(vec4<f32>(color, material.base_color.a), plain_words(in, front));
 }
 
 @fragment
-fn fs_toon_inked(in: InkedSurface, @builtin(front_facing) front: bool) -> Inked {
-    let color = banded(material.base_color.rgb, facing(in.normal, front), to_eye(in.position.xy));
-    clip_off(in.position);
-    return Inked(vec4<f32>(color, material.base_color.a), plain_words(in, front));
-}
-
-@fragment
-fn fs_lambert_textured_inked(in: InkedTexturedSurface, @builtin(front_facing) front: bool) -> Inked {
+fn fs_painted_textured_inked(in: InkedTexturedSurface, @builtin(front_facing) front: bool) -> Inked {
     let texel = texture_color(in.uv);
     let base = base_color(texel, in.color);
-    if base.a < material.cutoff {
-        discard;
-    }
-    let color = lambert(encode_srgb(base.rgb), facing(in.normal, front));
-    clip_off(in.position);
-    return Inked(vec4<f32>(color, base.a), textured_words(in, front, texel));
-}
-
-@fragment
-fn fs_toon_textured_inked(in: InkedTexturedSurface, @builtin(front_facing) front: bool) -> Inked {
-    let texel = texture_color(in.uv);
-    let base = base_color(texel, in.color);
-    let color = banded(encode_srgb(base.rgb), facing(in.normal, front), to_eye(in.position.xy));
+    let color = painted(encode_srgb(base.rgb), facing(in.normal, front), in.position.xy);
     if base.a < material.cutoff {
         discard;
     }
     clip_off(in.position);
     return Inked(vec4<f32>(color, base.a), textured_words(in, front, texel));
+}
+
+// What the light is at a pixel, wherever it is computed.
+fn light_of(in: LitSurface, front: bool) -> vec2<f32> {
+    if surface_normals == 2u {
+        return select(light_of_back(in.first.xy), in.first.xy, front);
+    }
+    let normal = facing(in.normal, front);
+    if surface_normals == 1u {
+        return light_interpolated(normal, in.first, in.second);
+    }
+    return light_at(toon_unit(normal), in.first, to_eye(in.position.xy));
+}
+
+// The own colour of a surface, and its alpha. In uniform control flow.
+fn lit_base(in: LitSurface, texel: vec4<f32>) -> vec4<f32> {
+    if surface_looked_up {
+        let base = base_color(texel, in.color);
+        return vec4<f32>(encode_srgb(base.rgb), base.a);
+    }
+    return material.base_color;
+}
+
+fn lit_texel(in: LitSurface) -> vec4<f32> {
+    if surface_looked_up {
+        return texture_color(in.uv);
+    }
+    return vec4<f32>(1.0);
+}
+
+@fragment
+fn fs_lit(in: LitSurface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
+    let base = lit_base(in, lit_texel(in));
+    let color = shaded(base.rgb, light_of(in, front));
+    if surface_looked_up && base.a < material.cutoff {
+        discard;
+    }
+    clip_off(in.position);
+    return vec4<f32>(color, base.a);
+}
+
+@fragment
+fn fs_lit_inked(in: LitSurface, @builtin(front_facing) front: bool) -> Inked {
+    let texel = lit_texel(in);
+    let base = lit_base(in, texel);
+    let color = shaded(base.rgb, light_of(in, front));
+    if surface_looked_up && base.a < material.cutoff {
+        discard;
+    }
+    clip_off(in.position);
+    if surface_looked_up {
+        let textured = InkedTexturedSurface(in.position, in.normal, in.uv, in.color, in.region);
+        return Inked(vec4<f32>(color, base.a), textured_words(textured, front, texel));
+    }
+    return Inked(vec4<f32>(color, base.a), plain_words(InkedSurface(in.position, in.normal, in.region), front));
 }
 
 @fragment

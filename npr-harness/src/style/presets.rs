@@ -1,0 +1,179 @@
+//! The styles there are.
+
+use super::{Lines, PainterShade, Ramp2dSource, RampShade, RampSource, Shade, Style};
+use crate::image_ink::{ImageInk, InkScale};
+use crate::light::{LightFrame, StyleLight};
+use glam::Vec3;
+use npr_gooch::Gooch;
+use npr_imagespace::composite::Composite;
+use npr_imagespace::morphology::disc::Disc;
+use npr_outline::line_look::{LineLook, widths_px};
+use npr_toon::Bands;
+use npr_toon::half_lambert::HalfLambert;
+use npr_toon::normal::NormalUse;
+use npr_toon::painter::Painter;
+use npr_toon::ramp::{Ramp, RampBlend, RampStop};
+use npr_toon::source::Light;
+use npr_toon::table::{Corner, Ramp2d};
+
+/// A warm white.
+const PAPER: Vec3 = Vec3::new(0.98, 0.97, 0.94);
+/// Not quite black.
+const INK: [f32; 4] = [0.10, 0.09, 0.11, 1.0];
+
+fn ink_lines(silhouette_px: f32, crease_px: f32) -> Option<Lines> {
+    let width_px = widths_px(silhouette_px, silhouette_px, crease_px, crease_px);
+    Some(Lines::Fins(LineLook { width_px, ink: INK }))
+}
+
+fn image_lines(ink: ImageInk) -> Option<Lines> {
+    let [r, g, b, opacity] = INK;
+    Some(Lines::Image(ImageInk { composite: Composite::Over { color: Vec3::new(r, g, b), opacity }, ..ink }))
+}
+
+fn ramp<const N: usize>(blend: RampBlend, stops: [(f32, [f32; 3]); N]) -> Ramp {
+    Ramp { stops: stops.map(|(at, color)| RampStop { at, color: Vec3::from(color) }).to_vec(), blend }
+}
+
+/// From a violet dark over the surface's own colour to a touch of cream.
+fn wash() -> RampShade {
+    let stops = [(0.0, [0.36, 0.33, 0.52]), (0.35, [0.62, 0.58, 0.72]), (0.7, [0.96, 0.93, 0.90]), (1.0, [1.0; 3])];
+    RampShade { ramp: RampSource::Stops(ramp(RampBlend::Smooth, stops)), half_lambert: Some(HalfLambert::HALF_LIFE) }
+}
+
+/// Four steps, none of them at the terminator: the far side keeps its form.
+fn wrapped() -> RampShade {
+    let stops = [(0.0, [0.42, 0.40, 0.55]), (0.12, [0.58, 0.56, 0.68]), (0.36, [0.82, 0.80, 0.84]), (0.72, [1.0; 3])];
+    RampShade { ramp: RampSource::Stops(ramp(RampBlend::Hard, stops)), half_lambert: Some(HalfLambert::SOURCE) }
+}
+
+/// What the first light alone gives, what the second alone gives, and the shade where both are strong.
+fn two_lights() -> PainterShade {
+    let first = ramp(RampBlend::Hard, [(-1.0, [0.34, 0.32, 0.46]), (0.06, [0.55, 0.54, 0.60]), (0.55, [0.68; 3])]);
+    let second = ramp(RampBlend::Hard, [(-1.0, [0.34, 0.32, 0.46]), (0.2, [0.44, 0.44, 0.58])]);
+    let corner = Some(Corner { threshold: 1.15, color: Vec3::splat(0.82) });
+    PainterShade {
+        ramp: Ramp2dSource::Ramps(Ramp2d { a: first, b: second, corner }),
+        light_scale: Painter::LIGHT_SCALE,
+        material_by_alpha: false,
+    }
+}
+
+/// Bright and warm from the upper left; dim and cool, from a lamp low at the right, near the model.
+fn warm_and_cool() -> Vec<StyleLight> {
+    let warm = Light { color: Vec3::new(1.0, 0.98, 0.93), brightness: 1.2, ..StyleLight::KEY.light };
+    let lamp =
+        Light { color: Vec3::new(0.9, 0.95, 1.0), brightness: 0.7, ..Light::positional(Vec3::new(1.3, -0.1, 0.7)) };
+    [warm, lamp].map(|light| StyleLight { light, frame: LightFrame::View }).to_vec()
+}
+
+/// The styles there are; the first is the default.
+pub fn styles() -> Vec<Style> {
+    let style = |name: &str, about: &str, shade, lines| Style {
+        name: name.to_owned(),
+        about: about.to_owned(),
+        paper: PAPER,
+        shade,
+        normals: NormalUse::PerPixel,
+        lights: vec![StyleLight::KEY],
+        lines,
+        crease_angle_rad: 45f32.to_radians(),
+    };
+    let hard = Bands { antialias: false, ..Bands::hard_shading() };
+    // Nearly at a right angle to the view: all of the way from cool to warm is seen.
+    let from_the_side = vec![StyleLight { light: Light::directional(Vec3::new(-0.7, 0.6, 0.3)), ..StyleLight::KEY }];
+    vec![
+        style("cartoon", "banded light, highlight, ink lines", Shade::Toon(Bands::default()), ink_lines(2.0, 1.3)),
+        style("toon", "banded light alone", Shade::Toon(Bands::default()), None),
+        style("lines", "ink on paper, hidden lines removed", Shade::Paper, ink_lines(1.4, 1.0)),
+        style("bold", "two tones and a heavy pen", Shade::Toon(Bands::hard_shading()), ink_lines(4.0, 2.0)),
+        Style {
+            lights: from_the_side.clone(),
+            ..style(
+                "gooch",
+                "cool to warm, a clear highlight, ink lines",
+                Shade::Gooch(Gooch::default()),
+                ink_lines(1.6, 1.1),
+            )
+        },
+        Style {
+            lights: warm_and_cool(),
+            ..style(
+                "two-lights",
+                "a warm light and a cool lamp through a 2D ramp, ink lines",
+                Shade::Painter(two_lights()),
+                ink_lines(2.0, 1.3),
+            )
+        },
+        style("wash", "a smooth ramp of colours, fine lines", Shade::Ramp(wash()), ink_lines(1.2, 0.9)),
+        style("wrapped", "four bands of half-Lambert light, ink lines", Shade::Ramp(wrapped()), ink_lines(2.0, 1.3)),
+        style("lambert", "plain diffuse light, no bands, no lines", Shade::Lambert { ambient: 0.25 }, None),
+        style(
+            "ink-image",
+            "banded light, lines found in the image",
+            Shade::Toon(Bands::default()),
+            image_lines(ImageInk::default()),
+        ),
+        style(
+            "ink-thick",
+            "the same at twice the size, widened by a round brush",
+            Shade::Toon(Bands::default()),
+            image_lines(ImageInk {
+                brush: Some(Disc { radius_px: 3.0, antialias: true }),
+                scale: InkScale::Double,
+                ..ImageInk::default()
+            }),
+        ),
+        style(
+            "ink-fine",
+            "lines on paper, found at twice the picture's size",
+            Shade::Paper,
+            image_lines(ImageInk { scale: InkScale::Double, ..ImageInk::default() }),
+        ),
+        style(
+            "artist",
+            "lines where an artist painted them, material by material",
+            Shade::Toon(Bands::default()),
+            image_lines(ImageInk { artist: true, ..ImageInk::default() }),
+        ),
+        Style {
+            normals: NormalUse::PerVertex,
+            ..style(
+                "vertex-light",
+                "the bands of `toon` by light that is computed at the vertices",
+                Shade::Toon(Bands::default()),
+                None,
+            )
+        },
+        Style {
+            normals: NormalUse::Interpolated,
+            ..style(
+                "printed-bands",
+                "the three bands of the 2002 chapter's listing 3, aliased, normals as interpolated",
+                Shade::Toon(Bands::listing_3()),
+                None,
+            )
+        },
+        Style {
+            normals: NormalUse::Interpolated,
+            lights: from_the_side,
+            ..style(
+                "printed-gooch",
+                "the cool and warm tones of the 2002 chapter's listing 7, as printed",
+                Shade::Gooch(Gooch::listing_7()),
+                None,
+            )
+        },
+        style(
+            "printed-fins",
+            "the outline of the 2002 chapter's listing 1, as printed",
+            Shade::Toon(hard),
+            Some(Lines::Printed { width_px: 2.0, ink: Vec3::ZERO }),
+        ),
+    ]
+}
+
+/// The style of a name.
+pub fn style(name: &str) -> Option<Style> {
+    styles().into_iter().find(|style| style.name == name)
+}
