@@ -66,8 +66,8 @@ pub struct Metric {
     pub model: String,
     /// Yaw and pitch in degrees, or the composed view.
     pub view: String,
-    /// What is checked.
-    pub technique: &'static str,
+    /// What is checked; of pictures, the style.
+    pub technique: String,
     /// What is measured.
     pub metric: &'static str,
     /// What was measured.
@@ -156,6 +156,7 @@ impl Report {
 /// Where a check's numbers go.
 struct Checker<'a> {
     executor: &'a Executor,
+    styles: &'a [Style],
     out: &'a Path,
     tell: &'a dyn Fn(&Metric),
     skipped: Vec<String>,
@@ -163,19 +164,24 @@ struct Checker<'a> {
     rows: Vec<ReportRow>,
 }
 
-/// Checks the models, or without any the built-in scenes. `tell` is called with each metric as soon as it is known.
+/// Checks the models, or without any the built-in scenes; if there are `styles`, only the pictures of these. `tell` is
+/// called with each metric as soon as it is known.
 ///
 /// # Errors
 /// [`HarnessError`]; an exceeded limit is none.
 pub fn run(
     executor: &Executor,
     inputs: &[PathBuf],
+    styles: &[Style],
     out: &Path,
     tell: &dyn Fn(&Metric),
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<Report, HarnessError> {
-    let mut checker = Checker { executor, out, tell, skipped: Vec::new(), metrics: Vec::new(), rows: Vec::new() };
-    checker.widths()?;
+    let mut checker =
+        Checker { executor, styles, out, tell, skipped: Vec::new(), metrics: Vec::new(), rows: Vec::new() };
+    if styles.is_empty() {
+        checker.widths()?;
+    }
     let total = inputs.len().max(1) as f64;
     if inputs.is_empty() {
         let scene = Scene::new(npr_mesh::embedded::scene());
@@ -208,7 +214,8 @@ pub fn scene(
     out: &Path,
 ) -> Result<Report, HarnessError> {
     let tell = &|_: &Metric| {};
-    let mut checker = Checker { executor, out, tell, skipped: Vec::new(), metrics: Vec::new(), rows: Vec::new() };
+    let mut checker =
+        Checker { executor, styles: &[], out, tell, skipped: Vec::new(), metrics: Vec::new(), rows: Vec::new() };
     checker.model(name, scene, views, &|_| {})?;
     checker.finish()
 }
@@ -238,19 +245,37 @@ impl Checker<'_> {
         progress: &dyn Fn(f64),
     ) -> Result<(), HarnessError> {
         for (number, (view, camera)) in views.iter().enumerate() {
+            if !self.styles.is_empty() {
+                for style in self.styles {
+                    self.picture(name, view, scene, camera, style)?;
+                }
+                progress((number + 1) as f64 / views.len() as f64);
+                continue;
+            }
             let artist = scene.line_kinds.iter().any(|&kind| kind != InnerLines::Normals);
             let of_edges = scene.clip.is_none();
             let wanted = |style: &&&str| match **style {
-                "cartoon" | "lines" | "printed-fins" => of_edges,
+                "cartoon" | "lines" | "printed-fins" | "gooch" | "two-lights" | "wash" | "wrapped" => of_edges,
                 "artist" => artist,
                 _ => true,
             };
-            let all = ["cartoon", "lines", "printed-fins", "ink-image", "ink-thick", "ink-fine", "artist"];
-            // Those of other sizes and widths once: their reference is the costliest.
-            let often = |style: &&&str| number == 0 || !matches!(**style, "ink-thick" | "ink-fine");
-            for name_of_style in all.iter().filter(wanted).filter(often) {
+            // In every view, and those that differ from them in a number or in size, in the first alone.
+            let often = [
+                "cartoon",
+                "lines",
+                "printed-fins",
+                "gooch",
+                "two-lights",
+                "wash",
+                "vertex-light",
+                "ink-image",
+                "artist",
+            ];
+            let once = ["ink-thick", "ink-fine", "wrapped", "printed-bands", "printed-gooch"];
+            let once = once.iter().filter(|_| number == 0);
+            for name_of_style in often.iter().chain(once).filter(wanted) {
                 let style = style(name_of_style).expect("a style of this crate");
-                self.picture(name, view, scene, camera, name_of_style, &style)?;
+                self.picture(name, view, scene, camera, &style)?;
             }
             if of_edges {
                 self.lines(name, view, scene, camera)?;
@@ -262,19 +287,20 @@ impl Checker<'_> {
             }
             progress((number + 1) as f64 / views.len() as f64);
         }
-        self.formats(name, scene)
+        if self.styles.is_empty() { self.formats(name, scene) } else { Ok(()) }
     }
 
     fn add(
         &mut self,
         model: &str,
         view: &str,
-        technique: &'static str,
+        technique: &str,
         metric: &'static str,
         value: f64,
         limit: Option<Limit>,
     ) {
         let pass = limit.is_none_or(|limit| limit.holds(value));
+        let technique = technique.to_owned();
         let metric = Metric { model: model.into(), view: view.into(), technique, metric, value, limit, pass };
         (self.tell)(&metric);
         self.metrics.push(metric);
@@ -287,9 +313,9 @@ impl Checker<'_> {
         view: &str,
         scene: &Scene,
         camera: &Camera,
-        technique: &'static str,
         style: &Style,
     ) -> Result<(), HarnessError> {
+        let technique = style.name.as_str();
         if self.executor.is_cpu() {
             return Ok(());
         }

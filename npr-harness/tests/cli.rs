@@ -143,6 +143,6 @@ fn without_a_command_every_style_is_drawn() {
     for style in styles() {
         let image = Image::load_png(&folder.join("npr-out").join(format!("{}.png", style.name))).expect("a PNG");
         assert_eq!((image.width, image.height), npr_harness::gallery::SIZE);
-        assert!(listed.lines().any(|line| line.starts_with(style.name)), "{}", style.name);
+        assert!(listed.lines().any(|line| line.starts_with(&style.name)), "{}", style.name);
     }
 }

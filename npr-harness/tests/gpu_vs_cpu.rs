@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::{Folder, device, shared_models};
+use common::{Folder, cards, device, plain, shared_models, waves};
 use glam::{DVec2, Mat4, Vec2, Vec3, Vec4};
 use npr_harness::camera::{Camera, Framing};
 use npr_harness::check::{self, Reference, SIZE, Shot, agrees, magnitude};
@@ -41,64 +41,16 @@ fn check_model(name: &str, model: Model) {
     println!("{name}: {} metrics pass on {}", report.metrics.len(), report.executor);
 }
 
-/// Squares facing +Z, a row of them; `material` says what the number-th is made of.
-fn cards(count: u32, uv_scale: f32, material: impl Fn(u32) -> Material) -> Model {
-    let mut model = Model::default();
-    for number in 0..count {
-        // Each a little behind the one before and turned, so that they overlap.
-        let place = Mat4::from_translation(Vec3::new(number as f32 * 1.3, 0.0, number as f32 * -0.4))
-            * Mat4::from_rotation_y(0.3 + number as f32 * 0.7);
-        let corners = [Vec2::new(-1.0, -1.0), Vec2::new(1.0, -1.0), Vec2::ONE, Vec2::new(-1.0, 1.0)];
-        let mut card = Model {
-            positions: corners.map(|c| place.transform_point3(c.extend(0.0))).to_vec(),
-            normals: vec![place.transform_vector3(Vec3::Z); 4],
-            uvs: corners.map(|c| Vec2::new(c.x, -c.y) * uv_scale + 0.5).to_vec(),
-            faces: vec![[0, 1, 2], [0, 2, 3]],
-            face_material: vec![0; 2],
-            face_polygon: vec![0; 2],
-            materials: vec![material(number)],
-            ..Default::default()
-        };
-        card.materials[0].name = format!("card {number}");
-        model.append(&card);
-    }
-    model
-}
-
-/// Smooth waves in colour and alpha, without symmetry.
-fn waves(width: u32, height: u32, wrap: [Wrap; 2], smooth: bool) -> Texture {
-    let wave = |v: u32, n: u32, turns: f32, phase: f32| {
-        let at = (v as f32 + 0.5) / n as f32;
-        (127.5 + 120.0 * (std::f32::consts::TAU * (turns * at + phase)).sin()) as u8
-    };
-    let rgba8 = (0..height)
-        .flat_map(|y| {
-            (0..width).flat_map(move |x| {
-                [
-                    wave(x, width, 1.0, 0.1),
-                    wave(y, height, 2.0, 0.3),
-                    wave(x + y, width, 1.0, 0.6),
-                    wave(y, height, 1.0, 0.0),
-                ]
-            })
-        })
-        .collect();
-    Texture { name: "waves".into(), width, height, rgba8, wrap, smooth }
-}
-
-fn plain(base_color: Vec4, alpha_mode: AlphaMode, double_sided: bool) -> Material {
-    Material { base_color, alpha_mode, double_sided, ..Default::default() }
-}
-
 #[test]
 fn the_built_in_scene() {
     let Some(executor) = device() else { return };
     let folder = Folder::new();
-    let report = check::run(&executor, &[], &folder.0, &|_| {}, &|_| {}).expect("pictures");
+    let report = check::run(&executor, &[], &[], &folder.0, &|_| {}, &|_| {}).expect("pictures");
     println!("{report}");
     assert!(report.passed() && report.skipped.is_empty(), "{report}");
-    let pictures = ["cartoon", "lines", "printed-fins", "ink-image", "ink-thick", "ink-fine", "artist"];
-    for technique in pictures.into_iter().chain(["image lines", "formats", "line finder", "width"]) {
+    let edges = ["cartoon", "lines", "printed-fins", "gooch", "two-lights", "wash", "wrapped", "vertex-light"];
+    let pictures = ["printed-bands", "printed-gooch", "ink-image", "ink-thick", "ink-fine", "artist"];
+    for technique in edges.into_iter().chain(pictures).chain(["image lines", "formats", "line finder", "width"]) {
         assert!(report.metrics.iter().any(|metric| metric.technique == technique), "{technique} was not checked");
     }
 }

@@ -6,11 +6,13 @@ use npr_harness::camera::{Camera, Projection};
 use npr_harness::color::{encode_srgb, to_byte};
 use npr_harness::cpu::{CpuFrame, CpuOptions, render};
 use npr_harness::gallery::still_life_camera;
+use npr_harness::light::lights_in_world;
 use npr_harness::plan::Plan;
-use npr_harness::scene::{Scene, key_light};
+use npr_harness::scene::Scene;
 use npr_harness::style::{Style, style};
 use npr_mesh::{Model, embedded};
 use npr_outline::segment::outline_screen;
+use npr_toon::source::toon_to_light;
 
 const PERSPECTIVE: Projection = Projection::Perspective { fov_y_rad: 0.6 };
 
@@ -148,7 +150,8 @@ fn bands_lie_where_the_light_says() {
     let scene = Scene::new(embedded::sphere(256));
     let (size, size_px) = ((400, 400), DVec2::splat(400.0));
     let camera = camera(DVec3::new(2.0, 1.0, 4.0), PERSPECTIVE);
-    let to_light = key_light(&camera);
+    let lights = lights_in_world(&named("printed-bands"), &scene, &camera);
+    let to_light = toon_to_light(lights[0].place, DVec3::ZERO);
     let image = frame(&scene, &named("printed-bands"), &camera, size, 1).image();
     let base = encode_srgb(f64::from(0.8f32));
     let mut judged = [0u32; 3];

@@ -44,6 +44,9 @@ enum Command {
     Check {
         /// Models; without any, the built-in scene.
         inputs: Vec<PathBuf>,
+        /// Only the pictures of this style: one of `npr styles`, or a file.toml. May be repeated.
+        #[arg(long)]
+        style: Vec<String>,
         /// As JSON.
         #[arg(long)]
         json: bool,
@@ -152,7 +155,7 @@ fn main() -> ExitCode {
         None => run_gallery(),
         Some(Command::Render(options)) => run_render(&options),
         Some(Command::Inspect { input, json }) => run_inspect(&input, json),
-        Some(Command::Check { inputs, json, out }) => run_check(&inputs, json, &out),
+        Some(Command::Check { inputs, style, json, out }) => run_check(&inputs, &style, json, &out),
         Some(Command::Styles) => {
             for style in styles() {
                 println!("{:<16}{}", style.name, style.about);
@@ -339,9 +342,10 @@ fn run_inspect(input: &Path, as_json: bool) -> Result<bool, HarnessError> {
     Ok(true)
 }
 
-fn run_check(inputs: &[PathBuf], as_json: bool, out: &Path) -> Result<bool, HarnessError> {
+fn run_check(inputs: &[PathBuf], styles: &[String], as_json: bool, out: &Path) -> Result<bool, HarnessError> {
     let executor = Executor::choose(Backend::Auto)?;
     announce(&executor);
+    let styles = styles.iter().map(|name| known_style(name)).collect::<Result<Vec<_>, _>>()?;
     let bar = progress_bar("checking");
     if !as_json {
         println!("on {}", executor.describe());
@@ -351,7 +355,8 @@ fn run_check(inputs: &[PathBuf], as_json: bool, out: &Path) -> Result<bool, Harn
             bar.suspend(|| println!("{metric}"));
         }
     };
-    let report = check::run(&executor, inputs, out, &tell, &|share| bar.set_position((share * 1000.0) as u64))?;
+    let report =
+        check::run(&executor, inputs, &styles, out, &tell, &|share| bar.set_position((share * 1000.0) as u64))?;
     bar.finish_and_clear();
     if as_json {
         println!("{}", serde_json::to_string_pretty(&report)?);

@@ -1,0 +1,198 @@
+//! Every light model, on the device and by the reference, on surfaces made to be awkward.
+#![cfg(feature = "gpu")]
+#![allow(clippy::print_stdout)]
+
+mod common;
+
+use common::{cards, device, plain, waves};
+use glam::{DVec3, Mat4, UVec2, Vec3, Vec4};
+use npr_gooch::{Gooch, Tones};
+use npr_harness::camera::{Camera, Framing, Projection};
+use npr_harness::check::{Reference, Shot, agrees, magnitude};
+use npr_harness::compare::{Image, compare};
+use npr_harness::image_ink::ImageInk;
+use npr_harness::light::{LightFrame, StyleLight, lights_in_world};
+use npr_harness::plan::Plan;
+use npr_harness::scene::Scene;
+use npr_harness::style::{Lines, PainterShade, Ramp2dSource, RampShade, RampSource, Shade, Style, style};
+use npr_mesh::{AlphaMode, Material, Wrap, embedded};
+use npr_toon::Bands;
+use npr_toon::half_lambert::HalfLambert;
+use npr_toon::normal::NormalUse;
+use npr_toon::ramp::{Ramp, RampBlend, RampStop};
+use npr_toon::row::{RampRow, TexelFilter};
+use npr_toon::source::{Light, LightPlace};
+use npr_toon::table::{Corner, Ramp2d, RampTable};
+
+const SIZE: (u32, u32) = (200, 120);
+
+/// A coarse torus, and before it cards seen from both sides: textured, of a material whose alpha is below a half, blended.
+fn scene() -> Scene {
+    let modes = [AlphaMode::Opaque, AlphaMode::Opaque, AlphaMode::Blend, AlphaMode::Mask { cutoff: 0.3 }];
+    let mut model = cards(4, 0.8, |n| Material {
+        texture: (n % 2 == 1).then_some(0),
+        ..plain(Vec4::new(0.9, 0.6, 0.3, 0.45 + 0.15 * n as f32), modes[n as usize], true)
+    });
+    // Normals that are spread, so that none of the ways to use them is like another.
+    for (normal, position) in model.normals.iter_mut().zip(&model.positions) {
+        *normal = (*normal + 1.6 * Vec3::new(position.y, -position.y, 0.0)).normalize();
+    }
+    // `append` counts textures on.
+    for material in &mut model.materials {
+        material.texture = material.texture.map(|_| 0);
+    }
+    model.textures = vec![waves(32, 32, [Wrap::Repeat; 2], true)];
+    let torus = embedded::torus(1.0, 0.55, 10, 6);
+    let white = plain(Vec4::splat(0.8), AlphaMode::Opaque, false);
+    model.append(&embedded::placed(
+        torus,
+        Mat4::from_translation(Vec3::new(1.9, 0.1, 1.2)) * Mat4::from_rotation_x(0.9),
+        white,
+    ));
+    Scene::new(model)
+}
+
+fn camera(scene: &Scene, fov_y_rad: Option<f64>) -> Camera {
+    let framing = Framing { yaw_rad: 0.35, pitch_rad: 0.3, fov_y_rad, distance: 1.0 };
+    Camera::framed(scene.corners(), f64::from(SIZE.0) / f64::from(SIZE.1), &framing)
+}
+
+fn stops(blend: RampBlend) -> Ramp {
+    let stop = |at, r, g, b| RampStop { at, color: Vec3::new(r, g, b) };
+    Ramp { stops: vec![stop(0.0, 0.2, 0.15, 0.4), stop(0.3, 0.5, 0.3, 0.5), stop(0.75, 1.0, 0.95, 0.8)], blend }
+}
+
+fn table(filter: TexelFilter) -> RampTable {
+    let ramps = Ramp2d { a: stops(RampBlend::Smooth), b: stops(RampBlend::Smooth), corner: None };
+    RampTable::from_ramps(&ramps, UVec2::new(7, 5), filter).expect("a table")
+}
+
+fn row(filter: TexelFilter) -> RampRow {
+    RampRow::from_ramp(&stops(RampBlend::Smooth), 9, -1.0, 1.0, filter).expect("a row")
+}
+
+/// Name, shade, lights.
+fn cases() -> Vec<(&'static str, Shade, Vec<StyleLight>)> {
+    let key = StyleLight::KEY;
+    let dim = StyleLight { light: Light { brightness: 0.7, color: Vec3::new(1.0, 0.8, 0.6), ..key.light }, ..key };
+    let lamp = StyleLight {
+        light: Light {
+            brightness: 1.3,
+            color: Vec3::new(0.7, 0.8, 1.0),
+            ..Light::positional(Vec3::new(0.6, -0.2, 0.7))
+        },
+        frame: LightFrame::View,
+    };
+    let there = StyleLight { light: Light::positional(Vec3::new(2.5, 1.0, 1.5)), frame: LightFrame::World };
+    let ramp = |ramp, half_lambert| Shade::Ramp(RampShade { ramp, half_lambert });
+    let painter = |ramp, material_by_alpha| Shade::Painter(PainterShade { ramp, light_scale: 0.6, material_by_alpha });
+    let corner = Some(Corner { threshold: 0.9, color: Vec3::new(1.0, 0.9, 0.9) });
+    let hard = || Ramp2dSource::Ramps(Ramp2d { a: stops(RampBlend::Hard), b: stops(RampBlend::Hard), corner });
+    let smooth = stops(RampBlend::Smooth);
+    let twice = Ramp2dSource::Ramps(Ramp2d { a: smooth.clone(), b: stops(RampBlend::Hard), corner: None });
+    let aliased = Bands { antialias: false, ..Bands::default() };
+    let half = Some(HalfLambert::HALF_LIFE);
+    vec![
+        ("Lambert, one lamp", Shade::Lambert { ambient: 0.2 }, vec![lamp]),
+        ("bands", Shade::Toon(Bands::default()), vec![key]),
+        ("bands, dim", Shade::Toon(Bands { highlight: None, ..Bands::default() }), vec![dim]),
+        ("bands, a lamp", Shade::Toon(Bands::default()), vec![there]),
+        ("bands, two lights as one", Shade::Toon(Bands::default()), vec![dim, lamp]),
+        ("bands, aliased", Shade::Toon(aliased), vec![key]),
+        ("hard ramp", ramp(RampSource::Stops(stops(RampBlend::Hard)), None), vec![key]),
+        ("smooth ramp, half-Lambert", ramp(RampSource::Stops(smooth), half), vec![lamp]),
+        (
+            "hard ramp, squared half-Lambert",
+            ramp(RampSource::Stops(stops(RampBlend::Hard)), Some(HalfLambert::SOURCE)),
+            vec![dim],
+        ),
+        ("row, nearest", ramp(RampSource::Image(row(TexelFilter::Nearest)), None), vec![key]),
+        ("row, linear", ramp(RampSource::Image(row(TexelFilter::Linear)), None), vec![there]),
+        ("two lights, hard", painter(hard(), false), vec![dim, lamp]),
+        ("two lights, by alpha", painter(hard(), true), vec![lamp, key]),
+        ("two lights, smooth and hard", painter(twice, false), vec![there, dim]),
+        ("table, nearest", painter(Ramp2dSource::Image(table(TexelFilter::Nearest)), false), vec![key, dim]),
+        ("table, linear", painter(Ramp2dSource::Image(table(TexelFilter::Linear)), false), vec![lamp, there]),
+        ("painter, one light", painter(hard(), false), vec![dim]),
+        ("Gooch", Shade::Gooch(Gooch::default()), vec![key]),
+        ("Gooch, a lamp", Shade::Gooch(Gooch { tones: Tones::Listing7, ..Gooch::default() }), vec![lamp]),
+    ]
+}
+
+fn of(shade: Shade, lights: Vec<StyleLight>, normals: NormalUse, lines: Option<Lines>) -> Style {
+    Style { shade, lights, normals, lines, ..style("toon").expect("a style of this crate") }
+}
+
+/// Each model with each use of normals agrees with its reference and with no other case's.
+#[test]
+fn every_light_model_is_the_same_on_both() {
+    let Some(executor) = device() else { return };
+    let scene = scene();
+    for fov_y_rad in [Some(0.7), None] {
+        let camera = camera(&scene, fov_y_rad);
+        let mut before = None;
+        for (number, (name, shade, lights)) in cases().into_iter().enumerate() {
+            // In a parallel view one use of normals, of half of the cases.
+            let all = [NormalUse::PerPixel, NormalUse::Interpolated, NormalUse::PerVertex];
+            for normals in all.into_iter().filter(|&n| fov_y_rad.is_some() || n as usize + 3 == number % 6) {
+                let lines = number.is_multiple_of(4).then(|| Lines::Image(ImageInk::default()));
+                let style = of(shade.clone(), lights.clone(), normals, lines);
+                let plan = Plan::new(&scene, &style, &camera).expect("a plan");
+                let actual = executor.render(&scene, &style, &plan, &camera, SIZE, 1, &|_| {}).expect("a picture");
+                let shot = Shot { scene: &scene, style: &style, plan: &plan, camera: &camera, size: SIZE };
+                let mut reference = Reference::new(shot).expect("pictures");
+                let magnitude = magnitude(&plan);
+                let against = |reference: &Reference<'_>, actual: &Image| {
+                    compare(&reference.image, actual, &reference.exempt).expect("one size")
+                };
+                let mut compared = against(&reference, &actual);
+                if !agrees(&compared, magnitude) {
+                    reference.look_closer().expect("pictures");
+                    compared = against(&reference, &actual);
+                }
+                let (worst, share) = (compared.worst, compared.exempt_share());
+                println!("{name}, {normals:?}: {worst} of 255, {:.2} % exempt", share * 100.0);
+                assert!(agrees(&compared, magnitude), "{name}, {normals:?}: {worst}, {share}");
+                // Under a light from far away, N·L of interpolated normals is that of the vertices, interpolated.
+                let other = before.replace(actual).filter(|_| normals != NormalUse::PerVertex);
+                if let Some(before) = other {
+                    assert!(against(&reference, &before).worst > magnitude, "{name}, {normals:?}: as the one before");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn lights_are_where_their_frame_says() {
+    let scene = Scene::new(embedded::placed(
+        embedded::cube(),
+        Mat4::from_translation(Vec3::new(1.0, 2.0, 3.0)),
+        Material::default(),
+    ));
+    let camera = Camera {
+        eye: DVec3::new(11.0, 2.0, 3.0),
+        target: DVec3::new(1.0, 2.0, 3.0),
+        up: DVec3::Y,
+        projection: Projection::Perspective { fov_y_rad: 0.5 },
+        near: 0.1,
+    };
+    let place = |light: Light, frame| {
+        let lights = vec![StyleLight { light, frame }];
+        lights_in_world(&of(Shade::Paper, lights, NormalUse::PerPixel, None), &scene, &camera)[0].place
+    };
+    // The eye is at +X: right is -Z, and back is +X. The box's half diagonal is the root of 3.
+    let direction = |to_light: Vec3| LightPlace::Directional { to_light };
+    assert_eq!(place(Light::directional(Vec3::Z * 3.0), LightFrame::View), direction(Vec3::X));
+    assert_eq!(place(Light::directional(Vec3::X), LightFrame::View), direction(Vec3::NEG_Z));
+    assert_eq!(place(Light::directional(Vec3::X * 2.0), LightFrame::World), direction(Vec3::X));
+    let LightPlace::Positional { position } = place(Light::positional(Vec3::Z), LightFrame::View) else { panic!() };
+    assert!(position.abs_diff_eq(Vec3::new(1.0 + 3f32.sqrt(), 2.0, 3.0), 1e-6), "{position}");
+    let at = Vec3::new(4.0, 5.0, 6.0);
+    assert_eq!(place(Light::positional(at), LightFrame::World), LightPlace::Positional { position: at });
+    // Two that cancel out leave no direction, and no error.
+    let both = [Vec3::X, Vec3::NEG_X].map(|v| StyleLight { light: Light::directional(v), frame: LightFrame::World });
+    let toon = of(Shade::Toon(Bands::default()), both.to_vec(), NormalUse::PerPixel, None);
+    assert_eq!(lights_in_world(&toon, &scene, &camera)[0].place, direction(Vec3::ZERO));
+    assert!(Plan::new(&scene, &toon, &camera).is_ok());
+}
