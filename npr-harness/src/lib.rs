@@ -1,6 +1,7 @@
 //! Scene, style and frame, on wgpu and on the CPU, checked against each other.
 #![warn(missing_docs)]
 
+pub mod band_truth;
 pub mod camera;
 pub mod check;
 pub mod color;
