@@ -14,7 +14,8 @@ struct GoochModel {
     padding_c: u32,
 }
 
-// Unit length; a zero vector stays zero.
+// Unit length; a zero vector stays zero. f32 has no squares of others: what is shorter than 1e-15 stays too short, and
+// what is longer than 1e19 becomes zero.
 fn gooch_unit(v: vec3<f32>) -> vec3<f32> {
     return v * inverseSqrt(max(dot(v, v), 1e-30));
 }

@@ -20,7 +20,7 @@
 //! The same functions under the same names, `gooch_`, stand here twice: in Rust in f64, the reference, and in [`WGSL`],
 //! a library without bindings or entry points to put in front of a shader. [`GoochUniform`] is what carries a
 //! [`Gooch`] from one to the other. The object's colour k_d is given with every point: one for the object, or a
-//! texture's.
+//! texture's. The example `wgpu_gooch` is such a shader, with all of wgpu that it takes.
 //!
 //! # Sources
 //!

@@ -99,8 +99,12 @@ pub enum ToonError {
         /// What it is.
         value: Vec3,
     },
-    /// A stop of a 2D ramp lies where no light reaches, or hides the stop before it.
-    #[error("stop {index} of a 2D ramp is at {value}: all but the first must be above 0 and at most 1")]
+    /// A stop of a 2D ramp lies where no light reaches, or hides the stop before it; or a smooth one begins below 0,
+    /// where the image has nothing.
+    #[error(
+        "stop {index} of a 2D ramp is at {value}: all but the first must be above 0 and at most 1, and the first of a \
+         smooth one not below 0"
+    )]
     StopOutside {
         /// Into [`crate::ramp::Ramp::stops`].
         index: usize,
@@ -116,7 +120,7 @@ pub enum ToonError {
         max: usize,
     },
     /// An image of a ramp has no texels, or another number of them than its size says.
-    #[error("an image of {width} by {height} texels cannot have {texels} texels")]
+    #[error("{texels} texels for an image of {width} by {height}: it must have as many as that, and at least one")]
     Texels {
         /// Columns.
         width: u32,
@@ -125,8 +129,8 @@ pub enum ToonError {
         /// How many texels there are.
         texels: usize,
     },
-    /// The ends of an image row are not finite and ascending.
-    #[error("a row from {from} to {to}: the ends must be finite, and the second above the first")]
+    /// The ends of an image row are not ascending, or are not finite, or their difference is not.
+    #[error("a row from {from} to {to}: the second end must be above the first, by a finite amount")]
     RowEnds {
         /// [`crate::row::RampRow::from`].
         from: f32,
@@ -145,16 +149,16 @@ pub enum ToonError {
         /// What it is.
         value: Vec3,
     },
-    /// A light has no direction: its vector is zero, NaN or infinite.
-    #[error("light {index} comes from {value}: a direction must be finite and not zero")]
+    /// A light has no direction in f32: its vector, or the square of its length, is zero or below 1e-30, NaN or infinite.
+    #[error("light {index} comes from {value}: a direction must have a length between 1e-15 and 1e19")]
     LightDirection {
         /// Into the lights.
         index: usize,
         /// What it is.
         value: Vec3,
     },
-    /// A light's position is NaN or infinite.
-    #[error("light {index} is at {value}, which is not finite")]
+    /// A light's position, or the square of its distance from the origin in f32, is NaN or infinite.
+    #[error("light {index} is at {value}, which is not finite, or further than 1e19 away")]
     LightPosition {
         /// Into the lights.
         index: usize,

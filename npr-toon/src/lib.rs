@@ -14,7 +14,9 @@
 //!
 //! The same things under the same names stand here twice: as Rust functions in f64, the reference, and in
 //! [`WGSL`], a library without bindings or entry points to put in front of a shader. [`ToonUniform`] is what
-//! carries [`Bands`] from one to the other. Functions that stand in both begin with `toon_`.
+//! carries [`Bands`] from one to the other. Functions that stand in both begin with `toon_`; [`row::toon_row`],
+//! [`table::toon_table`] and [`normal::toon_n_dot_l_across`], which read texels and vertices, stand in Rust only.
+//! The example `wgpu_toon` is such a shader, with all of wgpu that it takes.
 //!
 //! - [`Bands`], [`toon_shade`]: steps of N·L and a highlight, here at the crate's root.
 //! - [`ramp`], [`row`]: any colours by light, computed from stops or read from an image.
@@ -68,7 +70,7 @@ mod uniform;
 pub use bands::{Bands, Highlight};
 pub use error::ToonError;
 pub use light::{
-    MIN_WIDTH, toon_band_hard, toon_band_smooth, toon_coverage, toon_half, toon_highlight, toon_n_dot_h,
+    MIN_SUM, MIN_WIDTH, toon_band_hard, toon_band_smooth, toon_coverage, toon_half, toon_highlight, toon_n_dot_h,
     toon_n_dot_h_interpolated, toon_n_dot_h_of, toon_n_dot_l, toon_n_dot_l_interpolated, toon_shade, toon_width,
 };
 pub use uniform::{MAX_BANDS, ToonUniform};

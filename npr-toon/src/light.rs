@@ -7,6 +7,10 @@ use crate::Bands;
 /// Below this change across a pixel a border is hard: 2^-23, the spacing of f32 just above 1.
 pub const MIN_WIDTH: f64 = f32::EPSILON as f64;
 
+/// The least length of the sum of two unit vectors that has a direction. In f32 the sum of opposite ones is a few
+/// roundings long, not zero, and its direction would be that of the roundings: a highlight where there should be none.
+pub const MIN_SUM: f64 = 1e-6;
+
 /// 0..=1; not a number becomes 0.
 pub(crate) fn saturate(x: f64) -> f64 {
     if x > 0.0 { x.min(1.0) } else { 0.0 }
@@ -25,9 +29,11 @@ pub fn toon_n_dot_l_interpolated(normal: DVec3, to_light: DVec3) -> f64 {
     normal.dot(to_light)
 }
 
-/// The unit vector halfway between the directions to the light and to the eye; 0 where these are opposite.
+/// The unit vector halfway between the directions to the light and to the eye; 0 where these are opposite, to within
+/// [`MIN_SUM`].
 pub fn toon_half(to_light: DVec3, to_eye: DVec3) -> DVec3 {
-    (to_light.normalize_or_zero() + to_eye.normalize_or_zero()).normalize_or_zero()
+    let sum = to_light.normalize_or_zero() + to_eye.normalize_or_zero();
+    if sum.length_squared() > MIN_SUM * MIN_SUM { sum.normalize() } else { DVec3::ZERO }
 }
 
 /// N·H at a pixel, -1..=1: all vectors are brought to unit length first. A zero vector gives 0.

@@ -10,9 +10,9 @@
 //!
 //! # What the listings leave open
 //!
-//! - u and v come out of listing 2 as they are, −b..=b for a light of brightness b, and the sampler clamps them. So
-//!   do the ramps here. Derivatives for borders are taken of these: once clamped, they would be too small beside the
-//!   terminator.
+//! - u and v come out of listing 2 as they are, −b..=b for a light of brightness b, and the sampler clamps them. The
+//!   ramps here change nowhere outside of 0..=1, which is the same. Derivatives for borders are taken of these: once
+//!   clamped, they would be too small beside the terminator.
 //! - The listing's lights are directional though their registers are called `LIGHT_POSITION`. Here both are possible.
 //! - The normal is brought to unit length by a cube map of 8 bits a component; here exactly.
 //! - `c1` is defined, "black", and never read.

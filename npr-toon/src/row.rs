@@ -7,9 +7,10 @@
 //! - *Linear*: with s = t − 1/2 the texels floor(s) and floor(s) + 1, mixed by s − floor(s).
 //!
 //! That is what Vulkan, Direct3D and Metal do with a normalised coordinate t/n, so a sampler set to clamp-to-edge gives
-//! the same, but for two roundings of its own: it may count the share in steps of 1/256, and a t within a rounding of
-//! a texel's border may fall on the other side. [`crate::WGSL`] has no bindings: it says which texels to load
-//! (`toon_row_nearest`, `toon_row_taps`), and `textureLoad` and `mix` do the rest, with the share in f32.
+//! the same, but for roundings of its own: it may count the share in steps of 1/256, it may round what it mixes to 8
+//! bits, and a t within a rounding of a texel's border may fall on the other side. (Mesa's software driver is up to 1/255
+//! off in a row and 1.5/255 in a table, between black and white.) [`crate::WGSL`] has no bindings: it says which texels
+//! to load (`toon_row_nearest`, `toon_row_taps`), and `textureLoad` and `mix` do the rest, with the share in f32.
 //!
 //! Texels are display-referred; put them into a `Rgba8Unorm` texture, not `Rgba8UnormSrgb`. Alpha is not read.
 
@@ -54,13 +55,14 @@ impl RampRow {
         Ok(row)
     }
 
-    /// Refuses a row without texels, and ends that are not finite and ascending.
+    /// Refuses a row without texels, and ends that are not ascending or not a finite number apart.
     pub fn validate(&self) -> Result<(), ToonError> {
         if self.texels.is_empty() {
             return Err(ToonError::Texels { width: 0, height: 1, texels: 0 });
         }
         let (from, to) = (self.from, self.to);
-        if from.is_finite() && to.is_finite() && from < to { Ok(()) } else { Err(ToonError::RowEnds { from, to }) }
+        let length = to - from;
+        if length > 0.0 && length.is_finite() { Ok(()) } else { Err(ToonError::RowEnds { from, to }) }
     }
 }
 

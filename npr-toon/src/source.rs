@@ -46,18 +46,20 @@ impl Light {
     }
 }
 
-/// Refuses directions of no length, and what is negative or not finite; the first found.
+/// Refuses directions of no length, and what is negative or not finite, or whose square is not; the first found.
 pub fn validate(lights: &[Light]) -> Result<(), ToonError> {
     for (index, light) in lights.iter().enumerate() {
         match light.place {
             LightPlace::Directional { to_light: value } => {
                 // What a shader can normalise, too: see `toon_unit`.
-                if !value.is_finite() || value.length_squared() < 1e-30 || !value.length_squared().is_finite() {
+                let squared = value.length_squared();
+                if squared < 1e-30 || !squared.is_finite() {
                     return Err(ToonError::LightDirection { index, value });
                 }
             }
             LightPlace::Positional { position: value } => {
-                if !value.is_finite() {
+                // So far away the shader's light would go out.
+                if !value.length_squared().is_finite() {
                     return Err(ToonError::LightPosition { index, value });
                 }
             }

@@ -17,11 +17,12 @@ use glam::{DVec2, DVec3, UVec2, Vec3};
 
 use crate::error::is_color;
 use crate::light::saturate;
-use crate::ramp::{Ramp, RampUniform, toon_ramp};
+use crate::ramp::{Ramp, RampBlend, RampUniform, toon_ramp};
 use crate::row::{TexelFilter, from_texel, to_texel, toon_row_nearest, toon_row_taps};
 use crate::{Bands, ToonError, toon_coverage};
 
-/// A 2D ramp as two of one dimension. Their stops lie between 0 and 1, but for the first, which may lie lower.
+/// A 2D ramp as two of one dimension. Their stops lie between 0 and 1, but for the first of a hard one, which may lie
+/// lower: below 0 there is one colour.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ramp2d {
     /// What the first light alone gives.
@@ -55,8 +56,11 @@ impl Ramp2d {
     pub fn validate(&self) -> Result<(), ToonError> {
         for ramp in [&self.a, &self.b] {
             ramp.validate()?;
-            for (index, stop) in ramp.stops.iter().enumerate().skip(1) {
-                if !(stop.at > 0.0 && stop.at <= 1.0) {
+            // One stop alone is everywhere.
+            let begins_below = ramp.blend == RampBlend::Smooth && ramp.stops.len() > 1 && ramp.stops[0].at < 0.0;
+            for (index, stop) in ramp.stops.iter().enumerate() {
+                let is_outside = if index == 0 { begins_below } else { !(stop.at > 0.0 && stop.at <= 1.0) };
+                if is_outside {
                     return Err(ToonError::StopOutside { index, value: stop.at });
                 }
             }
@@ -77,8 +81,10 @@ impl Ramp2d {
 /// value: below 0 is dark, above 1 as bright as it gets.
 ///
 /// `widths` are the changes of u and v across the pixel; each ramp is antialiased by its own, and the corner by the
-/// most that its distance can change. Where two steps cross in one pixel the lighter of two means is not the mean of
-/// the lighter ones; everywhere else it is exact.
+/// most that its distance can change. Where one step is in a pixel, its share is exact. Where two cross, be they of
+/// two ramps or a ramp's and the corner's, the lighter of two means is not the mean of the lighter ones, nor a
+/// product of shares the share of both; and the corner's border may be wider than a pixel where u and v change in
+/// different directions.
 pub fn toon_ramp_2d(ramps: &Ramp2d, uv: DVec2, widths: DVec2) -> DVec3 {
     let shade = toon_ramp(&ramps.a, uv.x, widths.x).max(toon_ramp(&ramps.b, uv.y, widths.y));
     let Some(corner) = ramps.corner else { return shade };
@@ -86,11 +92,13 @@ pub fn toon_ramp_2d(ramps: &Ramp2d, uv: DVec2, widths: DVec2) -> DVec3 {
     shade * (1.0 - inside) + corner.color.as_dvec3() * inside
 }
 
-/// The share of a pixel, 0..=1, that is in the corner: where |uv|, each clamped to 0..=1, reaches `threshold`.
+/// The share of a pixel, 0..=1, that is in the corner: where |uv|, each clamped to 0..=1, reaches `threshold`. What is
+/// clamped changes no more, and takes no part in the border's width.
 pub fn toon_corner(uv: DVec2, widths: DVec2, threshold: f64) -> f64 {
     let reach = DVec2::new(saturate(uv.x), saturate(uv.y));
     let length = reach.length();
-    let width = if length > 0.0 { reach.dot(widths) / length } else { 0.0 };
+    let moving = DVec2::select(uv.cmplt(DVec2::ONE), widths, DVec2::ZERO);
+    let width = if length > 0.0 { reach.dot(moving) / length } else { 0.0 };
     toon_coverage(length, threshold, width)
 }
 

@@ -11,7 +11,9 @@ struct ToonRamp2d {
 fn toon_corner(uv: vec2<f32>, widths: vec2<f32>, threshold: f32) -> f32 {
     let reach = saturate(uv);
     let squared = max(dot(reach, reach), 1e-30);
-    return toon_coverage(sqrt(squared), threshold, dot(reach, widths) * inverseSqrt(squared));
+    // What is clamped does not change.
+    let moving = select(vec2<f32>(0.0), widths, uv < vec2<f32>(1.0));
+    return toon_coverage(sqrt(squared), threshold, dot(reach, moving) * inverseSqrt(squared));
 }
 
 // The shade at the reach of two lights: the lighter of their ramps', and in the corner its own.

@@ -7,6 +7,8 @@ const TOON_MAX_BANDS: u32 = 8u;
 override toon_bands: u32 = TOON_MAX_BANDS;
 // Below this change across a pixel a border is hard: 2^-23.
 const TOON_MIN_WIDTH: f32 = 1.1920928955078125e-7;
+// The least length of a sum of two unit vectors that has a direction.
+const TOON_MIN_SUM: f32 = 1e-6;
 
 struct ToonBands {
     // From dark to light: rgb the tone, w the N.L where the next band begins (far above 1 in the last).
@@ -23,7 +25,8 @@ struct ToonBands {
     antialias: u32,
 }
 
-// Unit length; a zero vector stays zero.
+// Unit length; a zero vector stays zero. f32 has no squares of others: what is shorter than 1e-15 stays too short, and
+// what is longer than 1e19 becomes zero.
 fn toon_unit(v: vec3<f32>) -> vec3<f32> {
     return v * inverseSqrt(max(dot(v, v), 1e-30));
 }
@@ -36,17 +39,20 @@ fn toon_n_dot_l_interpolated(normal: vec3<f32>, to_light: vec3<f32>) -> f32 {
     return dot(normal, to_light);
 }
 
+// Zero where the light is opposite the eye: what is left of the sum there are roundings.
 fn toon_half(to_light: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
-    return toon_unit(toon_unit(to_light) + toon_unit(to_eye));
+    let sum = toon_unit(to_light) + toon_unit(to_eye);
+    return select(vec3<f32>(0.0), toon_unit(sum), dot(sum, sum) > TOON_MIN_SUM * TOON_MIN_SUM);
 }
 
 fn toon_n_dot_h(normal: vec3<f32>, to_light: vec3<f32>, to_eye: vec3<f32>) -> f32 {
     return dot(toon_unit(normal), toon_half(to_light, to_eye));
 }
 
-// N.H of unit vectors, without making H: |L + E| is sqrt(2 + 2 L.E).
+// N.H of unit vectors, without making H: |L + E| is sqrt(2 + 2 L.E). 0 where L is opposite E.
 fn toon_n_dot_h_of(n_dot_l: f32, n_dot_e: f32, l_dot_e: f32) -> f32 {
-    return (n_dot_l + n_dot_e) * inverseSqrt(max(2.0 + 2.0 * l_dot_e, 1e-30));
+    let squared = 2.0 + 2.0 * l_dot_e;
+    return select(0.0, (n_dot_l + n_dot_e) * inverseSqrt(max(squared, 1e-30)), squared > 0.0);
 }
 
 fn toon_n_dot_h_interpolated(normal: vec3<f32>, half_vector: vec3<f32>) -> f32 {
@@ -64,7 +70,7 @@ fn toon_pixel_width(x: f32) -> f32 {
 }
 
 // The share of the pixel where x is at least the threshold. All but the comparison's one multiplication and addition
-// depends on the width alone, so a compiler does it once for all borders.
+// depends on the width alone, so a compiler does it once for all borders. (Without a ramp, 1e-30 below counts as at.)
 fn toon_coverage(x: f32, threshold: f32, width: f32) -> f32 {
     let ramp = width > TOON_MIN_WIDTH;
     let slope = select(1e30, 1.0 / max(width, TOON_MIN_WIDTH), ramp);

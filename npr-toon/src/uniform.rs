@@ -14,8 +14,8 @@ const UNREACHED: f32 = 1e4;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct ToonUniform {
-    /// From dark to light: the tone, and N·L where the next band begins. In the last band in use, and in those that
-    /// are not, this is 10,000, which no pixel reaches.
+    /// From dark to light: the tone, and N·L where the next band begins. In the last band in use this is 10,000, which
+    /// no pixel reaches; those that are not in use repeat it.
     pub bands: [[f32; 4]; MAX_BANDS],
     /// The highlight's colour, and its threshold on N·H.
     pub highlight: [f32; 4],
@@ -36,8 +36,9 @@ impl ToonUniform {
         if bands.tones.len() > MAX_BANDS {
             return Err(ToonError::TooManyTones { tones: bands.tones.len(), max: MAX_BANDS });
         }
+        let last = bands.tones[bands.tones.len() - 1];
         let mut uniform = Self {
-            bands: [[0.0, 0.0, 0.0, UNREACHED]; MAX_BANDS],
+            bands: [last.extend(UNREACHED).to_array(); MAX_BANDS],
             count: bands.tones.len() as u32,
             antialias: u32::from(bands.antialias),
             ..Self::zeroed()

@@ -70,6 +70,12 @@ fn vectors() {
     // No direction at all is not NaN.
     assert_eq!(toon_n_dot_l(DVec3::ZERO, l), 0.0);
     assert_eq!(toon_n_dot_h(n, l, -l), 0.0);
+    // Opposite but for what f32 makes of unit vectors: the roundings' direction is none.
+    let rounded = DVec3::new(0.0, 0.0, f64::from(1.0_f32.next_down()));
+    assert_eq!(toon_half(DVec3::Z, DVec3::NEG_Z + DVec3::X * 5e-7), DVec3::ZERO);
+    assert_eq!(toon_half(-rounded * 2.773408, DVec3::Z + DVec3::Y * 6e-8), DVec3::ZERO);
+    assert!(toon_half(DVec3::Z, DVec3::NEG_Z + DVec3::X * 1e-5).x > 0.99);
+    assert_eq!(toon_n_dot_h_of(-0.2064291, 0.20689194, -1.0), 0.0);
 }
 
 /// The mean of the hard bands over a pixel, by 256 samples of an N·L that is linear across it.

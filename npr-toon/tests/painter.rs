@@ -76,7 +76,7 @@ fn three_quarters_and_twice_is_one_and_a_half() {
 
 #[test]
 fn listing_2_by_hand() {
-    // Material (0.8, 0.4, 0.2) on the shade 0.6, under a light of (1, 0.8, 0.5): 0.8 * 0.6 * 1 * 1.5 = 0.72, and so on.
+    // Material (0.8, 0.4, 0.2) on the shade 0.6, under a light of (1, 0.75, 0.5): 0.8 * 0.6 * 1 * 1.5 = 0.72, and so on.
     let painter = Painter::new(lights(&[(Vec3::Z, Vec3::new(1.0, 0.75, 0.5), 1.0)])).unwrap();
     let color = toon_paint(&painter, DVec3::splat(0.6), DVec4::new(0.8, 0.4, 0.2, 0.9));
     assert!(color.abs_diff_eq(DVec4::new(0.72, 0.27, 0.09, 0.9), 1e-12), "{color}");
@@ -136,6 +136,10 @@ fn what_is_refused() {
     }
     let nowhere = painter(vec![Light::positional(Vec3::new(0.0, f32::NAN, 0.0))]);
     assert!(matches!(nowhere, Err(ToonError::LightPosition { index: 0, .. })));
+    // Where f32 has no square of the distance.
+    let far = painter(vec![Light::positional(Vec3::Y * 1e20)]);
+    assert!(matches!(far, Err(ToonError::LightPosition { index: 0, .. })));
+    assert_eq!(painter(vec![Light::positional(Vec3::Y * 1e18)]), Ok(()));
     let color = Vec3::new(1.0, -0.5, 0.0);
     assert_eq!(painter(vec![Light { color, ..white }]), Err(ToonError::LightColor { index: 0, value: color }));
     let dim = |brightness| painter(vec![white, Light { brightness, ..white }]);

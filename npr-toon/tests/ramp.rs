@@ -145,12 +145,37 @@ fn the_lighter_of_two_ramps_shows() {
 }
 
 #[test]
+fn a_clamped_light_does_not_blur_the_corner() {
+    // u is beyond 1 and steep; the border is where v crosses 0.75, as sqrt(1 + 0.75²) is 1.25.
+    let corner = |v: f64, widths| toon_corner(DVec2::new(1.2, v), widths, 1.25);
+    assert_eq!(corner(0.75, DVec2::new(0.1, 0.0)), 1.0);
+    // Half a pixel above, of which the length changes by 0.75 / 1.25 of v.
+    let widths = DVec2::new(0.1, 0.01);
+    assert_abs_diff_eq!(corner(0.7525, widths), 0.75, epsilon = 1e-3);
+    assert_eq!((corner(0.744, widths), corner(0.756, widths)), (0.0, 1.0));
+}
+
+#[test]
+fn the_image_is_the_2d_ramp_outside_of_0_to_1() {
+    let smooth = ramp(RampBlend::Smooth, &[(0.0, 0.2), (1.0, 0.8)]);
+    let ramps = Ramp2d { b: smooth, corner: None, ..two() };
+    ramps.validate().unwrap();
+    let table = RampTable::from_ramps(&ramps, UVec2::new(64, 64), TexelFilter::Nearest).unwrap();
+    for (u, v) in [(-0.7, -0.7), (-0.1, 1.7), (1.4, -0.2), (2.0, 2.0)] {
+        let uv = DVec2::new(u, v);
+        let apart = toon_ramp_2d(&ramps, uv, DVec2::ZERO) - toon_table(&table, uv);
+        // Half a step of 8 bits, and half a texel of the gradient.
+        assert!(apart.abs().max_element() < 0.5 / 255.0 + 0.5 * 0.6 / 64.0 + 1e-6, "{uv}: {apart}");
+    }
+}
+
+#[test]
 fn table_is_dark_at_its_upper_left() {
     let table = RampTable::from_ramps(&two(), UVec2::new(4, 2), TexelFilter::Nearest).unwrap();
-    // Columns at u = 1/8, 3/8, 5/8, 7/8; rows at v = 1/4, 3/4. Only (7/8, 3/4) and (5/8, 3/4) are in the corner.
+    // Columns at u = 1/8, 3/8, 5/8, 7/8; rows at v = 1/4, 3/4. (7/8, 1/4), (5/8, 3/4) and (7/8, 3/4) are in the corner:
     let gray = |value: u8| [value, value, value, 255];
     let expected = [128, 128, 191, 255, 128, 128, 255, 255].map(gray);
-    // (7/8, 1/4) has length 0.91, (5/8, 3/4) 0.98, (3/8, 3/4) 0.84.
+    // their lengths are 0.91, 0.98 and 1.15; that of (3/8, 3/4) is 0.84.
     assert_eq!(table.texels, expected);
     assert_eq!(toon_table(&table, DVec2::new(-1.0, 2.0)), DVec3::splat(128.0 / 255.0));
     let linear = RampTable { filter: TexelFilter::Linear, ..table };
@@ -194,6 +219,8 @@ fn what_is_refused() {
     assert_eq!(row(0, 0.0, 1.0), Err(ToonError::Texels { width: 0, height: 1, texels: 0 }));
     assert_eq!(row(2, 1.0, 1.0), Err(ToonError::RowEnds { from: 1.0, to: 1.0 }));
     assert!(matches!(row(2, f32::NAN, 1.0), Err(ToonError::RowEnds { .. })));
+    // Too far apart for f32.
+    assert!(matches!(row(2, -3e38, 3e38), Err(ToonError::RowEnds { .. })));
 
     let table = |x, y| RampTable::from_ramps(&two(), UVec2::new(x, y), TexelFilter::Nearest).map(|_| ());
     assert_eq!(table(0, 4), Err(ToonError::Texels { width: 0, height: 4, texels: 0 }));
@@ -203,6 +230,10 @@ fn what_is_refused() {
     // A border that no light can be below of.
     assert_eq!(Ramp2d::from_bands(&Bands::hard_shading()), Err(ToonError::StopOutside { index: 1, value: 0.0 }));
     assert!(Ramp2d::from_bands(&Bands::listing_3()).is_ok());
+    // Below 0 the image has no gradient.
+    let smooth = |of: &[(f32, f32)]| Ramp2d { b: ramp(RampBlend::Smooth, of), ..two() }.validate();
+    assert_eq!(smooth(&[(-0.5, 0.0), (1.0, 1.0)]), Err(ToonError::StopOutside { index: 0, value: -0.5 }));
+    assert_eq!((smooth(&[(0.0, 0.0), (1.0, 1.0)]), smooth(&[(-0.5, 0.0)])), (Ok(()), Ok(())));
     let corner = |threshold, x| Ramp2d { corner: Some(Corner { threshold, color: Vec3::new(x, 0.0, 0.0) }), ..two() };
     assert_eq!(corner(0.0, 1.0).validate(), Err(ToonError::CornerThreshold { value: 0.0 }));
     assert!(matches!(corner(f32::NAN, 1.0).validate(), Err(ToonError::CornerThreshold { .. })));

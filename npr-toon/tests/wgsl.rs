@@ -8,7 +8,7 @@ use npr_toon::border::{MAX_BORDER, MIN_BORDER};
 use npr_toon::painter::PainterUniform;
 use npr_toon::ramp::{MAX_STOPS, Ramp, RampBlend, RampUniform, TOON_STOPS_OVERRIDE};
 use npr_toon::table::{Corner, Ramp2d, Ramp2dUniform};
-use npr_toon::{Bands, MAX_BANDS, MIN_WIDTH, TOON_BANDS_OVERRIDE, ToonError, ToonUniform, WGSL};
+use npr_toon::{Bands, MAX_BANDS, MIN_SUM, MIN_WIDTH, TOON_BANDS_OVERRIDE, ToonError, ToonUniform, WGSL};
 
 fn validated(source: &str) -> Module {
     let module = naga::front::wgsl::parse_str(source).unwrap_or_else(|e| panic!("{}", e.emit_to_string(source)));
@@ -99,6 +99,7 @@ fn constants_are_the_same() {
         format!("const TOON_MAX_BANDS: u32 = {MAX_BANDS}u;"),
         format!("const TOON_MAX_STOPS: u32 = {MAX_STOPS}u;"),
         format!("const TOON_MIN_WIDTH: f32 = {MIN_WIDTH:e};"),
+        format!("const TOON_MIN_SUM: f32 = {MIN_SUM:e};"),
         format!("const TOON_MIN_BORDER: f32 = {MIN_BORDER:e};"),
         format!("const TOON_MAX_BORDER: f32 = {MAX_BORDER};"),
     ] {
@@ -188,7 +189,8 @@ fn packs_ramps() {
 fn packs_bands() {
     let uniform = ToonUniform::new(&Bands::chapter_text()).unwrap();
     assert_eq!(uniform.bands[0], [0.2, 0.2, 0.2, 0.1]);
-    assert_eq!(uniform.bands[1], [0.6, 0.6, 0.6, 1e4]);
+    // Those not in use repeat the last tone.
+    assert_eq!((uniform.bands[1], uniform.bands[7]), ([0.6, 0.6, 0.6, 1e4], [0.6, 0.6, 0.6, 1e4]));
     assert_eq!(uniform.highlight, [0.9, 0.9, 1.0, 0.8]);
     assert_eq!((uniform.count, uniform.highlight_strength), (2, 1.0));
     assert_eq!((uniform.highlight_lit_only, uniform.antialias), (0, 0));
