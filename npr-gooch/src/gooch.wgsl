@@ -42,12 +42,17 @@ fn gooch_tone(model: GoochModel, k_d: vec3<f32>, n_dot_l: f32) -> vec3<f32> {
     return mix(gooch_cool(model, k_d), gooch_warm(model, k_d), gooch_weight(n_dot_l));
 }
 
-// The cosine between the light's mirrored direction and the direction to the eye.
+// The cosine between the light's mirrored direction and the direction to the eye, of unit vectors or zeros. It is found
+// from the distance between the two, (|R|^2 + |E|^2 - |R - E|^2) / 2, which where they are close, and the highlight's
+// power steep, is small, and so are its roundings.
+fn gooch_r_dot_e_of(n: vec3<f32>, l: vec3<f32>, e: vec3<f32>) -> f32 {
+    let apart = 2.0 * dot(n, l) * n - l - e;
+    return 0.5 * (round(dot(l, l)) + round(dot(e, e)) - dot(apart, apart));
+}
+
+// The same of vectors of any length.
 fn gooch_r_dot_e(normal: vec3<f32>, to_light: vec3<f32>, to_eye: vec3<f32>) -> f32 {
-    let n = gooch_unit(normal);
-    let l = gooch_unit(to_light);
-    let e = gooch_unit(to_eye);
-    return 2.0 * dot(n, l) * dot(n, e) - dot(l, e);
+    return gooch_r_dot_e_of(gooch_unit(normal), gooch_unit(to_light), gooch_unit(to_eye));
 }
 
 // How opaque the highlight is.

@@ -64,8 +64,8 @@ mod uniform;
 pub use error::GoochError;
 pub use model::{Gooch, Highlight, LISTING_7_K_D, Tones};
 pub use shade::{
-    gooch_aggregate, gooch_cool, gooch_highlight, gooch_n_dot_l, gooch_over, gooch_r_dot_e, gooch_shade, gooch_tone,
-    gooch_warm, gooch_weight,
+    gooch_aggregate, gooch_cool, gooch_highlight, gooch_n_dot_l, gooch_over, gooch_r_dot_e, gooch_r_dot_e_of,
+    gooch_shade, gooch_tone, gooch_warm, gooch_weight,
 };
 pub use uniform::GoochUniform;
 

@@ -37,7 +37,11 @@ pub fn gooch_tone(model: &Gooch, k_d: DVec3, n_dot_l: f64) -> DVec3 {
 /// R·E: the cosine between the light's mirrored direction R = 2 (N·L) N − L and the direction to the eye, of vectors
 /// of any length. Of use where N·L is above 0 only.
 pub fn gooch_r_dot_e(normal: DVec3, to_light: DVec3, to_eye: DVec3) -> f64 {
-    let (n, l, e) = (normal.normalize_or_zero(), to_light.normalize_or_zero(), to_eye.normalize_or_zero());
+    gooch_r_dot_e_of(normal.normalize_or_zero(), to_light.normalize_or_zero(), to_eye.normalize_or_zero())
+}
+
+/// The same of unit vectors.
+pub fn gooch_r_dot_e_of(n: DVec3, l: DVec3, e: DVec3) -> f64 {
     2.0 * n.dot(l) * n.dot(e) - l.dot(e)
 }
 

@@ -73,8 +73,7 @@ fn light_at(n: vec3<f32>, at: vec3<f32>, eye: vec3<f32>) -> vec2<f32> {
         return vec2<f32>(reach_of_first(n_dot_l), toon_reach(dot(n, to_second_light(at)), lights.brightness.y));
     }
     if surface_shade == SHADE_GOOCH {
-        let e = toon_unit(eye);
-        return vec2<f32>(n_dot_l, 2.0 * n_dot_l * dot(n, e) - dot(l, e));
+        return vec2<f32>(n_dot_l, gooch_r_dot_e_of(n, l, toon_unit(eye)));
     }
     if surface_shade == SHADE_TOON && surface_highlight {
         let e = toon_unit(eye);
