@@ -28,11 +28,20 @@ const FINE: usize = 16;
 const STEPS: usize = 64;
 /// What is judged lies within this distance of a border, and farther than this from any silhouette, px.
 const NEAR_PX: f64 = 2.0;
-/// More than this between two samples that are 1/16 px apart is no band's border but a crease.
+/// So much between the N·L of two samples that are 1/16 px apart is no band's border but a crease.
 const LARGEST_STEP: f64 = 0.05;
 
-/// Hard bands, antialiased ones, and the truth, over the pixels within 2 px of a border and more than 2 px from a
-/// silhouette. Numbers are of 1, a component's range.
+/// Where borders are judged, besides within 2 px of one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Where {
+    /// More than 2 px from any silhouette.
+    AwayFromSilhouettes,
+    /// And as far from any crease: there one surface ends and another, under another light, begins, which no border of
+    /// bands can know of; lines cover it.
+    AndFromCreases,
+}
+
+/// Hard bands, antialiased ones, and the truth. Numbers are of 1, a component's range.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BandAccuracy {
     /// How many pixels were judged, all steps counted.
@@ -59,7 +68,25 @@ pub fn white(model: &Model) -> Model {
     model
 }
 
-/// Measures `bands`, without their highlight, on a scene made of a [`white`] model, over a pan by 4 px to the right.
+impl BandAccuracy {
+    /// The antialiased borders' root mean square error, of the hard ones'.
+    pub fn rmse_ratio(&self) -> f64 {
+        self.rmse[1] / self.rmse[0]
+    }
+
+    /// The antialiased borders' change from step to step, of the hard ones'.
+    pub fn change_ratio(&self) -> f64 {
+        self.change[1] / self.change[0]
+    }
+
+    /// The antialiased borders' flicker, of the hard ones'.
+    pub fn excess_ratio(&self) -> f64 {
+        self.excess[1] / self.excess[0]
+    }
+}
+
+/// Measures `bands`, without their highlight, on a scene made of a [`white`] model, over a pan by 4 px to the right: the
+/// two [`Where`] in turn. Takes 10 KB a pixel.
 ///
 /// # Errors
 /// What is wrong with the bands.
@@ -68,7 +95,7 @@ pub fn band_accuracy(
     camera: &Camera,
     (width, height): (u32, u32),
     bands: &Bands,
-) -> Result<BandAccuracy, HarnessError> {
+) -> Result<[BandAccuracy; 2], HarnessError> {
     let of = |shade| Style { shade, ..style("toon").expect("a style of this crate") };
     let n_dot_l = [(-1.0, Vec3::ZERO), (1.0, Vec3::ONE)].map(|(at, color)| RampStop { at, color });
     let n_dot_l = Ramp { stops: n_dot_l.to_vec(), blend: RampBlend::Smooth };
@@ -79,10 +106,11 @@ pub fn band_accuracy(
         Ok::<_, HarnessError>(cpu::render(scene, style, &plan, camera, size, &options, &|_| {}))
     };
     let fine = drawn(&n_dot_l, (width * FINE as u32, height * FINE as u32), DVec2::ZERO)?;
-    let truth = Truth::new(&fine, scene, camera, bands);
+    let truth = Truth::new(&fine, camera, bands);
+    drop(fine);
     let hard = of(Shade::Toon(Bands { highlight: None, antialias: false, ..bands.clone() }));
     let smooth = of(Shade::Toon(Bands { highlight: None, antialias: true, ..bands.clone() }));
-    let mut sums = Sums::default();
+    let mut sums = [Sums::default(); 2];
     let mut before: Option<[Vec<f64>; 3]> = None;
     for step in 0..=STEPS {
         let shift_px = DVec2::new(step as f64 / FINE as f64, 0.0);
@@ -92,38 +120,19 @@ pub fn band_accuracy(
             tones(drawn(&smooth, (width, height), shift_px)?),
             truth.picture(step),
         ];
-        let judged = truth.judged(step);
-        for pixel in (0..judged.len()).filter(|&pixel| judged[pixel]) {
-            sums.pixels += 1;
-            for (which, of) in now[..2].iter().enumerate() {
-                let error = of[pixel] - now[2][pixel];
-                sums.square[which] += error * error;
-                sums.worst[which] = sums.worst[which].max(error.abs());
-            }
-            if let Some(before) = &before {
-                sums.pairs += 1;
-                let change = [0, 1, 2].map(|which| now[which][pixel] - before[which][pixel]);
-                for which in 0..3 {
-                    sums.change[which] += change[which].abs();
-                }
-                for which in 0..2 {
-                    sums.excess[which] += (change[which] - change[2]).abs();
-                }
+        for (sums, place) in sums.iter_mut().zip([Where::AwayFromSilhouettes, Where::AndFromCreases]) {
+            let judged = truth.judged(step, place);
+            for pixel in (0..judged.len()).filter(|&pixel| judged[pixel]) {
+                let values = |of: &[Vec<f64>; 3]| [0, 1, 2].map(|which| of[which][pixel]);
+                sums.add(values(&now), before.as_ref().map(values));
             }
         }
         before = Some(now);
     }
-    let (pixels, pairs) = (sums.pixels.max(1) as f64, sums.pairs.max(1) as f64);
-    Ok(BandAccuracy {
-        pixels: sums.pixels,
-        rmse: sums.square.map(|sum| (sum / pixels).sqrt()),
-        worst: sums.worst,
-        change: sums.change.map(|sum| sum / pairs),
-        excess: sums.excess.map(|sum| sum / pairs),
-    })
+    Ok(sums.map(Sums::accuracy))
 }
 
-#[derive(Default)]
+#[derive(Clone, Copy, Default)]
 struct Sums {
     pixels: usize,
     pairs: usize,
@@ -131,6 +140,38 @@ struct Sums {
     worst: [f64; 2],
     change: [f64; 3],
     excess: [f64; 2],
+}
+
+impl Sums {
+    /// A pixel's tones, hard, antialiased and true, in this step and in the one before.
+    fn add(&mut self, now: [f64; 3], before: Option<[f64; 3]>) {
+        self.pixels += 1;
+        for which in 0..2 {
+            let error = now[which] - now[2];
+            self.square[which] += error * error;
+            self.worst[which] = self.worst[which].max(error.abs());
+        }
+        let Some(before) = before else { return };
+        self.pairs += 1;
+        let change = [0, 1, 2].map(|which| now[which] - before[which]);
+        for which in 0..3 {
+            self.change[which] += change[which].abs();
+        }
+        for which in 0..2 {
+            self.excess[which] += (change[which] - change[2]).abs();
+        }
+    }
+
+    fn accuracy(self) -> BandAccuracy {
+        let (pixels, pairs) = (self.pixels.max(1) as f64, self.pairs.max(1) as f64);
+        BandAccuracy {
+            pixels: self.pixels,
+            rmse: self.square.map(|sum| (sum / pixels).sqrt()),
+            worst: self.worst,
+            change: self.change.map(|sum| sum / pairs),
+            excess: self.excess.map(|sum| sum / pairs),
+        }
+    }
 }
 
 fn mean(color: DVec3) -> f64 {
@@ -144,13 +185,14 @@ struct Truth {
     height: usize,
     /// Per fine sample its tone, 1 where there is nothing.
     tone: Vec<f32>,
-    /// Places of borders and of silhouettes, in fine samples.
+    /// Places of borders, of silhouettes and of creases, in fine samples.
     borders: Vec<(u32, u32)>,
     silhouettes: Vec<(u32, u32)>,
+    creases: Vec<(u32, u32)>,
 }
 
 impl Truth {
-    fn new(fine: &CpuFrame, scene: &Scene, camera: &Camera, bands: &Bands) -> Self {
+    fn new(fine: &CpuFrame, camera: &Camera, bands: &Bands) -> Self {
         let (columns, rows) = (fine.width as usize, fine.height as usize);
         // What a slope as steep as 1 in 64 px changes between two samples; a depth step is more.
         let view = camera.line_view(DVec2::new(f64::from(fine.width), f64::from(fine.height)));
@@ -160,8 +202,7 @@ impl Truth {
         let tone = (0..fine.depth.len())
             .map(|at| if fine.depth[at] > 0.0 { mean(toon_band_hard(bands, light(at))) } else { paper } as f32)
             .collect();
-        let (mut borders, mut silhouettes) = (Vec::new(), Vec::new());
-        let _ = scene;
+        let (mut borders, mut silhouettes, mut creases) = (Vec::new(), Vec::new(), Vec::new());
         for y in 0..rows {
             for x in 0..columns {
                 let here = y * columns + x;
@@ -174,13 +215,15 @@ impl Truth {
                     let per_px = a.max(b) * view.depth_per_px.x + view.depth_per_px.y;
                     if a == 0.0 || b == 0.0 || (a - b).abs() > 64.0 * per_px {
                         silhouettes.push((x as u32, y as u32));
-                    } else if band(here) != band(beside) && (light(here) - light(beside)).abs() < LARGEST_STEP {
+                    } else if (light(here) - light(beside)).abs() >= LARGEST_STEP {
+                        creases.push((x as u32, y as u32));
+                    } else if band(here) != band(beside) {
                         borders.push((x as u32, y as u32));
                     }
                 }
             }
         }
-        Self { width: columns / FINE, height: rows / FINE, tone, borders, silhouettes }
+        Self { width: columns / FINE, height: rows / FINE, tone, borders, silhouettes, creases }
     }
 
     /// The mean tones of the pixels after a step of the pan; of what leaves the picture nothing is known, and 0 is said.
@@ -197,8 +240,8 @@ impl Truth {
         (0..self.height).flat_map(|y| (0..self.width).map(move |x| (x, y))).map(|(x, y)| pixel(x, y)).collect()
     }
 
-    /// Which pixels are near a border and away from silhouettes after a step of the pan.
-    fn judged(&self, step: usize) -> Vec<bool> {
+    /// Which pixels are judged after a step of the pan.
+    fn judged(&self, step: usize, place: Where) -> Vec<bool> {
         let near = |places: &[(u32, u32)]| {
             let mut near = vec![false; self.width * self.height];
             let px = |at: u32| (f64::from(at) + 1.0) / FINE as f64;
@@ -216,8 +259,11 @@ impl Truth {
             near
         };
         let mut judged = near(&self.borders);
-        for (judged, near) in judged.iter_mut().zip(near(&self.silhouettes)) {
-            *judged &= !near;
+        let not_near = [&self.silhouettes, &self.creases];
+        for places in &not_near[..if place == Where::AndFromCreases { 2 } else { 1 }] {
+            for (judged, near) in judged.iter_mut().zip(near(places)) {
+                *judged &= !near;
+            }
         }
         // What the pan brings in from beyond the picture was not sampled.
         let margin = STEPS / FINE + 1;

@@ -3,6 +3,7 @@
 //! All tolerances of the project's pictures are here.
 
 mod image_lines;
+mod light;
 mod lines;
 
 use crate::camera::{Camera, Framing};
@@ -182,6 +183,9 @@ pub fn run(
     if styles.is_empty() {
         checker.widths()?;
     }
+    if styles.is_empty() && inputs.is_empty() {
+        checker.normals()?;
+    }
     let total = inputs.len().max(1) as f64;
     if inputs.is_empty() {
         let scene = Scene::new(npr_mesh::embedded::scene());
@@ -280,6 +284,9 @@ impl Checker<'_> {
             if of_edges {
                 self.lines(name, view, scene, camera)?;
                 self.image_lines(name, view, scene, camera)?;
+                if number == 0 {
+                    self.borders(name, view, scene, camera)?;
+                }
             }
             #[cfg(feature = "gpu")]
             if of_edges {

@@ -16,6 +16,7 @@ pub mod image_ink;
 pub mod inspect;
 pub mod light;
 pub mod line_truth;
+pub mod normal_use;
 pub mod plan;
 pub mod rays;
 pub mod scene;

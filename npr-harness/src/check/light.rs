@@ -1,0 +1,60 @@
+//! Borders of bands, and the three uses of normals, against supersampled truths.
+
+use super::Checker;
+use crate::band_truth::{band_accuracy, white};
+use crate::camera::Camera;
+use crate::error::HarnessError;
+use crate::normal_use::normal_use_errors;
+use crate::scene::Scene;
+use npr_toon::Bands;
+use npr_toon::normal::NormalUse;
+
+/// Px: what is 16 times finer, too, fits into memory.
+const BORDER_SIZE: (u32, u32) = (320, 180);
+/// Px.
+const NORMALS_SIZE: (u32, u32) = (480, 270);
+
+impl Checker<'_> {
+    /// The default bands on a model in white. Told without limits: what they are depends on how rough a model is.
+    pub(super) fn borders(
+        &mut self,
+        model: &str,
+        view: &str,
+        scene: &Scene,
+        camera: &Camera,
+    ) -> Result<(), HarnessError> {
+        let white = Scene::new(white(&scene.model));
+        let all = band_accuracy(&white, camera, BORDER_SIZE, &Bands::default())?;
+        for (technique, found) in ["borders", "borders, no crease near"].into_iter().zip(all) {
+            if found.pixels == 0 {
+                self.skipped.push(format!("{technique} of {model} ({view}): no pixel is near one"));
+                continue;
+            }
+            self.add(model, view, technique, "RMSE, antialiased over hard", found.rmse_ratio(), None);
+            self.add(model, view, technique, "flicker, antialiased over hard", found.excess_ratio(), None);
+            self.add(model, view, technique, "change a step, antialiased over hard", found.change_ratio(), None);
+        }
+        Ok(())
+    }
+
+    /// The teapot, coarse to fine.
+    pub(super) fn normals(&mut self) -> Result<(), HarnessError> {
+        for error in normal_use_errors(NORMALS_SIZE)? {
+            let technique = match error.normals {
+                NormalUse::PerVertex => "light per vertex",
+                NormalUse::Interpolated => "as interpolated",
+                NormalUse::PerPixel => "unit normals",
+            };
+            let view = format!("{} a patch", error.segments);
+            for (metric, value) in [
+                ("bands: RMSE of 255", error.rmse[0]),
+                ("bands: largest error of 255", error.worst[0]),
+                ("Gooch: RMSE of 255", error.rmse[1]),
+                ("Gooch: largest error of 255", error.worst[1]),
+            ] {
+                self.add("teapot", &view, technique, metric, value * 255.0, None);
+            }
+        }
+        Ok(())
+    }
+}
