@@ -226,18 +226,23 @@ fn outline_bend(depths: DVec4) -> f64 {
 }
 
 /// Whether the surface around a line's point is in front of it by more than rounding and its own bends explain.
+///
+/// - `corner`: the upper left one of the four pixels around it, and `quad` their depths.
 fn outline_plane_hides(
+    quad: DVec4,
+    corner: DVec2,
     on_line: DVec2,
     depth: f64,
-    per_px: f64,
-    viewport_px: DVec2,
+    view: &LineView,
     depth_at: impl Fn(i64, i64) -> f64,
 ) -> bool {
-    // A pixel that stands for one outside the picture is not where the plane is looked for.
-    let corner = (on_line - 0.5).floor().min(viewport_px - 2.0).max(DVec2::ZERO);
+    // What stands for a pixel outside the picture tells nothing of the surface there.
+    if corner.cmplt(DVec2::ZERO).any() || corner.cmpgt(view.viewport_px - 2.0).any() {
+        return false;
+    }
+    let per_px = depth * view.depth_per_px.x + view.depth_per_px.y;
     let within = on_line - 0.5 - corner;
     let (x, y) = (corner.x as i64, corner.y as i64);
-    let quad = DVec4::new(depth_at(x, y), depth_at(x + 1, y), depth_at(x, y + 1), depth_at(x + 1, y + 1));
     let before = outline_plane_before(quad, within, depth, per_px);
     if before <= 0.0 {
         return false;
@@ -270,17 +275,19 @@ pub fn outline_is_visible(
     let per_px = depth * view.depth_per_px.x + view.depth_per_px.y;
     let direction = segment.direction().0;
     let (mut seen, mut surface) = (false, false);
-    for tap in 0..4 {
+    let mut quad = [0.0; 4];
+    for (tap, scene) in (0u8..).zip(&mut quad) {
         let pixel = corner + DVec2::new(f64::from(tap & 1), f64::from(tap >> 1));
         let offset = direction.perp_dot(pixel + 0.5 - on_line);
         let slope = segment.slopes[usize::from(offset < 0.0)].min(MAX_SLOPE * per_px);
         let allowed = DEPTH_SLACK_PX * per_px + slope * offset.abs();
-        let behind = depth_at(pixel.x as i64, pixel.y as i64) - depth;
+        *scene = depth_at(pixel.x as i64, pixel.y as i64);
+        let behind = *scene - depth;
         seen |= behind <= allowed;
         // A surface of its own may lie as far behind the line as it may lie in front.
         surface |= behind.abs() <= (DEPTH_SLACK_PX + MAX_SLOPE) * per_px;
     }
-    seen && (surface || !cut_out) && !outline_plane_hides(on_line, depth, per_px, view.viewport_px, depth_at)
+    seen && (surface || !cut_out) && !outline_plane_hides(quad.into(), corner, on_line, depth, view, depth_at)
 }
 
 #[cfg(test)]
