@@ -55,6 +55,24 @@ fn the_built_in_scene() {
     }
 }
 
+/// What hides lines there is a plane a few hundredths of a px before them, which rounding must not decide.
+#[test]
+fn lines_behind_a_ground_seen_from_below() {
+    let Some(executor) = device() else { return };
+    let scene = Scene::new(embedded::scene());
+    let style = style("lines").expect("a style of the crate");
+    for (yaw_deg, pitch_deg, fov_y_rad) in [(10.0, -10.0, Some(0.6)), (280.0, -10.0, None), (120.0, -45.0, Some(0.6))] {
+        let camera = framed(&scene, yaw_deg, pitch_deg, fov_y_rad);
+        let plan = Plan::new(&scene, &style, &camera).expect("a good style");
+        let shot = Shot { scene: &scene, style: &style, plan: &plan, camera: &camera, size: SIZE };
+        let Reference { image, exempt, .. } = Reference::new(shot).expect("pictures");
+        let actual = render(&executor, &scene, &style, &camera);
+        let comparison = compare(&image, &actual, &exempt).expect("one size");
+        let of_255 = magnitude(&plan);
+        assert!(agrees(&comparison, of_255), "{yaw_deg} {pitch_deg}: {comparison:?}");
+    }
+}
+
 #[test]
 fn textures_with_mip_levels_and_all_wrap_modes() {
     let wraps = [

@@ -29,6 +29,8 @@ struct OutlineSegment {
 const OUTLINE_MAX_SLOPE: f32 = 8.0;
 const OUTLINE_EDGE_ON_SLOPE: f32 = 1024.0;
 const OUTLINE_DEPTH_SLACK_PX: f32 = 0.5;
+const OUTLINE_PLANE_SLACK_PX: f32 = 0.01;
+const OUTLINE_PLANE_SLACK_PER_SLOPE: f32 = 0.0078125;
 const OUTLINE_TRAIT_ALWAYS: u32 = 256u;
 const OUTLINE_TRAIT_CUT_OUT: u32 = 512u;
 const OUTLINE_BOUNDARY: u32 = 1u;
@@ -189,4 +191,20 @@ fn outline_vote(scene_depth: f32, depth: f32, offset: f32, slopes: vec2<f32>, pe
     let allowed = OUTLINE_DEPTH_SLACK_PX * per_px + slope * abs(offset);
     let behind = scene_depth - depth;
     return vec2<bool>(behind <= allowed, abs(behind) <= (OUTLINE_DEPTH_SLACK_PX + OUTLINE_MAX_SLOPE) * per_px);
+}
+
+// How far in front of a line's point, `within` px from the first one's centre, the plane through four pixels passes
+// there, less what rounding and their not lying in one plane explain.
+fn outline_plane_before(quad: vec4<f32>, within: vec2<f32>, depth: f32, per_px: f32) -> f32 {
+    let along_x = 0.5 * (quad.y - quad.x + quad.w - quad.z);
+    let along_y = 0.5 * (quad.z - quad.x + quad.w - quad.y);
+    let there = 0.25 * (quad.x + quad.y + quad.z + quad.w) + along_x * (within.x - 0.5) + along_y * (within.y - 0.5);
+    let twist = abs(quad.x - quad.y - quad.z + quad.w);
+    return there - depth - OUTLINE_PLANE_SLACK_PX * per_px
+        - OUTLINE_PLANE_SLACK_PER_SLOPE * (abs(along_x) + abs(along_y)) - twist;
+}
+
+// The greater of the second differences of four depths in a row.
+fn outline_bend(depths: vec4<f32>) -> f32 {
+    return max(abs(depths.x - 2.0 * depths.y + depths.z), abs(depths.y - 2.0 * depths.z + depths.w));
 }

@@ -17,12 +17,19 @@
 //! the four pixel centres around it shows a surface that is not in front of it. On the outer side of a
 //! silhouette that surface is the background; at a crease it is one of the edge's own faces, whose slope across
 //! the line is known from its normal and allowed for, up to 8 px of depth a px (83°). Half a pixel's depth is
-//! allowed on top: what lies less than that behind a surface cannot be told from it.
+//! allowed on top: what lies less than that behind a surface cannot be told from it by one of its pixels.
+//!
+//! By several it can. On a surface that is seen at a grazing angle depth changes by many px within one, so that of the
+//! four pixels around a line that lies a hair behind it one or the other lets it through: seen from below, a table's top
+//! would show the rims of all that stands on it. Hence a second look: a line is hidden where the surface between the
+//! four pixels, interpolated to the line's own point, is in front of it by more than rounding explains, and by more than
+//! the surface bends there. On both sides of a silhouette, a crease or a contact it bends by more, whatever their angle,
+//! and of a line on it a plane is not in front.
 //!
 //! Depth is the depth buffer's own, reversed: 1 at the near plane, falling with distance. It is linear on the screen, in
 //! perspective too, so that interpolating and extrapolating it are exact.
 
-use glam::{DMat4, DVec2, DVec3, DVec4};
+use glam::{DMat4, DVec2, DVec3, DVec4, Vec4Swizzles};
 
 /// Depth that a surface may gain within a px across the line, in px of depth.
 pub const MAX_SLOPE: f64 = 8.0;
@@ -31,6 +38,12 @@ pub const MAX_SLOPE: f64 = 8.0;
 pub const EDGE_ON_SLOPE: f64 = 1024.0;
 /// How far a line may lie behind a surface and still be seen, in px of depth.
 pub const DEPTH_SLACK_PX: f64 = 0.5;
+/// How far a line may lie behind the surface interpolated to it and still be seen, in px of depth: what touches may miss
+/// by as much.
+pub const PLANE_SLACK_PX: f64 = 0.01;
+/// The same for each px of depth that the surface gains within a px: rasterisers round corners to 1/256 px, which
+/// moves a face's depths by its slope times that.
+pub const PLANE_SLACK_PER_SLOPE: f64 = 1.0 / 128.0;
 
 /// The view that lines are drawn for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -194,6 +207,57 @@ pub fn outline_coverage(segment: &ScreenSegment, point_px: DVec2, width_px: f64)
     beside.min((0.5 * width_px + 0.5 - distance).clamp(0.0, 1.0))
 }
 
+/// How far in front of a line's point the plane through four pixels passes there, less what rounding and their not
+/// lying in one plane explain, in depth-buffer units.
+///
+/// - `quad`: their depths: upper left and right, lower left and right.
+/// - `within`: the point from the upper left pixel's centre, px.
+fn outline_plane_before(quad: DVec4, within: DVec2, depth: f64, per_px: f64) -> f64 {
+    let along_x = 0.5 * (quad.y - quad.x + quad.w - quad.z);
+    let along_y = 0.5 * (quad.z - quad.x + quad.w - quad.y);
+    let there = 0.25 * (quad.x + quad.y + quad.z + quad.w) + along_x * (within.x - 0.5) + along_y * (within.y - 0.5);
+    let twist = (quad.x - quad.y - quad.z + quad.w).abs();
+    there - depth - PLANE_SLACK_PX * per_px - PLANE_SLACK_PER_SLOPE * (along_x.abs() + along_y.abs()) - twist
+}
+
+/// The greater of the second differences of four depths in a row.
+fn outline_bend(depths: DVec4) -> f64 {
+    (depths.x - 2.0 * depths.y + depths.z).abs().max((depths.y - 2.0 * depths.z + depths.w).abs())
+}
+
+/// Whether the surface around a line's point is in front of it by more than rounding and its own bends explain.
+///
+/// - `corner`: the upper left one of the four pixels around it, and `quad` their depths.
+fn outline_plane_hides(
+    quad: DVec4,
+    corner: DVec2,
+    on_line: DVec2,
+    depth: f64,
+    view: &LineView,
+    depth_at: impl Fn(i64, i64) -> f64,
+) -> bool {
+    // What stands for a pixel outside the picture tells nothing of the surface there.
+    if corner.cmplt(DVec2::ZERO).any() || corner.cmpgt(view.viewport_px - 2.0).any() {
+        return false;
+    }
+    let per_px = depth * view.depth_per_px.x + view.depth_per_px.y;
+    let within = on_line - 0.5 - corner;
+    let (x, y) = (corner.x as i64, corner.y as i64);
+    let before = outline_plane_before(quad, within, depth, per_px);
+    if before <= 0.0 {
+        return false;
+    }
+    // The row and the column of the nearest of the four, with the next pixel on either side.
+    let (right, lower) = (within.x > 0.5, within.y > 0.5);
+    let row = if lower { quad.zw() } else { quad.xy() };
+    let column = if right { quad.yw() } else { quad.xz() };
+    let (row_y, column_x) = (y + i64::from(lower), x + i64::from(right));
+    let bend_x = outline_bend(DVec4::new(depth_at(x - 1, row_y), row.x, row.y, depth_at(x + 2, row_y)));
+    let bend_y = outline_bend(DVec4::new(depth_at(column_x, y - 1), column.x, column.y, depth_at(column_x, y + 2)));
+    // Twice, since towards a silhouette a surface bends more than where it is measured.
+    before > 2.0 * (bend_x + bend_y)
+}
+
 /// Whether the centreline is seen at a fraction of its length.
 ///
 /// - `depth_at`: the depth buffer's value at a pixel; x and y may lie outside the picture by a few px, and the
@@ -211,17 +275,19 @@ pub fn outline_is_visible(
     let per_px = depth * view.depth_per_px.x + view.depth_per_px.y;
     let direction = segment.direction().0;
     let (mut seen, mut surface) = (false, false);
-    for tap in 0..4 {
+    let mut quad = [0.0; 4];
+    for (tap, scene) in (0u8..).zip(&mut quad) {
         let pixel = corner + DVec2::new(f64::from(tap & 1), f64::from(tap >> 1));
         let offset = direction.perp_dot(pixel + 0.5 - on_line);
         let slope = segment.slopes[usize::from(offset < 0.0)].min(MAX_SLOPE * per_px);
         let allowed = DEPTH_SLACK_PX * per_px + slope * offset.abs();
-        let behind = depth_at(pixel.x as i64, pixel.y as i64) - depth;
+        *scene = depth_at(pixel.x as i64, pixel.y as i64);
+        let behind = *scene - depth;
         seen |= behind <= allowed;
         // A surface of its own may lie as far behind the line as it may lie in front.
         surface |= behind.abs() <= (DEPTH_SLACK_PX + MAX_SLOPE) * per_px;
     }
-    seen && (surface || !cut_out)
+    seen && (surface || !cut_out) && !outline_plane_hides(quad.into(), corner, on_line, depth, view, depth_at)
 }
 
 #[cfg(test)]

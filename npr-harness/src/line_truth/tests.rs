@@ -313,6 +313,16 @@ fn the_reference_draws_the_still_life_as_it_is() {
     assert!(found.precision >= 0.98 && found.recall >= 0.98, "{found:?}");
 }
 
+/// The rims of the solids lie 0.001 above it.
+#[test]
+fn the_ground_seen_from_below_does_not_let_rims_through() {
+    let scene = Scene::new(still_life());
+    for (yaw, pitch) in [(10.0, -10.0), (100.0, -10.0), (150.0, -10.0), (280.0, -10.0), (60.0, -20.0), (120.0, -45.0)] {
+        let found = measure(&format!("still life {yaw} {pitch}"), &scene, &framed(&scene, yaw, pitch));
+        assert!(found.precision >= 0.98 && found.recall >= 0.98, "{found:?}");
+    }
+}
+
 /// Prints; with `NPR_LINE_TRUTH_DUMP` set to a folder leaves pictures there.
 #[test]
 #[ignore = "a minute; models that may not be there"]

@@ -3,6 +3,7 @@
 use super::*;
 use glam::dcamera::rh::proj::directx as proj;
 use proptest::prelude::*;
+use std::f64::consts::FRAC_PI_4;
 
 const NEAR: f64 = 0.1;
 const SIZE: DVec2 = DVec2::new(640.0, 480.0);
@@ -306,6 +307,64 @@ fn a_line_behind_a_grazing_surface_is_hidden() {
     let segment = project(ends, [grazing, grazing], &view);
     let allowed = DEPTH_SLACK_PX + MAX_SLOPE * std::f64::consts::SQRT_2;
     assert_eq!(visible_share(&segment, &view, plane_depth(DVec3::Z, -8.0 + 1.1 * allowed * per_px, &view)), 0.0);
+}
+
+#[test]
+fn a_hair_behind_a_grazing_surface_no_tap_lets_a_line_through() {
+    for view in [perspective(), parallel()] {
+        for degrees in [0.0, 30.0, 60.0, 80.0, 85.0] {
+            let tilt = f64::to_radians(degrees);
+            let normal = DVec3::new(0.0, tilt.sin(), tilt.cos());
+            // A solid that stands on the other side: one face along the surface, one away from it.
+            for spin in [0.0, 0.3, 1.1, 1.6] {
+                let along = glam::DQuat::from_axis_angle(normal, spin) * DVec3::X;
+                let middle = DVec3::new(0.1, 0.0, -6.0);
+                let ends = [middle - 0.6 * along, middle + 0.6 * along];
+                let segment = project(ends, [normal, -normal.cross(along)], &view);
+                // The size of a px at the middle's distance.
+                let px = if view.depth_per_px.y == 0.0 { 6.0 * view.depth_per_px.x } else { 20.0 / SIZE.y };
+                let before = |gap_px: f64| plane_depth(normal, normal.dot(middle) + gap_px * px, &view);
+                assert_eq!(visible_share(&segment, &view, before(0.05)), 0.0, "{degrees} {spin}");
+                // On the surface, and before it.
+                assert_eq!(visible_share(&segment, &view, before(0.0)), 1.0, "{degrees} {spin}");
+                assert_eq!(visible_share(&segment, &view, before(-0.05)), 1.0, "{degrees} {spin}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_fold_is_seen_whatever_its_angle() {
+    let view = perspective();
+    let ends = [DVec3::new(-2.0, 0.1, -6.0), DVec3::new(2.0, 0.13, -6.2)];
+    let edge = (ends[1] - ends[0]).normalize();
+    let facing = DVec3::Z.reject_from(edge).normalize();
+    // Half the angle by which the surface turns; valleys first.
+    for half_degrees in [-70.0, -45.0, -20.0, -8.0, -3.0, -1.0, -0.2, 0.0, 0.2, 3.0, 30.0, 70.0] {
+        for lean_degrees in [-55.0f64, -20.0, 0.0, 33.0, 60.0] {
+            for spin in [0.0, 0.3, FRAC_PI_4, 1.2] {
+                let lean = lean_degrees.to_radians();
+                let [above, below] = [1.0, -1.0].map(|side| {
+                    let turn = glam::DQuat::from_axis_angle(edge, lean - side * f64::to_radians(half_degrees));
+                    glam::DQuat::from_rotation_z(spin) * turn * facing
+                });
+                // Beyond the bound on slopes nothing is promised.
+                if above.z < 0.2 || below.z < 0.2 {
+                    continue;
+                }
+                let ends = ends.map(|end| glam::DQuat::from_rotation_z(spin) * end);
+                let [on_above, on_below] = [above, below].map(|n| plane_depth(n, n.dot(ends[0]), &view));
+                let segment = project(ends, [above, below], &view);
+                let valley = half_degrees < 0.0;
+                let surface = |x: i64, y: i64| {
+                    let (a, b) = (on_above(x, y), on_below(x, y));
+                    if valley { a.max(b) } else { a.min(b) }
+                };
+                let share = visible_share(&segment, &view, surface);
+                assert_eq!(share, 1.0, "{half_degrees}° {lean_degrees}° {spin}");
+            }
+        }
+    }
 }
 
 #[test]
