@@ -6,12 +6,13 @@ use crate::error::HarnessError;
 use crate::light::StyleLight;
 use crate::plan::Plan;
 use crate::scene::Scene;
-use crate::style::{Shade, Style, style};
-use glam::{DVec4, Vec3};
+use crate::style::{RampShade, RampSource, Shade, Style, style};
+use glam::{DVec4, Vec3, Vec4};
 use npr_gooch::Gooch;
 use npr_mesh::{Material, embedded};
 use npr_toon::Bands;
 use npr_toon::normal::NormalUse;
+use npr_toon::ramp::{Ramp, RampBlend, RampStop};
 use npr_toon::source::Light;
 
 /// Segments of each of the teapot's 32 patches.
@@ -24,6 +25,9 @@ const TRUE_SEGMENTS: u32 = 96;
 const TRUE_SAMPLES: u32 = 8;
 /// Surfaces whose distances from the eye differ by more than this share are not the same.
 const SAME_DISTANCE: f64 = 0.02;
+/// Where N·L changes by more than this from a pixel to the next, one part of the teapot runs into another, or a surface
+/// turns away: what is seen there is no matter of normals.
+const SMOOTH_STEP: f64 = 0.15;
 
 /// The error of one way to shade the teapot.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,7 +37,7 @@ pub struct NormalUseError {
     /// How normals are used.
     pub normals: NormalUse,
     /// Of bands, and of Gooch's tones: root mean square over the pixels that both pictures fill with the same surface,
-    /// of 1, a component's range.
+    /// and that have no crease near, of 1, a component's range.
     pub rmse: [f64; 2],
     /// The same: the largest.
     pub worst: [f64; 2],
@@ -45,11 +49,12 @@ pub struct NormalUseError {
 /// # Errors
 /// None that can occur.
 pub fn normal_use_errors(size: (u32, u32)) -> Result<Vec<NormalUseError>, HarnessError> {
-    let of = |segments| {
-        let white = Material { base_color: glam::Vec4::new(0.7, 0.7, 0.7, 1.0), ..Default::default() };
-        Scene::new(embedded::placed(embedded::teapot(segments), glam::Mat4::IDENTITY, white))
+    let of = |segments, color| {
+        let material = Material { base_color: color, ..Default::default() };
+        Scene::new(embedded::placed(embedded::teapot(segments), glam::Mat4::IDENTITY, material))
     };
-    let fine = of(TRUE_SEGMENTS);
+    let gray = Vec4::new(0.7, 0.7, 0.7, 1.0);
+    let (fine, white) = (of(TRUE_SEGMENTS, gray), of(TRUE_SEGMENTS, Vec4::ONE));
     let framing = Framing { yaw_rad: 30f64.to_radians(), pitch_rad: 25f64.to_radians(), ..Framing::default() };
     let camera = Camera::framed(fine.corners(), f64::from(size.0) / f64::from(size.1), &framing);
     let lamp = StyleLight { light: Light::positional(Vec3::new(-0.9, 1.2, 1.1)), ..StyleLight::KEY };
@@ -65,11 +70,13 @@ pub fn normal_use_errors(size: (u32, u32)) -> Result<Vec<NormalUseError>, Harnes
         drawn(&fine, &shades[0], NormalUse::PerPixel, TRUE_SAMPLES)?,
         drawn(&fine, &shades[1], NormalUse::PerPixel, TRUE_SAMPLES)?,
     ];
-    // One sample a pixel: where the surface is, and not just some of it.
-    let surface = drawn(&fine, &shades[0], NormalUse::PerPixel, 1)?;
+    // One sample a pixel: where the surface is, and not just some of it, and in its colour N·L.
+    let light = [(-1.0, Vec3::ZERO), (1.0, Vec3::splat(0.5))].map(|(at, color)| RampStop { at, color });
+    let ramp = RampSource::Stops(Ramp { stops: light.to_vec(), blend: RampBlend::Smooth });
+    let surface = drawn(&white, &Shade::Ramp(RampShade { ramp, half_lambert: None }), NormalUse::PerPixel, 1)?;
     let mut errors = Vec::new();
     for segments in SEGMENTS {
-        let coarse = of(segments);
+        let coarse = of(segments, gray);
         for normals in USES {
             let mut error = NormalUseError { segments, normals, rmse: [0.0; 2], worst: [0.0; 2] };
             for (which, (shade, truth)) in shades.iter().zip(&truths).enumerate() {
@@ -91,11 +98,13 @@ fn compared(frame: &CpuFrame, surface: &CpuFrame, truth: &[DVec4]) -> (f64, f64)
         // The depth buffer holds about near / distance.
         a > 0.0 && b > 0.0 && (a / b - 1.0).abs() < SAME_DISTANCE
     };
+    let light = |pixel: usize| 4.0 * surface.color[pixel].x;
     for y in 1..frame.height as usize - 1 {
         for x in 1..width - 1 {
             let around = (0..9).map(|i| (y + i / 3 - 1) * width + x + i % 3 - 1);
-            if around.into_iter().all(is_same) {
-                let pixel = y * width + x;
+            let pixel = y * width + x;
+            let is_smooth = |beside: usize| (light(pixel) - light(beside)).abs() < SMOOTH_STEP;
+            if around.into_iter().all(|beside| is_same(beside) && is_smooth(beside)) {
                 let difference = (frame.color[pixel] - truth[pixel]).truncate().abs();
                 sum += difference.length_squared() / 3.0;
                 worst = worst.max(difference.max_element());
