@@ -35,9 +35,9 @@ fn ramp<const N: usize>(blend: RampBlend, stops: [(f32, [f32; 3]); N]) -> Ramp {
     Ramp { stops: stops.map(|(at, color)| RampStop { at, color: Vec3::from(color) }).to_vec(), blend }
 }
 
-/// From a violet dark over the surface's own colour to a touch of cream.
+/// From a violet dark over a cool half-tone to the surface's own colour, which only what faces the light has.
 fn wash() -> RampShade {
-    let stops = [(0.0, [0.36, 0.33, 0.52]), (0.35, [0.62, 0.58, 0.72]), (0.7, [0.96, 0.93, 0.90]), (1.0, [1.0; 3])];
+    let stops = [(0.1, [0.30, 0.26, 0.48]), (0.5, [0.62, 0.58, 0.74]), (0.85, [0.97, 0.93, 0.90]), (0.98, [1.0; 3])];
     RampShade { ramp: RampSource::Stops(ramp(RampBlend::Smooth, stops)), half_lambert: Some(HalfLambert::HALF_LIFE) }
 }
 
@@ -47,11 +47,11 @@ fn wrapped() -> RampShade {
     RampShade { ramp: RampSource::Stops(ramp(RampBlend::Hard, stops)), half_lambert: Some(HalfLambert::SOURCE) }
 }
 
-/// What the first light alone gives, what the second alone gives, and the shade where both are strong.
+/// What the first light alone gives, what the second alone gives, and a shade for what is brightly lit.
 fn two_lights() -> PainterShade {
     let first = ramp(RampBlend::Hard, [(-1.0, [0.34, 0.32, 0.46]), (0.06, [0.55, 0.54, 0.60]), (0.55, [0.68; 3])]);
     let second = ramp(RampBlend::Hard, [(-1.0, [0.34, 0.32, 0.46]), (0.2, [0.44, 0.44, 0.58])]);
-    let corner = Some(Corner { threshold: 1.15, color: Vec3::splat(0.82) });
+    let corner = Some(Corner { threshold: 0.95, color: Vec3::splat(0.74) });
     PainterShade {
         ramp: Ramp2dSource::Ramps(Ramp2d { a: first, b: second, corner }),
         light_scale: Painter::LIGHT_SCALE,
