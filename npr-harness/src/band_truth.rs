@@ -154,8 +154,8 @@ impl Sums {
         let Some(before) = before else { return };
         self.pairs += 1;
         let change = [0, 1, 2].map(|which| now[which] - before[which]);
-        for which in 0..3 {
-            self.change[which] += change[which].abs();
+        for (sum, change) in self.change.iter_mut().zip(change) {
+            *sum += change.abs();
         }
         for which in 0..2 {
             self.excess[which] += (change[which] - change[2]).abs();

@@ -146,3 +146,34 @@ fn without_a_command_every_style_is_drawn() {
         assert!(listed.lines().any(|line| line.starts_with(&style.name)), "{}", style.name);
     }
 }
+
+#[test]
+fn a_style_is_printed_changed_and_drawn() {
+    let folder = with_model();
+    let off = [("NPR_GPU", "off")];
+    let printed = npr(&["style", "cartoon"], &[], &folder.0);
+    assert!(printed.status.success(), "{}", text(&printed.stderr));
+    let own = text(&printed.stdout).replace("paper = [0.98, 0.97, 0.94]", "paper = \"#3060c0\"");
+    std::fs::write(folder.join("own.toml"), &own).expect("written");
+    let render = |style: &str, out: &str| {
+        npr(&["render", "corner.obj", "-o", out, "--style", style, "--size", "40x30"], &off, &folder.0)
+    };
+    let done = render("own.toml", "own.png");
+    assert!(done.status.success(), "{}", text(&done.stderr));
+    assert_eq!(Image::load_png(&folder.join("own.png")).expect("a PNG").rgba8[..4], [0x30, 0x60, 0xc0, 255]);
+    // What is not known is named, with its place, in one line, and nothing is drawn.
+    std::fs::write(folder.join("own.toml"), own.replace("antialias", "antialais")).expect("written");
+    let refused = render("own.toml", "not.png");
+    let said = text(&refused.stderr);
+    assert_eq!(refused.status.code(), Some(1), "{said}");
+    let line = own.lines().position(|line| line.starts_with("antialias")).expect("it is there") + 1;
+    let start = format!("npr: own.toml:{line}:1: unknown field `antialais`");
+    assert!(said.lines().last().is_some_and(|line| line.starts_with(&start)), "{said}");
+    assert!(!folder.join("not.png").exists());
+    for (style, why) in [("none.toml", "none.toml: "), ("no-such", "no style is called \"no-such\"")] {
+        let refused = render(style, "not.png");
+        assert_eq!(refused.status.code(), Some(1));
+        assert!(text(&refused.stderr).contains(why), "{}", text(&refused.stderr));
+    }
+    assert_eq!(npr(&["style", "no-such"], &[], &folder.0).status.code(), Some(1));
+}

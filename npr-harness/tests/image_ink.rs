@@ -106,7 +106,7 @@ fn a_model_s_own_edges_are_refused_where_a_plane_cuts() {
     scene.clip = Some(DVec4::new(0.0, 1.0, 0.0, 0.0));
     let camera = camera_at(DVec3::new(2.0, 2.0, 6.0), DVec3::ZERO, 30.0, 0.1);
     let refused = Plan::new(&scene, &style("cartoon").expect("a style"), &camera);
-    assert!(matches!(refused, Err(HarnessError::ClippedEdges { style: "cartoon" })));
+    assert!(matches!(refused, Err(HarnessError::ClippedEdges { style }) if style == "cartoon"));
 }
 
 #[test]

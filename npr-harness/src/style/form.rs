@@ -322,7 +322,7 @@ struct GoochForm {
 impl Default for GoochForm {
     fn default() -> Self {
         // Without a table for it there is no highlight, as with bands.
-        Self { highlight: None, ..Self::new(&Gooch::default()) }
+        Self::new(&Gooch { highlight: None, ..Gooch::default() })
     }
 }
 
