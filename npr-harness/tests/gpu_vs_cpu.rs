@@ -5,7 +5,7 @@
 mod common;
 
 use common::{Folder, cards, device, plain, shared_models, waves};
-use glam::{DVec2, Mat4, Vec2, Vec3, Vec4};
+use glam::{DVec2, Vec4};
 use npr_harness::camera::{Camera, Framing};
 use npr_harness::check::{self, Reference, SIZE, Shot, agrees, magnitude};
 use npr_harness::compare::{Image, compare};
@@ -17,7 +17,7 @@ use npr_harness::scene::Scene;
 use npr_harness::style::{Lines, Shade, Style, style};
 use npr_imagespace::filter::fused::FusedFilter;
 use npr_imagespace::morphology::disc::Disc;
-use npr_mesh::{AlphaMode, Material, Model, Texture, Wrap, embedded};
+use npr_mesh::{AlphaMode, Material, Model, Wrap, embedded};
 use npr_outline::line_look::LineLook;
 
 fn framed(scene: &Scene, yaw_deg: f64, pitch_deg: f64, fov_y_rad: Option<f64>) -> Camera {
