@@ -1,4 +1,4 @@
-//! A frame's cost: plain Lambert, toon, and toon with lines, on one adapter, same targets, same culling.
+//! A frame's cost: plain Lambert, all other light, and lines, on one adapter, same targets, same culling.
 //!
 //! `cargo bench -p npr-harness --bench frame`. Minimum and median of interleaved rounds; read the ratios. The figures
 //! that were measured stand in the README.
@@ -11,6 +11,7 @@ use npr_harness::plan::{LineMethod, Plan};
 use npr_harness::scene::Scene;
 use npr_harness::style::{Lines, Shade, Style, style};
 use npr_imagespace::format::texel::TexelLayout;
+use npr_toon::normal::NormalUse;
 use std::path::Path;
 use std::time::Instant;
 
@@ -39,7 +40,8 @@ fn main() {
     };
     let lambert = Shade::Lambert { ambient: 0.25 };
     let found = |layout| Some(Lines::Image(ImageInk { layout, ..ImageInk::default() }));
-    let cases: [(&str, Style, LineMethod); 11] = [
+    let light = |name: &str| Style { lines: None, ..style(name).expect("a style of this crate") };
+    let cases: [(&str, Style, LineMethod); 16] = [
         ("Lambert", Style { shade: lambert.clone(), lines: None, ..base.clone() }, LineMethod::Rectangles),
         ("toon", Style { lines: None, ..base.clone() }, LineMethod::Rectangles),
         (
@@ -47,6 +49,19 @@ fn main() {
             Style { shade: without_highlight.clone(), lines: None, ..base.clone() },
             LineMethod::Rectangles,
         ),
+        (
+            "the same, normals as interpolated",
+            Style { shade: without_highlight.clone(), normals: NormalUse::Interpolated, lines: None, ..base.clone() },
+            LineMethod::Rectangles,
+        ),
+        (
+            "the same, light per vertex",
+            Style { shade: without_highlight.clone(), normals: NormalUse::PerVertex, lines: None, ..base.clone() },
+            LineMethod::Rectangles,
+        ),
+        ("Gooch with a highlight", light("gooch"), LineMethod::Rectangles),
+        ("smooth ramp of half-Lambert", light("wash"), LineMethod::Rectangles),
+        ("two lights, one near, 2D ramp", light("two-lights"), LineMethod::Rectangles),
         ("toon + image lines", Style { lines: found(TexelLayout::Wide), ..base.clone() }, LineMethod::Rectangles),
         (
             "toon + image lines, narrow texels",

@@ -20,16 +20,20 @@ fn the_surface_shader_validates() {
         panic!("{}", error.emit_to_string(&source));
     }
     let entries: Vec<_> = module.entry_points.iter().map(|entry| entry.name.as_str()).collect();
-    let inked = ["vs_plain_inked", "fs_toon_inked", "fs_toon_textured_inked", "fs_texels", "fs_texels_textured"];
-    let plain =
-        ["vs_depth", "vs_plain", "vs_textured", "fs_lambert", "fs_toon", "fs_cut_out", "fs_nothing", "fs_clipped"];
-    for name in plain.into_iter().chain(inked) {
+    let inked = ["vs_plain_inked", "fs_painted_inked", "fs_painted_textured_inked", "fs_texels", "fs_texels_textured"];
+    let plain = ["vs_depth", "vs_plain", "vs_textured", "fs_painted", "fs_painted_textured", "fs_nothing"];
+    let lit = ["vs_lit", "fs_lit", "fs_lit_inked", "fs_lit_plain", "fs_lit_vertex"];
+    let others = ["fs_cut_out", "fs_clipped"];
+    for name in plain.into_iter().chain(inked).chain(lit).chain(others) {
         assert!(entries.contains(&name), "{name} is not there");
     }
-    // It has no names of its own in the library's space.
-    let library = naga::front::wgsl::parse_str(npr_toon::WGSL).expect("the library parses");
-    let prefixed = module.functions.iter().filter(|(_, f)| f.name.as_deref().is_some_and(|n| n.starts_with("toon_")));
-    assert_eq!(prefixed.count(), library.functions.len());
+    // It has no names of its own in the libraries' spaces.
+    for (library, prefix) in [(npr_toon::WGSL, "toon_"), (npr_gooch::WGSL, "gooch_")] {
+        let library = naga::front::wgsl::parse_str(library).expect("the library parses");
+        let prefixed =
+            module.functions.iter().filter(|(_, f)| f.name.as_deref().is_some_and(|n| n.starts_with(prefix)));
+        assert_eq!(prefixed.count(), library.functions.len(), "{prefix}");
+    }
 }
 
 /// How many inputs.

@@ -90,9 +90,9 @@ impl LightVariant {
         variant
     }
 
-    /// Whether the light is more than normals at pixels and directions that are the same everywhere.
-    pub(super) fn needs_more(&self) -> bool {
-        self.normals != NormalUse::PerPixel || self.positional != [false; 2]
+    /// Whether light is computed at the vertices alone.
+    pub(super) fn is_of_vertices(&self) -> bool {
+        self.normals == NormalUse::PerVertex
     }
 
     pub(super) fn constants(&self) -> [(&'static str, f64); 10] {

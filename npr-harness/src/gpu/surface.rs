@@ -246,7 +246,7 @@ impl SurfacePass {
         let paint = match style.shade {
             _ if targets.color.is_none() => Paint::Nothing,
             Shade::Paper => Paint::Nothing,
-            _ if light.variant.needs_more() => Paint::Lit,
+            _ if plan.lit => Paint::Lit,
             _ => Paint::Painted,
         };
         let blended = if plan.blended && paint != Paint::Nothing {
@@ -349,7 +349,9 @@ impl SurfacePass {
             (Paint::Nothing, true, false) => ("vs_textured", "fs_cut_out"),
             (Paint::Painted, false, false) => ("vs_plain", "fs_painted"),
             (Paint::Painted, true, false) => ("vs_textured", "fs_painted_textured"),
-            (Paint::Lit, _, false) => ("vs_lit", "fs_lit"),
+            (Paint::Lit, false, false) if light.is_of_vertices() => ("vs_lit_vertex", "fs_lit_vertex"),
+            (Paint::Lit, false, false) => ("vs_lit_plain", "fs_lit_plain"),
+            (Paint::Lit, true, false) => ("vs_lit", "fs_lit"),
             (Paint::Nothing, false, true) => ("vs_plain_inked", "fs_texels"),
             (Paint::Nothing, true, true) => ("vs_textured_inked", "fs_texels_textured"),
             (Paint::Painted, false, true) => ("vs_plain_inked", "fs_painted_inked"),
@@ -371,8 +373,9 @@ impl SurfacePass {
             step_mode: wgpu::VertexStepMode::Vertex,
             attributes: &wgpu::vertex_attr_array![4 => Uint32],
         };
-        let lit = paint == Paint::Lit;
-        let buffers = [Some(geometry), (lit || looked_up).then_some(lookups), (lit || inked).then_some(regions)];
+        let everything = vertex == "vs_lit";
+        let (looks_up, has_regions) = (everything || looked_up, everything || inked);
+        let buffers = [Some(geometry), looks_up.then_some(lookups), has_regions.then_some(regions)];
         let target = wgpu::ColorTargetState {
             format: COLOR_FORMAT,
             blend: blended.then_some(wgpu::BlendState::ALPHA_BLENDING),

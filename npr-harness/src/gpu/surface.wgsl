@@ -94,6 +94,20 @@ struct LitSurface {
     @location(5) second: vec3<f32>,
 }
 
+// The same of plain surfaces without lines in the image, and where the vertices' light is all that is needed: on a
+// software rasteriser each number that is interpolated costs as much as some arithmetic at a pixel.
+struct PlainLitSurface {
+    @builtin(position) position: vec4<f32>,
+    @location(0) normal: vec3<f32>,
+    @location(4) first: vec3<f32>,
+    @location(5) second: vec3<f32>,
+}
+
+struct VertexLitSurface {
+    @builtin(position) position: vec4<f32>,
+    @location(0) light: vec2<f32>,
+}
+
 // Colour, and normal, region and depth as one or two words.
 struct Inked {
     @location(0) color: vec4<f32>,
@@ -141,15 +155,12 @@ fn vs_textured_inked(
     return InkedTexturedSurface(view.clip_from_world * vec4<f32>(position, 1.0), normal, uv, color, region);
 }
 
-@vertex
-fn vs_lit(
-    @location(0) position: vec3<f32>, @location(1) normal: vec3<f32>, @location(2) uv: vec2<f32>,
-    @location(3) color: vec4<f32>, @location(4) region: u32,
-) -> LitSurface {
+// What the light needs of a vertex.
+fn lit_vertex(position: vec3<f32>, normal: vec3<f32>) -> PlainLitSurface {
     let n = toon_unit(normal);
     let eye = view.eye.xyz - position * view.eye.w;
     // Brought to unit length at the pixel, all it takes is where that is.
-    var lit = LitSurface(view.clip_from_world * vec4<f32>(position, 1.0), normal, uv, color, region, position, n);
+    var lit = PlainLitSurface(view.clip_from_world * vec4<f32>(position, 1.0), normal, position, n);
     if surface_normals == 1u {
         lit.normal = n;
         lit.first = to_first_light(position);
@@ -158,6 +169,26 @@ fn vs_lit(
         lit.first = vec3<f32>(light_at(n, position, eye), 0.0);
     }
     return lit;
+}
+
+@vertex
+fn vs_lit(
+    @location(0) position: vec3<f32>, @location(1) normal: vec3<f32>, @location(2) uv: vec2<f32>,
+    @location(3) color: vec4<f32>, @location(4) region: u32,
+) -> LitSurface {
+    let plain = lit_vertex(position, normal);
+    return LitSurface(plain.position, plain.normal, uv, color, region, plain.first, plain.second);
+}
+
+@vertex
+fn vs_lit_plain(@location(0) position: vec3<f32>, @location(1) normal: vec3<f32>) -> PlainLitSurface {
+    return lit_vertex(position, normal);
+}
+
+@vertex
+fn vs_lit_vertex(@location(0) position: vec3<f32>, @location(1) normal: vec3<f32>) -> VertexLitSurface {
+    let plain = lit_vertex(position, normal);
+    return VertexLitSurface(plain.position, plain.first.xy);
 }
 
 fn encode_srgb(linear: vec3<f32>) -> vec3<f32> {
@@ -317,7 +348,7 @@ fn fs_painted_textured_inked(in: InkedTexturedSurface, @builtin(front_facing) fr
 }
 
 // What the light is at a pixel, wherever it is computed.
-fn light_of(in: LitSurface, front: bool) -> vec2<f32> {
+fn light_of(in: PlainLitSurface, front: bool) -> vec2<f32> {
     if surface_normals == 2u {
         return select(light_of_back(in.first.xy), in.first.xy, front);
     }
@@ -326,6 +357,10 @@ fn light_of(in: LitSurface, front: bool) -> vec2<f32> {
         return light_interpolated(normal, in.first, in.second);
     }
     return light_at(toon_unit(normal), in.first, to_eye(in.position.xy));
+}
+
+fn without_lookups(in: LitSurface) -> PlainLitSurface {
+    return PlainLitSurface(in.position, in.normal, in.first, in.second);
 }
 
 // The own colour of a surface, and its alpha. In uniform control flow.
@@ -347,7 +382,7 @@ fn lit_texel(in: LitSurface) -> vec4<f32> {
 @fragment
 fn fs_lit(in: LitSurface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
     let base = lit_base(in, lit_texel(in));
-    let color = shaded(base.rgb, light_of(in, front));
+    let color = shaded(base.rgb, light_of(without_lookups(in), front));
     if surface_looked_up && base.a < material.cutoff {
         discard;
     }
@@ -356,10 +391,24 @@ fn fs_lit(in: LitSurface, @builtin(front_facing) front: bool) -> @location(0) ve
 }
 
 @fragment
+fn fs_lit_plain(in: PlainLitSurface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
+    let color = shaded(material.base_color.rgb, light_of(in, front));
+    clip_off(in.position);
+    return vec4<f32>(color, material.base_color.a);
+}
+
+@fragment
+fn fs_lit_vertex(in: VertexLitSurface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
+    let color = shaded(material.base_color.rgb, select(light_of_back(in.light), in.light, front));
+    clip_off(in.position);
+    return vec4<f32>(color, material.base_color.a);
+}
+
+@fragment
 fn fs_lit_inked(in: LitSurface, @builtin(front_facing) front: bool) -> Inked {
     let texel = lit_texel(in);
     let base = lit_base(in, texel);
-    let color = shaded(base.rgb, light_of(in, front));
+    let color = shaded(base.rgb, light_of(without_lookups(in), front));
     if surface_looked_up && base.a < material.cutoff {
         discard;
     }
