@@ -48,6 +48,32 @@ pub struct Drawing {
     pub extents: Vec<Extent>,
 }
 
+impl Drawing {
+    /// The images, drawn once more, with the parameters and the picture that this was made with: for strokes that have
+    /// been moved or changed since.
+    pub fn images(&self, parameters: &TamParameters, image: Option<&StrokeImage>) -> Tam {
+        let pen = Pen::new(parameters, image);
+        let (tones, levels) = (self.tam.tones.len(), self.marks.len());
+        let mut images = Vec::with_capacity(tones * levels);
+        let mut covered = Vec::new();
+        for (i, extent) in self.extents.iter().enumerate() {
+            let side = self.tam.level_side(i % levels);
+            let mut texels = vec![255; (side * side) as usize];
+            for mark in self.marks[i % levels].iter().filter(|&&mark| extent.contains(mark)) {
+                let is_whole = mark.index < extent.whole[mark.layer];
+                let strength = if is_whole { 255 } else { extent.part[mark.layer] };
+                cover(&self.layers[mark.layer][mark.index as usize], &pen, side, &mut covered);
+                for &(texel, ink) in &covered {
+                    let texel: &mut u8 = &mut texels[texel as usize];
+                    *texel = (255 - share(ink, strength)).min(*texel);
+                }
+            }
+            images.push(texels);
+        }
+        Tam { tones: self.tam.tones.clone(), side: self.tam.side, images }
+    }
+}
+
 /// Makes a tonal art map, of strokes that thin out at their ends, or that look like `image`.
 ///
 /// Level by level from the coarsest, and tone by tone from the lightest, strokes are drawn until the image has its tone.
@@ -127,8 +153,11 @@ impl<'a> Sheet<'a> {
             }
             let layer = self.next_layer(is_crossed, coarser);
             self.look(orders, layer);
-            let strength = self.strength(target - self.sum);
+            let strength = self.strength(layer, target - self.sum);
             self.put(layer, strength);
+            if strength < 255 {
+                break;
+            }
         }
         for layer in 0..2 {
             // The image is dark enough, but the coarser one has a stroke more.
@@ -165,12 +194,13 @@ impl<'a> Sheet<'a> {
         self.covered.iter().map(more).sum()
     }
 
-    /// How much of its ink the stroke looked at may have for the sum to grow by as close to `wanted` as it can: 1..=255.
-    fn strength(&self, wanted: u64) -> u8 {
+    /// How much of its ink the stroke looked at may have for the sum to grow by as close to `wanted` as it can: 1..=255,
+    /// and no less than it has.
+    fn strength(&self, layer: usize, wanted: u64) -> u8 {
         if self.gain(255) <= wanted {
             return 255;
         }
-        let (mut low, mut high) = (0, 255);
+        let (mut low, mut high) = (self.extent.part[layer], 255);
         while high - low > 1 {
             let middle = low + (high - low) / 2;
             if self.gain(middle) > wanted { high = middle } else { low = middle }
