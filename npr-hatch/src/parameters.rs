@@ -39,7 +39,8 @@ pub struct TamParameters {
     pub side: u32,
     /// What the strokes' places and shapes are drawn from.
     pub seed: u64,
-    /// A stroke's width in texels, the same at every level: 0.5..=64, and at most a quarter of the side.
+    /// A stroke's width in texels, the same at every level: 1..=64, and at most a quarter of the side. (A thinner
+    /// one could make no texel black.)
     pub width_px: f32,
     /// A stroke's length as a share of the side: 0.02..=1. (No stroke is drawn shorter than two texels.)
     pub length: [f32; 2],
@@ -97,7 +98,7 @@ impl TamParameters {
         let within = |name, value: f32, low, high| {
             if value >= low && value <= high { Ok(()) } else { Err(HatchError::Range { name, value, low, high }) }
         };
-        within("width_px", self.width_px, 0.5, 64.0_f32.min(self.side as f32 / 4.0))?;
+        within("width_px", self.width_px, 1.0, 64.0_f32.min(self.side as f32 / 4.0))?;
         for (name, [low, high], least) in [("length", self.length, 0.02), ("pressure", self.pressure, 0.05)] {
             within(name, low, least, 1.0)?;
             within(name, high, least, 1.0)?;
