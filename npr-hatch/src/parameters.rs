@@ -16,7 +16,7 @@ pub const MAX_CANDIDATES: u32 = 4096;
 #[non_exhaustive]
 pub enum Placement {
     /// The (0, 2)-sequence of Sobol', its digits scrambled (Owen 1995): among any 2^(a+b) strokes in a row from a
-    /// multiple of that, each of the 2^a × 2^b equal boxes of the torus has one. The places cost a few
+    /// multiple of that, each of the 2^a × 2^b equal boxes has one, for every a and b. The places cost a few
     /// integer operations each and are even in both axes after any number of strokes, so nothing has to be
     /// searched.
     Sequence,

@@ -255,7 +255,6 @@ fn strokes_are_even() {
     let random = evenness(Placement::BestOf { candidates: 1 });
     let best = evenness(Placement::BestOf { candidates: 16 });
     let sequence = evenness(Placement::Sequence);
-    println!("random {random:.3?}\nbest of 16 {best:.3?}\nsequence {sequence:.3?}");
     for tone in 0..6 {
         // Points at random have 1/2 (Clark & Evans 1954), a square lattice 1.
         assert!((random[tone].0 - 0.5).abs() < 0.05, "{random:?}");
