@@ -45,8 +45,8 @@ fn hostile_files_are_errors() {
     assert!(matches!(with(16, &0_u32.to_le_bytes()), HatchError::TonesCount { tones: 0 }));
     assert!(matches!(with(20, &f32::NAN.to_le_bytes()), HatchError::Tone { index: 0, .. }));
     // Any other byte that is changed.
-    for at in 32..bytes.len() {
-        assert!(matches!(with(at, &[bytes[at] ^ 4]), HatchError::Checksum { .. }), "{at}");
+    for (at, &byte) in bytes.iter().enumerate().skip(32) {
+        assert!(matches!(with(at, &[byte ^ 4]), HatchError::Checksum { .. }), "{at}");
     }
 }
 
