@@ -129,7 +129,7 @@ impl<'a> Pen<'a> {
 }
 
 /// Puts the texels that a stroke covers, each once, into `covered`, with their ink of 1..=255, in the order in which the
-/// stroke is drawn.
+/// stroke is drawn; or, if it may go around the torus, row by row.
 pub(crate) fn cover(stroke: &Stroke, pen: &Pen, side: u32, covered: &mut Vec<(u32, u8)>) {
     covered.clear();
     let half = (stroke.length * side as f32).max(MIN_LENGTH_PX) * 0.5;

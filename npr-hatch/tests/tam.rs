@@ -92,7 +92,10 @@ fn tones_are_nested_texel_by_texel() {
 
 #[test]
 fn strokes_are_nested_in_tones_and_in_mips() {
-    for parameters in variants() {
+    // Small levels, in which a stroke is much, are where it is hard.
+    let seeds = (0..100).flat_map(|seed| [1.0, 2.5, 8.0].map(|width_px| (seed, width_px)));
+    let small = seeds.map(|(seed, width_px)| TamParameters { seed, width_px, side: 32, ..TamParameters::default() });
+    for parameters in variants().into_iter().chain(small) {
         let drawing = draw(&parameters, None).unwrap();
         let (tones, levels) = (drawing.tam.tones.len(), drawing.tam.levels());
         let extent = |tone: usize, level: usize| drawing.extents[tone * levels + level];
