@@ -91,7 +91,7 @@ pub fn draw(parameters: &TamParameters, image: Option<&StrokeImage>) -> Result<D
     for level in (0..levels).rev() {
         let side = parameters.side >> level;
         // How many strokes have as much ink as all texels, and 32 times as many: a texel remains paper under e^-32.
-        let stroke = f64::from(parameters.length[0] * side as f32 * pen.width_px) * pen.mean_ink();
+        let stroke = f64::from(parameters.length[0] * side as f32 * pen.width_px) * pen.mean_ink().max(0.01);
         let limit = 1024 + (32.0 * f64::from(side * side) / stroke) as usize;
         let mut sheet = Sheet::new(side, pen, limit);
         for (tone, &asked) in tones.iter().enumerate() {

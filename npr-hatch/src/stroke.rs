@@ -94,13 +94,16 @@ impl StrokeImage {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pen<'a> {
     pub width_px: f32,
-    pub taper: f32,
+    is_tapered: bool,
+    /// How fast strokes thin out toward their end.
+    taper_slope: f32,
     pub image: Option<&'a StrokeImage>,
 }
 
 impl<'a> Pen<'a> {
     pub fn new(parameters: &TamParameters, image: Option<&'a StrokeImage>) -> Self {
-        Self { width_px: parameters.width_px, taper: parameters.taper, image }
+        let TamParameters { width_px, taper, .. } = *parameters;
+        Self { width_px, is_tapered: taper > 0.0, taper_slope: 1.0 / taper.max(1e-6), image }
     }
 
     /// The mean ink of a stroke's box, roughly.
@@ -115,8 +118,8 @@ impl<'a> Pen<'a> {
             let width = self.width_px;
             return image.mean(along * 0.5 + 0.5, across / width + 0.5, 0.5 / half, 1.0 / width);
         }
-        let thick = if self.taper > 0.0 {
-            let t = ((1.0 + along) * 2.0 / self.taper).min((1.0 - along) / self.taper).clamp(0.0, 1.0);
+        let thick = if self.is_tapered {
+            let t = ((2.0 + 2.0 * along).min(1.0 - along) * self.taper_slope).clamp(0.0, 1.0);
             t * (2.0 - t)
         } else {
             1.0
@@ -133,6 +136,7 @@ impl<'a> Pen<'a> {
 pub(crate) fn cover(stroke: &Stroke, pen: &Pen, side: u32, covered: &mut Vec<(u32, u8)>) {
     covered.clear();
     let half = (stroke.length * side as f32).max(MIN_LENGTH_PX) * 0.5;
+    let per_half = 1.0 / half;
     let bow = stroke.bow * 2.0 * half;
     let [dx, dy] = stroke.direction;
     let is_steep = dy.abs() > dx.abs();
@@ -155,12 +159,12 @@ pub(crate) fn cover(stroke: &Stroke, pen: &Pen, side: u32, covered: &mut Vec<(u3
         for j in (middle - window).floor() as i32..=(middle + window).floor() as i32 {
             let b = j as f32 + 0.5 - minor_part;
             let (px, py) = if is_steep { (b, a) } else { (a, b) };
-            let along = (px * dx + py * dy) / half;
-            if along.abs() > 1.0 + 0.5 / half {
+            let along = (px * dx + py * dy) * per_half;
+            let across = py * dx - px * dy - bow * (1.0 / 3.0 - along * along);
+            if along.abs() > 1.0 + 0.5 * per_half || across.abs() >= 0.5 * pen.width_px + 0.5 {
                 continue;
             }
-            let off = bow * (1.0 / 3.0 - along * along);
-            let ink = pen.ink(along, py * dx - px * dy - off, half) * stroke.pressure;
+            let ink = pen.ink(along, across, half) * stroke.pressure;
             let ink = (ink * 255.0 + 0.5) as u8;
             if ink > 0 {
                 let (p, q) = ((major + i) & mask, (minor + j) & mask);

@@ -306,6 +306,26 @@ fn strokes_that_are_too_faint_are_an_error() {
 }
 
 #[test]
+fn the_ends_of_the_ranges_draw() {
+    let default = || TamParameters { side: 32, ..TamParameters::default() };
+    let ends = [
+        TamParameters { side: 8, width_px: 2.0, ..default() },
+        TamParameters { width_px: 8.0, length: [1.0; 2], bow: 0.2, jitter_deg: 45.0, ..default() },
+        TamParameters { length: [0.02; 2], taper: 0.0, ..default() },
+        TamParameters { taper: 1.0, angle_deg: -360.0, cross_deg: 0.0, cross_from: Some(5), ..default() },
+        TamParameters { angle_deg: 45.0, cross_deg: 180.0, seed: u64::MAX, ..default() },
+        TamParameters { tones: even_tones(64), ..default() },
+        TamParameters { tones: vec![0.99, 0.98], cross_from: None, ..default() },
+    ];
+    for parameters in ends {
+        let tam = draw(&parameters, None).unwrap().tam;
+        tam.validate().unwrap();
+        let off = (0..tam.tones.len()).map(|tone| (tam.mean(tone, 0) - f64::from(tam.tones[tone])).abs());
+        assert!(off.fold(0.0, f64::max) < 0.01, "{parameters:?}");
+    }
+}
+
+#[test]
 fn bad_parameters_are_errors() {
     let default = TamParameters::default;
     let error = |parameters: TamParameters| {
