@@ -1,4 +1,4 @@
-//! The WGSL of npr-toon and npr-gooch, run on a device, against the Rust functions of the same names, which are in f64,
+//! The WGSL of npr-toon, npr-gooch and npr-hatch, run on a device, against the Rust functions of the same names, which are in f64,
 //! on the same seeded inputs.
 //!
 //! Inputs are f32, so a function and its twin are given exactly the same numbers; what is measured is the arithmetic
@@ -11,6 +11,7 @@ mod check;
 #[path = "../common/mod.rs"]
 mod common;
 mod gooch;
+mod hatch;
 mod images;
 mod pixels;
 mod ramps;
@@ -31,8 +32,9 @@ fn device() -> Option<Box<GpuContext>> {
 /// Every function of the libraries is called by some check, so that a new one cannot be forgotten.
 #[test]
 fn every_function_is_run() {
-    let calls: Vec<&str> = [gooch::calls(), toon::calls(), ramps::calls(), images::calls(), pixels::calls()].concat();
-    for library in [npr_toon::WGSL, npr_gooch::WGSL] {
+    let calls: Vec<&str> =
+        [gooch::calls(), hatch::calls(), toon::calls(), ramps::calls(), images::calls(), pixels::calls()].concat();
+    for library in [npr_toon::WGSL, npr_gooch::WGSL, npr_hatch::WGSL] {
         for (_, function) in naga::front::wgsl::parse_str(library).expect("it is valid").functions.iter() {
             let name = function.name.as_deref().expect("functions have names");
             assert!(calls.iter().any(|call| call.contains(&format!("{name}("))), "{name} is not run");

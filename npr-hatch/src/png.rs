@@ -1,0 +1,74 @@
+//! Pictures of strokes from PNG files, and maps into them.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use image::{DynamicImage, GrayImage, ImageError, Luma};
+
+use crate::{HatchError, StrokeImage, Tam};
+
+type Gray16 = image::ImageBuffer<Luma<u16>, Vec<u16>>;
+
+impl StrokeImage {
+    /// From a picture of any size and depth: dark is ink, light or transparent is paper. Colours count by their
+    /// luminance.
+    pub fn from_picture(picture: &DynamicImage) -> Result<Self, HatchError> {
+        let (width, height) = (picture.width(), picture.height());
+        let texels = width as usize * height as usize;
+        if texels > Self::MAX_TEXELS {
+            return Err(HatchError::Texels { width, height, texels });
+        }
+        // Through RGBA with 16 bits, as the luminance in integers is the same everywhere.
+        let picture = picture.to_rgba16();
+        let ink = picture.pixels().map(|pixel| {
+            let [r, g, b, a] = pixel.0.map(u64::from);
+            // Rec. 709, in 10,000ths.
+            let luminance = (2126 * r + 7152 * g + 722 * b) / 10_000;
+            ((65535 - luminance) * a / 65535) as u16
+        });
+        Self::from_ink(width, height, &ink.collect::<Vec<_>>())
+    }
+
+    /// From a PNG file.
+    pub fn load(path: impl AsRef<Path>) -> Result<Self, HatchError> {
+        let path = path.as_ref();
+        let failed = |source: ImageError| HatchError::Image { path: path.into(), source };
+        let reader = image::ImageReader::open(path).map_err(|error| failed(error.into()))?;
+        let reader = reader.with_guessed_format().map_err(|error| failed(error.into()))?;
+        Self::from_picture(&reader.decode().map_err(failed)?)
+    }
+}
+
+/// Writes each image of a map into a folder, which is made if it is not there, as `tone_N_SIDE.png`, N counted from 0,
+/// the lightest. Gives the files, in the order of [`Tam::images`].
+pub fn write_images(tam: &Tam, folder: impl AsRef<Path>) -> Result<Vec<PathBuf>, HatchError> {
+    tam.validate()?;
+    let folder = folder.as_ref();
+    fs::create_dir_all(folder).map_err(|source| HatchError::Folder { path: folder.into(), source })?;
+    let mut paths = Vec::new();
+    for tone in 0..tam.tones.len() {
+        for level in 0..tam.levels() {
+            let side = tam.level_side(level);
+            let path = folder.join(format!("tone_{tone}_{side}.png"));
+            write_gray(&path, side, side, tam.image(tone, level))?;
+            paths.push(path);
+        }
+    }
+    Ok(paths)
+}
+
+/// Writes 8-bit gray texels as a PNG file.
+pub fn write_gray(path: impl AsRef<Path>, width: u32, height: u32, texels: &[u8]) -> Result<(), HatchError> {
+    let path = path.as_ref();
+    let image = GrayImage::from_raw(width, height, texels.to_vec());
+    let image = image.ok_or(HatchError::Texels { width, height, texels: texels.len() })?;
+    image.save(path).map_err(|source| HatchError::Image { path: path.into(), source })
+}
+
+/// Writes 16-bit gray texels, such as [`crate::threshold::Thresholds`], as a PNG file.
+pub fn write_gray16(path: impl AsRef<Path>, width: u32, height: u32, texels: &[u16]) -> Result<(), HatchError> {
+    let path = path.as_ref();
+    let image = Gray16::from_raw(width, height, texels.to_vec());
+    let image = image.ok_or(HatchError::Texels { width, height, texels: texels.len() })?;
+    image.save(path).map_err(|source| HatchError::Image { path: path.into(), source })
+}
