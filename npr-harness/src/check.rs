@@ -189,7 +189,11 @@ pub fn run(
     let total = inputs.len().max(1) as f64;
     if inputs.is_empty() {
         let scene = Scene::new(npr_mesh::embedded::scene());
-        checker.model("scene", &scene, &[("composed".into(), still_life_camera())], &|s| progress(s / 2.0))?;
+        let camera = still_life_camera();
+        checker.model("scene", &scene, &[("composed".into(), camera)], &|s| progress(s / 2.0))?;
+        if styles.is_empty() {
+            checker.borders("scene", "composed", &scene, &camera)?;
+        }
         let painted = [("composed".into(), painted_camera())];
         checker.model("painted", &painted_scene(), &painted, &|s| progress(0.5 + s / 2.0))?;
     }
@@ -202,11 +206,14 @@ pub fn run(
             (format!("{yaw} {pitch}"), Camera::framed(scene.corners(), aspect, &framing))
         });
         checker.model(&name, &scene, &views, &|share| progress((number as f64 + share) / total))?;
+        if let (true, Some((view, camera))) = (styles.is_empty(), views.first()) {
+            checker.borders(&name, view, &scene, camera)?;
+        }
     }
     checker.finish()
 }
 
-/// Checks one scene from some views, named, without [`run`]'s check of the width.
+/// Checks one scene from some views, named, without [`run`]'s checks of the width, of normals and of borders.
 ///
 /// # Errors
 /// [`HarnessError`]; an exceeded limit is none.
@@ -263,19 +270,11 @@ impl Checker<'_> {
                 "artist" => artist,
                 _ => true,
             };
-            // In every view, and those that differ from them in a number or in size, in the first alone.
-            let often = [
-                "cartoon",
-                "lines",
-                "printed-fins",
-                "gooch",
-                "two-lights",
-                "wash",
-                "vertex-light",
-                "ink-image",
-                "artist",
-            ];
-            let once = ["ink-thick", "ink-fine", "wrapped", "printed-bands", "printed-gooch"];
+            // In every view, and those that differ from them in light, in a number or in size, in the first alone.
+            let often = ["cartoon", "lines", "printed-fins", "ink-image", "artist"];
+            let light = ["gooch", "two-lights", "wash", "wrapped", "vertex-light", "printed-bands", "printed-gooch"];
+            let once = ["ink-thick", "ink-fine"].into_iter().chain(light.into_iter().filter(|_| !artist));
+            let once: Vec<_> = once.collect();
             let once = once.iter().filter(|_| number == 0);
             for name_of_style in often.iter().chain(once).filter(wanted) {
                 let style = style(name_of_style).expect("a style of this crate");
@@ -284,9 +283,6 @@ impl Checker<'_> {
             if of_edges {
                 self.lines(name, view, scene, camera)?;
                 self.image_lines(name, view, scene, camera)?;
-                if number == 0 {
-                    self.borders(name, view, scene, camera)?;
-                }
             }
             #[cfg(feature = "gpu")]
             if of_edges {
