@@ -182,9 +182,9 @@ pub fn run(
         Checker { executor, styles, out, tell, skipped: Vec::new(), metrics: Vec::new(), rows: Vec::new() };
     if styles.is_empty() {
         checker.widths()?;
-    }
-    if styles.is_empty() && inputs.is_empty() {
-        checker.normals()?;
+        if inputs.is_empty() {
+            checker.normals()?;
+        }
     }
     let total = inputs.len().max(1) as f64;
     if inputs.is_empty() {
@@ -273,10 +273,8 @@ impl Checker<'_> {
             // In every view, and those that differ from them in light, in a number or in size, in the first alone.
             let often = ["cartoon", "lines", "printed-fins", "ink-image", "artist"];
             let light = ["gooch", "two-lights", "wash", "wrapped", "vertex-light", "printed-bands", "printed-gooch"];
-            let once = ["ink-thick", "ink-fine"].into_iter().chain(light.into_iter().filter(|_| !artist));
-            let once: Vec<_> = once.collect();
-            let once = once.iter().filter(|_| number == 0);
-            for name_of_style in often.iter().chain(once).filter(wanted) {
+            let once = ["ink-thick", "ink-fine"].iter().chain(light.iter().filter(|_| !artist));
+            for name_of_style in often.iter().chain(once.filter(|_| number == 0)).filter(wanted) {
                 let style = style(name_of_style).expect("a style of this crate");
                 self.picture(name, view, scene, camera, &style)?;
             }

@@ -136,7 +136,7 @@ impl<'a> GpuRenderer<'a> {
                 let drawn = SurfaceTargets { color: None, texels: Some(&ink.texels), depth, size_px };
                 self.surface.record(device, &mut encoder, uploaded, scene, style, plan, camera, &light, &drawn);
             }
-            self.ink.record(self.context, &mut encoder, uploaded.bounds, image, camera, ink, targets)?;
+            self.ink.record(self.context, &mut encoder, scene.bounds(), image, camera, ink, targets)?;
         }
         if let (Some(Lines::Fins(look)), Some(contours)) = (&style.lines, &plan.contours) {
             let mut scratch = self.scratch.borrow_mut();
@@ -167,7 +167,7 @@ impl<'a> GpuRenderer<'a> {
             }
         }
         if let (Some(Lines::Printed { width_px, ink }), Some(fins), Some(bounds)) =
-            (&style.lines, &uploaded.fins, uploaded.bounds)
+            (&style.lines, &uploaded.fins, scene.bounds())
         {
             let view = camera.fin_view(size_px, f64::from(*width_px), bounds);
             let ink = ink.extend(1.0).to_array();

@@ -11,20 +11,6 @@
 //! # Ok::<(), npr_hatch::HatchError>(())
 //! ```
 //!
-//! [`draw`] makes a map from [`TamParameters`]; [`store`] and `png` keep it; [`hatch_weights`] and [`hatch_blend`] show
-//! it by light, six tones in two textures; [`Thresholds`] have all tones in one channel. What begins with `hatch_` stands
-//! here twice under the same name, in Rust in f64 and in [`WGSL`].
-//!
-//! # Sources
-//!
-//! - E. Praun, H. Hoppe, M. Webb, A. Finkelstein: *Real-Time Hatching*, SIGGRAPH 2001: the map, strokes nested in tones
-//!   and in mips, the best of some candidates.
-//! - D. Card, J. L. Mitchell: *Non-Photorealistic Rendering with Pixel and Vertex Shaders*, in *Direct3D ShaderX*, 2002,
-//!   listings 4 (weights) and 5 (blend). The comment "times six clamp at zero" in listing 4 is in none of its
-//!   instructions; see [`hatch_level`].
-//! - M. Webb, E. Praun, A. Finkelstein, H. Hoppe: *Fine Tone Control in Hardware Hatching*, NPAR 2002: thresholds.
-//! - A. B. Owen: *Randomly Permuted (t,m,s)-Nets and (t,s)-Sequences*, 1995, for [`Placement::Sequence`].
-//!
 //! - [`draw`] makes the images of a [`Tam`] from [`TamParameters`], with strokes that thin out at their ends or that look
 //!   like a [`StrokeImage`]; [`store`] puts a map into one file, the module `png` (feature `image`, on by default) into
 //!   pictures.

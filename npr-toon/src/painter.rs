@@ -121,18 +121,24 @@ impl PainterUniform {
     /// Checks and packs `painter`.
     pub fn new(painter: &Painter) -> Result<Self, ToonError> {
         painter.validate()?;
-        let place = |index: usize| match painter.lights.get(index).map(|light| light.place) {
+        Ok(Self::unchecked(&painter.lights, painter.light_scale))
+    }
+
+    /// Packs the first two lights as they are: also those that [`Painter::validate`] refuses, such as the direction of
+    /// two lights that cancel out, which is zero.
+    pub fn unchecked(lights: &[Light], light_scale: f32) -> Self {
+        let place = |index: usize| match lights.get(index).map(|light| light.place) {
             Some(LightPlace::Directional { to_light }) => to_light.extend(0.0).to_array(),
             Some(LightPlace::Positional { position }) => position.extend(1.0).to_array(),
             None => [0.0; 4],
         };
-        let brightness = |index: usize| painter.lights.get(index).map_or(0.0, |light| light.brightness);
-        Ok(Self {
+        let brightness = |index: usize| lights.get(index).map_or(0.0, |light| light.brightness);
+        Self {
             place_a: place(0),
             place_b: place(1),
-            light_color: combined_color(&painter.lights).as_vec3().extend(painter.light_scale).to_array(),
+            light_color: combined_color(lights).as_vec3().extend(light_scale).to_array(),
             brightness: [brightness(0), brightness(1)],
             padding: [0; 2],
-        })
+        }
     }
 }

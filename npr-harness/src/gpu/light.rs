@@ -10,7 +10,7 @@ use npr_toon::normal::NormalUse;
 use npr_toon::painter::{Painter, PainterUniform};
 use npr_toon::ramp::RampUniform;
 use npr_toon::row::TexelFilter;
-use npr_toon::source::{Light, LightPlace, combined_color};
+use npr_toon::source::{Light, LightPlace};
 use npr_toon::table::Ramp2dUniform;
 use wgpu::util::DeviceExt;
 
@@ -176,20 +176,8 @@ impl LightOnDevice {
             }
             Shade::Gooch(model) => gooch = Some(uniform(bytemuck::bytes_of(&GoochUniform::new(model)?))),
         }
-        let place = |number: usize| match lights.get(number).map(|light| light.place) {
-            Some(LightPlace::Directional { to_light }) => to_light.extend(0.0).to_array(),
-            Some(LightPlace::Positional { position }) => position.extend(1.0).to_array(),
-            None => [0.0; 4],
-        };
-        let brightness = |number: usize| lights.get(number).map_or(0.0, |light| light.brightness);
-        // Not `PainterUniform::new`: two lights that cancel out have no direction, which is no error here.
-        let placed = PainterUniform {
-            place_a: place(0),
-            place_b: place(1),
-            light_color: combined_color(lights).as_vec3().extend(light_scale).to_array(),
-            brightness: [brightness(0), brightness(1)],
-            padding: [0; 2],
-        };
+        // Unchecked: two lights that cancel out have no direction, which is no error here.
+        let placed = PainterUniform::unchecked(lights, light_scale);
         Ok(Self {
             variant: LightVariant::new(style, lights),
             lights: uniform(bytemuck::bytes_of(&placed)),

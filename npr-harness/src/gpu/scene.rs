@@ -5,7 +5,7 @@ use super::{GpuContext, GpuError};
 use crate::plan::Plan;
 use crate::scene::Scene;
 use crate::texture::MipMapped;
-use glam::{Vec3, Vec4};
+use glam::Vec4;
 use npr_mesh::{AlphaMode, Texture, Wrap};
 use std::collections::HashMap;
 use std::ops::Range;
@@ -23,8 +23,6 @@ pub struct GpuScene {
     pub(super) vertices: wgpu::Buffer,
     /// Texture coordinate and colour, where any surface looks one up.
     pub(super) lookups: Option<wgpu::Buffer>,
-    /// Of the model's box: to find it takes a look at every corner.
-    pub(super) bounds: Option<(Vec3, Vec3)>,
     /// Per vertex its region, where lines are found in the image.
     pub(super) regions: Option<wgpu::Buffer>,
     /// Faces that are not blended, by material.
@@ -99,7 +97,6 @@ impl GpuScene {
         Ok(Self {
             vertices,
             lookups,
-            bounds: scene.bounds(),
             regions,
             indices,
             batches,
