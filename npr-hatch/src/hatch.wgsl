@@ -1,4 +1,4 @@
-// Weights of six tones by light, their blend, and thresholds. See the Rust functions of the same names.
+// Weights of six tones by light, their blend, thresholds, footprints and mappings. See the Rust functions of the same names.
 
 struct HatchWeights {
     light: vec3<f32>,
@@ -42,4 +42,117 @@ fn hatch_threshold(texel: f32, tone: f32, width: f32) -> f32 {
         return saturate((texel - tone) / width + 0.5);
     }
     return select(0.0, 1.0, texel > tone);
+}
+
+fn hatch_width(tone: f32, width: f32) -> f32 {
+    return max(min(width, 2.0 * min(tone, 1.0 - tone)), 0.0);
+}
+
+struct HatchFootprint {
+    level: f32,
+    spread: vec2<f32>,
+}
+
+fn hatch_footprint(uv_dx: vec2<f32>, uv_dy: vec2<f32>, texels: f32, last_level: f32) -> HatchFootprint {
+    let along_x = uv_dx * texels;
+    let along_y = uv_dy * texels;
+    let mean = 0.5 * (dot(along_x, along_x) + dot(along_y, along_y));
+    let half = 0.5 * (along_x.x * along_x.x + along_y.x * along_y.x - along_x.y * along_x.y - along_y.y * along_y.y);
+    let other = along_x.x * along_x.y + along_y.x * along_y.y;
+    let apart = sqrt(half * half + other * other);
+    let longer_squared = mean + apart;
+    let area = abs(along_x.x * along_y.y - along_x.y * along_y.x);
+    let ratio = clamp(longer_squared / max(area, 1e-30), 1.0, 16.0);
+    let level = clamp(0.5 * log2(max(longer_squared / ratio, 1e-30)), 0.0, last_level);
+    let length_of = max(sqrt(ratio) - sqrt(2.0), 0.0) * exp2(level) / texels;
+    var axis = vec2<f32>(other, apart - half);
+    if half >= 0.0 {
+        axis = vec2<f32>(half + apart, other);
+    }
+    if length_of <= 0.0 {
+        return HatchFootprint(level, vec2<f32>(0.0));
+    }
+    // Scaled first: squares of very long or very short axes are no f32.
+    let scaled = axis / max(max(abs(axis.x), abs(axis.y)), 1e-30);
+    return HatchFootprint(level, scaled * (length_of * inverseSqrt(max(dot(scaled, scaled), 1e-30))));
+}
+
+struct HatchTaps {
+    low: vec2<u32>,
+    high: vec2<u32>,
+    share: vec2<f32>,
+}
+
+fn hatch_taps(uv: vec2<f32>, side: u32) -> HatchTaps {
+    let place = uv * f32(side) - 0.5;
+    let corner = floor(place);
+    let low = bitcast<vec2<u32>>(vec2<i32>(corner)) & vec2<u32>(side - 1u);
+    return HatchTaps(low, (low + 1u) & vec2<u32>(side - 1u), place - corner);
+}
+
+fn hatch_plane_weights(normal: vec3<f32>) -> vec3<f32> {
+    let above = max(abs(normal) - 0.4, vec3<f32>(0.0));
+    let cubes = above * above * above;
+    let sum = cubes.x + cubes.y + cubes.z;
+    if sum > 0.0 {
+        return cubes / sum;
+    }
+    return vec3<f32>(0.0, 0.0, 1.0);
+}
+
+fn hatch_plane(at: vec3<f32>, axis: u32) -> vec2<f32> {
+    if axis == 0u {
+        return at.zy;
+    }
+    if axis == 1u {
+        return at.xz;
+    }
+    return at.xy;
+}
+
+fn hatch_doubled(diagonal: vec3<f32>, others: vec3<f32>, axis: u32) -> vec2<f32> {
+    if axis == 0u {
+        return vec2<f32>(diagonal.z - diagonal.y, 2.0 * others.z);
+    }
+    if axis == 1u {
+        return vec2<f32>(diagonal.x - diagonal.z, 2.0 * others.y);
+    }
+    return vec2<f32>(diagonal.x - diagonal.y, 2.0 * others.x);
+}
+
+struct HatchStep {
+    first: i32,
+    share: f32,
+}
+
+fn hatch_turn(doubled: vec2<f32>) -> HatchStep {
+    if all(doubled == vec2<f32>(0.0)) {
+        return HatchStep(0, 0.0);
+    }
+    let turns = (atan2(doubled.y, doubled.x) / 6.283185307179586 + 1.0) * 12.0;
+    let at = hatch_octave(turns);
+    return HatchStep(at.first % 12, at.share);
+}
+
+fn hatch_octave(octave: f32) -> HatchStep {
+    let whole = floor(octave);
+    return HatchStep(i32(whole), saturate((octave - whole - 0.5) * 4.0 + 0.5));
+}
+
+fn hatch_turned(place: vec2<f32>, turn: i32) -> vec2<f32> {
+    let angle = f32(turn) * 0.2617993877991494;
+    let sine = sin(angle);
+    let cosine = cos(angle);
+    return vec2<f32>(cosine * place.x + sine * place.y, cosine * place.y - sine * place.x);
+}
+
+fn hatch_moved(number: i32) -> vec2<f32> {
+    return fract(vec2<f32>(0.7548776662466928, 0.5698402909980533) * f32(number));
+}
+
+fn hatch_share(tone: f32, share: f32) -> f32 {
+    if share < 1.0 {
+        return pow(max(tone, 1e-6), share);
+    }
+    return tone;
 }

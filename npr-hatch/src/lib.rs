@@ -60,6 +60,8 @@
 
 mod draw;
 mod error;
+pub mod lookup;
+pub mod mapping;
 mod parameters;
 mod place;
 #[cfg(feature = "image")]
@@ -82,3 +84,6 @@ pub use weights::{
 
 /// The functions of this crate in WGSL: no bindings, no entry points, every name begins with `hatch_` or `Hatch`.
 pub const WGSL: &str = include_str!("hatch.wgsl");
+
+/// Lookups in textures that the caller hands on, to put after [`WGSL`]: as little bound, as well named.
+pub const LOOKUP_WGSL: &str = include_str!("lookup.wgsl");

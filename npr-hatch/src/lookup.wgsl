@@ -1,0 +1,71 @@
+// Lookups in the textures of a map, which the caller binds and hands on; after hatch.wgsl. See the Rust functions of the
+// same names.
+
+// What two textures of three tones each have at a place; the sampler repeats, and filters texels and levels.
+struct HatchTexels {
+    light: vec3<f32>,
+    dark: vec3<f32>,
+}
+
+fn hatch_texels_at(
+    light: texture_2d<f32>, dark: texture_2d<f32>, trilinear: sampler, uv: vec2<f32>, level: f32,
+) -> HatchTexels {
+    return HatchTexels(
+        textureSampleLevel(light, trilinear, uv, level).rgb, textureSampleLevel(dark, trilinear, uv, level).rgb,
+    );
+}
+
+fn hatch_texels(
+    light: texture_2d<f32>, dark: texture_2d<f32>, trilinear: sampler, uv: vec2<f32>, footprint: HatchFootprint,
+) -> HatchTexels {
+    if all(footprint.spread == vec2<f32>(0.0)) {
+        return hatch_texels_at(light, dark, trilinear, uv, footprint.level);
+    }
+    var sum = HatchTexels(vec3<f32>(0.0), vec3<f32>(0.0));
+    for (var i = 0; i < 4; i++) {
+        let along = -0.375 + 0.25 * f32(i);
+        let one = hatch_texels_at(light, dark, trilinear, uv + footprint.spread * along, footprint.level);
+        sum.light += 0.25 * one.light;
+        sum.dark += 0.25 * one.dark;
+    }
+    return sum;
+}
+
+// One level of a texture of thresholds, 16 bits unsigned, compared and then filtered.
+fn hatch_ink_of_level(map: texture_2d<u32>, uv: vec2<f32>, level: i32, tone: f32, width: f32) -> f32 {
+    let taps = hatch_taps(uv, textureDimensions(map, level).x);
+    let a = textureLoad(map, taps.low, level).x;
+    let b = textureLoad(map, vec2<u32>(taps.high.x, taps.low.y), level).x;
+    let c = textureLoad(map, vec2<u32>(taps.low.x, taps.high.y), level).x;
+    let d = textureLoad(map, taps.high, level).x;
+    let texels = vec4<f32>(vec4<u32>(a, b, c, d)) / 65535.0;
+    let ink = vec4<f32>(
+        hatch_threshold(texels.x, tone, width), hatch_threshold(texels.y, tone, width),
+        hatch_threshold(texels.z, tone, width), hatch_threshold(texels.w, tone, width),
+    );
+    let rows = mix(ink.xz, ink.yw, taps.share.x);
+    return mix(rows.x, rows.y, taps.share.y);
+}
+
+fn hatch_ink_at(map: texture_2d<u32>, uv: vec2<f32>, level: f32, tone: f32, width: f32) -> f32 {
+    let finer = floor(level);
+    let share = level - finer;
+    let ink = hatch_ink_of_level(map, uv, i32(finer), tone, width);
+    if share > 0.0 {
+        return mix(ink, hatch_ink_of_level(map, uv, i32(finer) + 1, tone, width), share);
+    }
+    return ink;
+}
+
+fn hatch_ink(map: texture_2d<u32>, uv: vec2<f32>, footprint: HatchFootprint, tone: f32, width: f32) -> f32 {
+    let least = hatch_width(tone, width);
+    if all(footprint.spread == vec2<f32>(0.0)) {
+        return hatch_ink_at(map, uv, footprint.level, tone, least);
+    }
+    var ink = 0.0;
+    for (var i = 0; i < 4; i++) {
+        let along = -0.375 + 0.25 * f32(i);
+        ink += 0.25 * hatch_ink_at(map, uv + footprint.spread * along, footprint.level, tone, least);
+    }
+    return ink;
+}
