@@ -19,6 +19,29 @@ pub enum HarnessError {
     /// The cool and warm tones.
     #[error(transparent)]
     Gooch(#[from] npr_gooch::GoochError),
+    /// A tonal art map.
+    #[error(transparent)]
+    Hatch(#[from] npr_hatch::HatchError),
+    /// A map that should have six tones.
+    #[error("a map of {tones} tones: listings 4 and 5 know six (thresholds with a linear transfer know any number)")]
+    SixTones {
+        /// How many it has.
+        tones: usize,
+    },
+    /// A file without thresholds where they are to be drawn.
+    #[error("{}: the map has no thresholds; its six tones can be drawn", path.display())]
+    NoThresholds {
+        /// Which.
+        path: std::path::PathBuf,
+    },
+    /// A map's file that could not be read.
+    #[error("{}: {source}", path.display())]
+    Map {
+        /// Which.
+        path: std::path::PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
     /// A style without a light.
     #[error("a style needs one light or two")]
     NoLight,

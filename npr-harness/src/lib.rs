@@ -12,6 +12,7 @@ pub mod executor;
 pub mod gallery;
 #[cfg(feature = "gpu")]
 pub mod gpu;
+pub mod hatch;
 pub mod image_ink;
 pub mod inspect;
 pub mod light;

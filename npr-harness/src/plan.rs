@@ -4,7 +4,8 @@ use crate::camera::Camera;
 use crate::error::HarnessError;
 use crate::image_ink::{ImagePlan, InkScale};
 use crate::scene::Scene;
-use crate::style::{Lines, Shade, Style};
+use crate::hatch::HatchPlan;
+use crate::style::{HatchMapping, Lines, Shade, Style};
 use glam::DVec4;
 use npr_imagespace::artist::LineKind as InnerLines;
 use npr_mesh::AlphaMode;
@@ -60,6 +61,8 @@ pub struct Plan {
     pub printed_fins: Option<PrintedFins>,
     /// What lines in the image need, where they are asked for.
     pub image: Option<ImagePlan>,
+    /// What strokes need, where surfaces are hatched.
+    pub hatch: Option<HatchPlan>,
     /// Passes, in order.
     pub passes: Vec<Reason>,
     /// What was left out.
@@ -70,7 +73,7 @@ impl Plan {
     /// Decides what a style needs for a scene seen by a camera.
     ///
     /// # Errors
-    /// What is wrong with the style, [`Style::validate`], or with its lines; [`HarnessError::ClippedEdges`].
+    /// What is wrong with the style, [`Style::validate`], with its lines, or with its map; [`HarnessError::ClippedEdges`].
     pub fn new(scene: &Scene, style: &Style, camera: &Camera) -> Result<Self, HarnessError> {
         style.validate()?;
         let model = &scene.model;
@@ -81,7 +84,9 @@ impl Plan {
         let two = style.lights.len() > 1;
         let each = matches!(style.shade, Shade::Painter(_));
         // Several lights taken together are a direction.
-        let lit = painted && (style.normals != NormalUse::PerPixel || placed && (each || !two));
+        let hatch = if let Shade::Hatch(shade) = &style.shade { Some(HatchPlan::new(scene, shade)?) } else { None };
+        let lit =
+            painted && (hatch.is_some() || style.normals != NormalUse::PerPixel || placed && (each || !two));
         let cut_out = used(&|m| matches!(m.alpha_mode, AlphaMode::Mask { .. }));
         let blended = painted && scene.has_blend();
         let cull_back = scene.closed && scene.clip.is_none() && !sees_the_inside(scene, camera);
@@ -152,8 +157,25 @@ impl Plan {
         add(
             lit,
             "positions or light between vertices",
-            "a light is near, or the style asks for vertices' light",
+            "a light is near, strokes lie on surfaces, or the style asks for vertices' light",
             "the light comes from far away, and meets normals at pixels",
+        );
+        let mapping = hatch.as_ref().map(|hatch| hatch.mapping);
+        add(
+            hatch.is_some(),
+            "tonal art map",
+            match mapping {
+                Some(HatchMapping::Coordinates) => "surfaces are hatched, by texture coordinates",
+                Some(HatchMapping::Form) => "surfaces are hatched, along their form",
+                _ => "surfaces are hatched, by three planes",
+            },
+            "no surface is hatched",
+        );
+        add(
+            mapping == Some(HatchMapping::Form),
+            "a field of directions",
+            "strokes follow the form",
+            "no stroke follows the form",
         );
         add(false, "multisampling", "", "lines and band borders carry their own coverage");
         let contours = match &style.lines {
@@ -179,6 +201,7 @@ impl Plan {
             contours,
             printed_fins,
             image,
+            hatch,
             passes,
             left_out,
         })

@@ -2,9 +2,12 @@
 
 mod file;
 mod form;
+mod hatch;
 mod presets;
 
 pub use file::StyleFileError;
+pub(crate) use hatch::six_tones;
+pub use hatch::{HatchEncoding, HatchGround, HatchMap, HatchMapping, HatchShade, HatchSource, HatchTransfer};
 pub use presets::{style, styles};
 
 use crate::error::HarnessError;
@@ -39,6 +42,8 @@ pub enum Shade {
     Painter(PainterShade),
     /// From cool to warm.
     Gooch(Gooch),
+    /// Strokes.
+    Hatch(HatchShade),
 }
 
 /// A 1D ramp, and what it is looked up with.
@@ -123,15 +128,9 @@ impl Style {
     /// [`crate::plan::Plan::new`].
     ///
     /// # Errors
-    /// [`HarnessError::Toon`], [`HarnessError::Gooch`], [`HarnessError::Range`], [`HarnessError::NoLight`].
+    /// [`HarnessError::Toon`], [`HarnessError::Gooch`], [`HarnessError::Hatch`], [`HarnessError::SixTones`],
+    /// [`HarnessError::NoThresholds`], [`HarnessError::Range`], [`HarnessError::NoLight`].
     pub fn validate(&self) -> Result<(), HarnessError> {
-        let within = |what, value: f32, low: f32, high: f32, range| {
-            if (low..=high).contains(&value) {
-                Ok(())
-            } else {
-                Err(HarnessError::Range { what, value: f64::from(value), range })
-            }
-        };
         for component in self.paper.to_array() {
             within("a component of the paper", component, 0.0, 1.0, "0..=1")?;
         }
@@ -168,7 +167,12 @@ impl Style {
             Shade::Gooch(model) => {
                 GoochUniform::new(model)?;
             }
+            Shade::Hatch(hatch) => hatch.validate()?,
         }
         Ok(())
     }
+}
+
+fn within(what: &'static str, value: f32, low: f32, high: f32, range: &'static str) -> Result<(), HarnessError> {
+    if (low..=high).contains(&value) { Ok(()) } else { Err(HarnessError::Range { what, value: f64::from(value), range }) }
 }

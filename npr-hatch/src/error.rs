@@ -153,6 +153,15 @@ pub enum HatchError {
         /// What the file says.
         expected: u64,
     },
+    /// A map larger than the device's textures can be.
+    #[cfg(feature = "wgpu")]
+    #[error("a map of {side}² texels: this device's textures are at most {limit}²")]
+    TooLarge {
+        /// Of the finest level.
+        side: u32,
+        /// Texels along a side.
+        limit: u32,
+    },
     /// A picture cannot be read or written.
     #[cfg(feature = "image")]
     #[error("{path}: {source}")]

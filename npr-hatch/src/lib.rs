@@ -70,6 +70,8 @@ pub mod store;
 mod stroke;
 mod tam;
 pub mod threshold;
+#[cfg(feature = "wgpu")]
+pub mod upload;
 pub mod weights;
 
 pub use draw::{Drawing, Extent, Mark, draw};

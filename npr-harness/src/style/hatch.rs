@@ -1,0 +1,236 @@
+//! Strokes as a style has them.
+
+use super::within;
+use crate::error::HarnessError;
+use glam::{DVec3, Vec3};
+use npr_hatch::{Drawing, HATCH_TONES, HatchError, StrokeImage, Tam, TamParameters, Thresholds, draw, store};
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, OnceLock};
+
+/// Hatching. Of the lights' colours it takes no notice.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HatchShade {
+    /// The strokes.
+    pub map: HatchMap,
+    /// What of the map is looked up.
+    pub encoding: HatchEncoding,
+    /// Where on a surface it lies.
+    pub mapping: HatchMapping,
+    /// How dark a surface is.
+    pub transfer: HatchTransfer,
+    /// The length on the surface of one side of the map, in halves of the diagonal of the model's box: 0.01..=100.
+    pub tile: f32,
+    /// The size of a texel, px, as long as there are levels for it: 0.25..=16. Strokes get wider and longer with it.
+    pub texel_px: f32,
+    /// Display-referred.
+    pub ink: Vec3,
+    /// What shows between strokes.
+    pub ground: HatchGround,
+}
+
+/// What of a map is looked up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum HatchEncoding {
+    /// Six tones in two textures, of which at most two tones are mixed: listings 4 and 5. With
+    /// [`NormalUse::PerVertex`](npr_toon::normal::NormalUse) their weights are computed at the vertices, as printed.
+    SixTones,
+    /// The tone at which each texel turns to ink: any tone, black as well.
+    Thresholds,
+}
+
+/// Where on a surface a map lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum HatchMapping {
+    /// By the model's texture coordinates, their density evened out; models without any by planes.
+    Coordinates,
+    /// By three planes, along the model's axes.
+    Planes,
+    /// The same, turned so that strokes run where the surface bends most.
+    Form,
+}
+
+/// How dark a surface is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum HatchTransfer {
+    /// Listing 4: the light factor is this many times N·L, and the tone what comes of it
+    /// ([`npr_hatch::hatch_transfer`]).
+    Listing4 {
+        /// 7 makes the tone N·L, but no darker than the darkest tone; 0.1..=100.
+        brightness: f32,
+    },
+    /// The tone is N·L over what is left where no light falls.
+    Linear {
+        /// 0..=1.
+        ambient: f32,
+    },
+}
+
+/// What shows between strokes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum HatchGround {
+    /// The style's paper.
+    Paper,
+    /// The surface's own colour and texture: figure 10d of the 2002 chapter.
+    Surface,
+}
+
+/// Where a map comes from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum HatchSource {
+    /// Drawn when it is first needed.
+    Parameters(TamParameters),
+    /// The same, with strokes that look like a picture of one.
+    Stroke {
+        /// What else they are like.
+        parameters: TamParameters,
+        /// Where the picture comes from.
+        file: PathBuf,
+        /// It.
+        stroke: StrokeImage,
+    },
+    /// Read from what `npr tam` wrote.
+    File {
+        /// Where from.
+        file: PathBuf,
+        /// The tones' images.
+        tam: Tam,
+        /// The thresholds, if the file has them.
+        thresholds: Option<Thresholds>,
+    },
+}
+
+/// A map, drawn once for all styles that are clones of one. Equal if where they come from is.
+#[derive(Clone)]
+pub struct HatchMap(Arc<Inner>);
+
+struct Inner {
+    source: HatchSource,
+    drawing: OnceLock<Drawing>,
+    thresholds: OnceLock<Thresholds>,
+}
+
+impl HatchMap {
+    /// Of a source, which is not looked at yet.
+    pub fn new(source: HatchSource) -> Self {
+        Self(Arc::new(Inner { source, drawing: OnceLock::new(), thresholds: OnceLock::new() }))
+    }
+
+    /// What `npr tam` wrote.
+    ///
+    /// # Errors
+    /// [`HarnessError::Map`], or what is wrong with the file's contents.
+    pub fn read(file: &Path) -> Result<Self, HarnessError> {
+        let bytes = std::fs::read(file).map_err(|source| HarnessError::Map { path: file.to_owned(), source })?;
+        let tam = store::from_bytes(&bytes)?;
+        Ok(Self::new(HatchSource::File { file: file.to_owned(), tam, thresholds: None }))
+    }
+
+    /// Where it comes from.
+    pub fn source(&self) -> &HatchSource {
+        &self.0.source
+    }
+
+    fn strokes(&self) -> Option<(&TamParameters, Option<&StrokeImage>)> {
+        match &self.0.source {
+            HatchSource::Parameters(parameters) => Some((parameters, None)),
+            HatchSource::Stroke { parameters, stroke, .. } => Some((parameters, Some(stroke))),
+            HatchSource::File { .. } => None,
+        }
+    }
+
+    /// How many tones it has.
+    pub fn tones(&self) -> usize {
+        match &self.0.source {
+            HatchSource::Parameters(parameters) | HatchSource::Stroke { parameters, .. } => parameters.tones.len(),
+            HatchSource::File { tam, .. } => tam.tones.len(),
+        }
+    }
+
+    fn drawing(&self) -> Result<Option<&Drawing>, HatchError> {
+        let Some((parameters, stroke)) = self.strokes() else { return Ok(None) };
+        if let Some(drawing) = self.0.drawing.get() {
+            return Ok(Some(drawing));
+        }
+        let drawing = draw(parameters, stroke)?;
+        Ok(Some(self.0.drawing.get_or_init(|| drawing)))
+    }
+
+    /// The images of its tones.
+    ///
+    /// # Errors
+    /// Those of [`npr_hatch::draw`].
+    pub fn tam(&self) -> Result<&Tam, HatchError> {
+        match (&self.0.source, self.drawing()?) {
+            (HatchSource::File { tam, .. }, _) => Ok(tam),
+            (_, Some(drawing)) => Ok(&drawing.tam),
+            (_, None) => unreachable!("what is no file is drawn"),
+        }
+    }
+
+    /// Its thresholds; `None` if the file that it comes from has none.
+    ///
+    /// # Errors
+    /// Those of [`npr_hatch::draw`].
+    pub fn thresholds(&self) -> Result<Option<&Thresholds>, HatchError> {
+        if let HatchSource::File { thresholds, .. } = &self.0.source {
+            return Ok(thresholds.as_ref());
+        }
+        let drawing = self.drawing()?;
+        let drawn = drawing.zip(self.strokes()).map(|(drawing, (parameters, stroke))| {
+            self.0.thresholds.get_or_init(|| Thresholds::new(drawing, parameters, stroke))
+        });
+        Ok(drawn)
+    }
+}
+
+impl PartialEq for HatchMap {
+    fn eq(&self, other: &Self) -> bool {
+        self.0.source == other.0.source
+    }
+}
+
+impl fmt::Debug for HatchMap {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("HatchMap").field(&self.0.source).finish()
+    }
+}
+
+impl HatchShade {
+    /// Which rule is broken, if one is; the first found. Nothing is drawn for it.
+    pub(super) fn validate(&self) -> Result<(), HarnessError> {
+        if let Some((parameters, _)) = self.map.strokes() {
+            parameters.validate()?;
+        }
+        let tones = self.map.tones();
+        if self.encoding == HatchEncoding::SixTones && tones != HATCH_TONES {
+            return Err(HarnessError::SixTones { tones });
+        }
+        if let (HatchEncoding::Thresholds, HatchSource::File { file, thresholds: None, .. }) =
+            (self.encoding, self.map.source())
+        {
+            return Err(HarnessError::NoThresholds { path: file.clone() });
+        }
+        match self.transfer {
+            HatchTransfer::Listing4 { brightness } => {
+                within("a hatching's brightness", brightness, 0.1, 100.0, "0.1..=100")?;
+                if tones != HATCH_TONES {
+                    return Err(HarnessError::SixTones { tones });
+                }
+            }
+            HatchTransfer::Linear { ambient } => within("ambient light", ambient, 0.0, 1.0, "0..=1")?,
+        }
+        within("a hatching's tile", self.tile, 0.01, 100.0, "0.01..=100 halves of the model's diagonal")?;
+        within("a hatching's texels", self.texel_px, 0.25, 16.0, "0.25..=16 px")?;
+        for component in self.ink.to_array() {
+            within("a component of the ink", component, 0.0, 1.0, "0..=1")?;
+        }
+        Ok(())
+    }
+}
+
+/// The six tones of a map, the lighter three and the darker three; a map of another number is asked for none.
+pub(crate) fn six_tones(tam: &Tam) -> (DVec3, DVec3) {
+    let tone = |index: usize| tam.tones.get(index).map_or(0.0, |&tone| f64::from(tone));
+    (DVec3::new(tone(0), tone(1), tone(2)), DVec3::new(tone(3), tone(4), tone(5)))
+}
