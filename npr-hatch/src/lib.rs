@@ -60,6 +60,7 @@
 
 mod draw;
 mod error;
+pub mod field;
 mod parameters;
 mod place;
 #[cfg(feature = "image")]
