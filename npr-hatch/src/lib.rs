@@ -58,6 +58,7 @@
 //! part in it. Any texel's neighbours across the border are its neighbours, and centres are whole numbers that wrap.
 #![warn(missing_docs)]
 
+pub mod density;
 mod draw;
 mod error;
 pub mod field;
