@@ -85,9 +85,9 @@ pub struct FieldOptions {
 }
 
 impl Default for FieldOptions {
-    /// A smoothing of 0.015, and a fallback oblique to all axes.
+    /// A smoothing of 0.025, and a fallback oblique to all axes.
     fn default() -> Self {
-        Self { smoothing: 0.015, fallback: Vec3::new(0.48, 0.64, 0.6), principal: Principal::Most }
+        Self { smoothing: 0.025, fallback: Vec3::new(0.48, 0.64, 0.6), principal: Principal::Most }
     }
 }
 
