@@ -52,6 +52,8 @@ mod diffuse;
 mod surface;
 mod tangent;
 mod tensor;
+#[cfg(test)]
+mod tests;
 
 use glam::{DVec3, Vec2, Vec3};
 

@@ -119,6 +119,22 @@ fn without_area_there_is_no_density() {
     assert!(found.iter().all(|octave| (octave - 1.0).abs() < 1e-6), "{found:?}");
 }
 
+/// What has no density beside something that has takes on that, not what most of the model has.
+#[test]
+fn values_spread() {
+    let (mut positions, mut uvs, mut faces, _) = grid(8, |s, t| (Vec3::new(s, t, 0.0), Vec2::new(s.min(0.5), t)));
+    let first = positions.len() as u32;
+    let (more, coordinates, others, _) = grid(20, |s, t| (Vec3::new(s, t, 9.0), Vec2::new(s, t) / 8.0));
+    positions.extend(more);
+    uvs.extend(coordinates);
+    faces.extend(others.iter().map(|face| face.map(|v| v + first)));
+    let alone: Vec<_> = (0..positions.len() as u32).collect();
+    let found = octaves(&positions, &uvs, &faces, &alone, 1.0).unwrap();
+    let (one, other) = found.split_at(first as usize);
+    assert!(one.iter().all(|octave| octave.abs() < 1e-5), "{one:?}");
+    assert!(other.iter().all(|octave| (octave - 3.0).abs() < 1e-5), "{other:?}");
+}
+
 #[test]
 fn what_is_refused() {
     let (p, uv) = ([Vec3::ZERO; 3], [Vec2::ZERO; 3]);

@@ -93,6 +93,16 @@ impl Mesh {
         mesh
     }
 
+    /// Adds another one, whose vertices stay apart.
+    pub fn append(&mut self, other: &Self) {
+        let first = self.positions.len() as u32;
+        self.positions.extend(&other.positions);
+        self.normals.extend(&other.normals);
+        self.parameters.extend(&other.parameters);
+        self.faces.extend(other.faces.iter().map(|face| face.map(|v| v + first)));
+        self.representative.extend(other.representative.iter().map(|v| v + first));
+    }
+
     pub fn map(&self, position: impl Fn(Vec3) -> Vec3, normal: impl Fn(Vec3) -> Vec3) -> Self {
         let mut mesh = self.clone();
         mesh.positions.iter_mut().for_each(|p| *p = position(*p));
