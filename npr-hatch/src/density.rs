@@ -38,13 +38,14 @@ const RINGS: u32 = 32;
 ///
 /// - `positions`, `uvs`: per vertex. `faces`: three vertices each.
 /// - `representative`: per vertex the one that stands for all at its position. Vertices with one representative and
-///   equal coordinates are one; at a seam each side has its own density.
+///   equal coordinates are one; at a seam of the coordinates each side has its own density.
 /// - `tile_length`: in units of the positions, above 0.
 ///
 /// A face has log2(√(area / area of its coordinates) / `tile_length`); a vertex the mean over its faces, weighted by
 /// area, and then three times the mean of itself and its neighbours'. Faces without area, in space or in the texture,
-/// or with numbers that are not finite, do not count; a vertex in no other has the mean of its neighbours', from up to 32
-/// edges away, or, without any, the median of all vertices. Where no face counts, all is 0. Within [`OCTAVES`], and always finite.
+/// or with numbers that are not finite, do not count. A vertex in no other has the mean of its neighbours', from up to
+/// 32 edges away, or, without any, the median of all vertices; where no face counts at all, 0. Within [`OCTAVES`], and
+/// always finite.
 ///
 /// Errors: slices of unequal length, indices out of range, a tile length that is not finite and above 0.
 pub fn octaves(

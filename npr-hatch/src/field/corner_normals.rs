@@ -6,8 +6,8 @@ use super::surface::{Face, Surface};
 
 /// A face whose corner normals are this near to each other, squared, is a facet.
 const FLAT: f64 = 1e-6;
-/// The cosine of 50°: facets that meet at less are one round surface. (The sides of an octagonal prism are, at 45°; those
-/// of a hexagonal one are not.)
+/// The cosine of 50°: facets that meet at less are one round surface. (The sides of an octagonal prism are, at 45°;
+/// those of a hexagonal one are not.)
 const ROUND: f64 = 0.642_787_609_686_539_3;
 /// Around a node with more faces than this all count, whatever the angle: comparing each with each would take too long.
 const MOST_COMPARED: usize = 64;

@@ -1,4 +1,4 @@
-//! Curvature at nodes, by least squares in each face (Rusinkiewicz 2004, sections 3 and 4).
+//! Curvature at nodes, by least squares in each face (Rusinkiewicz 2004).
 
 use glam::{DMat3, DVec3, Vec2};
 

@@ -5,9 +5,9 @@
 //! > (c + floor) u - length² Δu = c u0
 //!
 //! With c = 1 this averages over about `length`. The Laplacian has cotangent weights (Pinkall and Polthier 1993; kept
-//! positive), so that the solution hardly depends on how the surface is cut. Sweeps alone would carry only as many edges
-//! far as there are sweeps: so the equation is first solved on clusters of nodes, clusters of these, and so on, and each
-//! solution is where the finer one begins.
+//! positive), so that the solution hardly depends on how the surface is cut. Sweeps alone would carry only as many
+//! edges far as there are sweeps: so the equation is first solved on clusters of nodes, clusters of these, and so on,
+//! and each solution is where the finer one begins.
 
 use glam::{DVec3, Vec2, Vec3};
 

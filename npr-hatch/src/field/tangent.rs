@@ -2,7 +2,7 @@
 //!
 //! A line at angle t to a plane's first axis is e^(2it): its two directions are one number, a line across it is the
 //! negative, and numbers can be averaged. (Knöppel, Crane, Pinkall, Schröder: *Globally Optimal Direction Fields*,
-//! SIGGRAPH 2013, section 2.)
+//! SIGGRAPH 2013.)
 
 use glam::{Vec2, Vec3};
 

@@ -26,7 +26,8 @@ impl LineTensor {
     }
 
     /// The unit eigenvector of the largest eigenvalue, its sign without meaning: the direction that this is made of.
-    /// Where the largest eigenvalue is a double one, one of its directions; zero where the tensor is zero or not finite.
+    /// Where the largest eigenvalue is a double one, one of its directions; zero where the tensor is zero or not
+    /// finite.
     ///
     /// ```
     /// use glam::Vec3;

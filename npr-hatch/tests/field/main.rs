@@ -1,4 +1,4 @@
-//! The field of directions against surfaces whose principal directions are known, and whatever may be wrong with a mesh.
+//! The field of directions against surfaces whose principal directions are known, and whatever is wrong with a mesh.
 
 mod shapes;
 
