@@ -42,8 +42,8 @@
 //! points. Interpolated tensors pass through a double eigenvalue at both.
 //!
 //! Smoothing bends lines towards straight ones where principal directions turn fast: with the default, on an ellipsoid
-//! of semi-axes 1.5, 1 and 0.7, by up to 4.5° where the smaller curvature is less than 0.7 of the larger one, 0.4° in the
-//! mean.
+//! of semi-axes 1.5, 1 and 0.7, by up to 4.5° where the smaller curvature is less than 0.7 of the larger one, and by
+//! 0.4° in the mean.
 //!
 //! # Sources
 //!
