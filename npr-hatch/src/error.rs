@@ -162,6 +162,34 @@ pub enum HatchError {
         /// Texels along a side.
         limit: u32,
     },
+    /// An array that has one entry for each vertex has another number of them.
+    #[error("{name} has {found} entries for {vertices} vertices")]
+    PerVertex {
+        /// Which.
+        name: &'static str,
+        /// How many it has.
+        found: usize,
+        /// How many positions there are.
+        vertices: usize,
+    },
+    /// An index names a vertex that is not there.
+    #[error("{name}, entry {index}: vertex {vertex} of {vertices}")]
+    NoVertex {
+        /// In which array.
+        name: &'static str,
+        /// Into it.
+        index: usize,
+        /// What it names.
+        vertex: u32,
+        /// How many there are.
+        vertices: usize,
+    },
+    /// A direction has no length, or one that is not finite.
+    #[error("{value:?} is no direction")]
+    Direction {
+        /// What it is.
+        value: [f32; 3],
+    },
     /// A picture cannot be read or written.
     #[cfg(feature = "image")]
     #[error("{path}: {source}")]

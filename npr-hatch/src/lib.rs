@@ -58,8 +58,10 @@
 //! part in it. Any texel's neighbours across the border are its neighbours, and centres are whole numbers that wrap.
 #![warn(missing_docs)]
 
+pub mod density;
 mod draw;
 mod error;
+pub mod field;
 pub mod lookup;
 pub mod mapping;
 mod parameters;
