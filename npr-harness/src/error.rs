@@ -19,6 +19,25 @@ pub enum HarnessError {
     /// The cool and warm tones.
     #[error(transparent)]
     Gooch(#[from] npr_gooch::GoochError),
+    /// A tonal art map.
+    #[error(transparent)]
+    Hatch(#[from] npr_hatch::HatchError),
+    /// A file with a tonal art map.
+    #[error("{}: {source}", path.display())]
+    Map {
+        /// Which.
+        path: std::path::PathBuf,
+        /// Why.
+        source: npr_hatch::HatchError,
+    },
+    /// Only some of a folder's files could be written.
+    #[error("{source}; {} is incomplete", folder.display())]
+    Incomplete {
+        /// Which.
+        folder: std::path::PathBuf,
+        /// What failed first.
+        source: Box<HarnessError>,
+    },
     /// A style without a light.
     #[error("a style needs one light or two")]
     NoLight,
@@ -91,6 +110,14 @@ pub enum HarnessError {
     /// An environment variable that says nothing.
     #[error("NPR_GPU={0:?}: it must be required, auto or off")]
     Policy(String),
+    /// A file that could not be read.
+    #[error("{}: {source}", path.display())]
+    Read {
+        /// Which.
+        path: std::path::PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
     /// A file that could not be written.
     #[error("{}: {source}", path.display())]
     Write {
