@@ -131,9 +131,9 @@ fn hostile_files_are_errors() {
         assert!(matches!(with(24, &f32::NAN.to_le_bytes()), HatchError::Tone { index: 0, .. }));
         // Version 2 as version 1.
         assert!(matches!(with(8, &[1]), HatchError::Tone { .. }));
-        for at in 0..bytes.len() {
+        for (at, &byte) in bytes.iter().enumerate() {
             for bit in 0..8 {
-                let error = with(at, &[bytes[at] ^ 1 << bit]);
+                let error = with(at, &[byte ^ 1 << bit]);
                 assert!(at < 36 || matches!(error, HatchError::Checksum { .. }), "{at}: {error}");
             }
         }
