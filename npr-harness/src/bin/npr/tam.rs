@@ -78,7 +78,7 @@ struct Drawn {
     #[arg(long, value_name = "N")]
     candidates: Option<u32>,
     /// What strokes look like: a picture of one that runs from left to right, dark on light. It wants a --width-px of
-    /// 4 or more.
+    /// 4 or more; where it has much paper, dark tones are out of its reach.
     #[arg(long, value_name = "PICTURE")]
     stroke: Option<PathBuf>,
 }
