@@ -180,7 +180,7 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
     if options.json {
         print_json(options, &map, &found, &files, write_s);
     } else {
-        print_text(options, &map, &found, &files, write_s);
+        println!("{}", table(options, &map, &found, &files, write_s));
     }
     Ok(true)
 }
@@ -273,28 +273,30 @@ fn print_json(options: &Options, map: &Map, found: &[Found], files: &[PathBuf], 
     );
 }
 
-fn print_text(options: &Options, map: &Map, found: &[Found], files: &[PathBuf], write_s: f64) {
+/// In one piece: a reader that has had enough after a few lines, such as `head`, breaks no pipe.
+fn table(options: &Options, map: &Map, found: &[Found], files: &[PathBuf], write_s: f64) -> String {
     let Tam { tones, side, .. } = &map.tam;
-    print!("{}: {} tones at {side}² with {} mips", options.output.display(), tones.len(), map.tam.levels() - 1);
+    let mut lines = vec![format!(
+        "{}: {} tones at {side}² with {} mips",
+        options.output.display(),
+        tones.len(),
+        map.tam.levels() - 1
+    )];
     if let Some(Effort { strokes, draw_s, thresholds_s }) = map.effort {
-        println!(
-            ", {draw_s:.3} s to draw, {thresholds_s:.3} s for the thresholds, {write_s:.3} s to write\n\
-             {strokes} strokes placed, {:.0} per second",
-            strokes as f64 / draw_s
-        );
+        lines.push(format!("{draw_s:.3} s to draw, {thresholds_s:.3} s for the thresholds, {write_s:.3} s to write"));
+        lines.push(format!("{strokes} strokes placed, {:.0} per second", strokes as f64 / draw_s));
     } else {
-        println!(", {write_s:.3} s to write");
+        lines.push(format!("{write_s:.3} s to write"));
     }
-    println!("tone   asked   found   largest error, all levels from {}² on", SMALLEST_SIDE.min(*side));
-    for (tone, Found { asked, mean, largest_error }) in found.iter().enumerate() {
-        println!("{tone:4}  {asked:.4}  {mean:.4}  {largest_error:+.5}");
-    }
+    lines.push(format!("tone   asked   found   largest error, all levels from {}² on", SMALLEST_SIDE.min(*side)));
+    lines.extend(found.iter().enumerate().map(|(tone, Found { asked, mean, largest_error })| {
+        format!("{tone:4}  {asked:.4}  {mean:.4}  {largest_error:+.5}")
+    }));
     // The images are the last files.
-    for path in &files[..files.len() - map.tam.images.len()] {
-        println!("{}", path.display());
-    }
-    println!("{}: {} images", options.output.join("tone_N_SIDE.png").display(), map.tam.images.len());
+    lines.extend(files[..files.len() - map.tam.images.len()].iter().map(|path| path.display().to_string()));
+    lines.push(format!("{}: {} images", options.output.join("tone_N_SIDE.png").display(), map.tam.images.len()));
     if map.thresholds.is_none() {
-        println!("the file has no thresholds: no thresholds.png, no ramp.png");
+        lines.push("the file has no thresholds: no thresholds.png, no ramp.png".to_owned());
     }
+    lines.join("\n")
 }
