@@ -34,13 +34,21 @@ pub enum HarnessError {
         /// Which.
         path: std::path::PathBuf,
     },
-    /// A map's file that could not be read.
+    /// A file with a tonal art map.
     #[error("{}: {source}", path.display())]
     Map {
         /// Which.
         path: std::path::PathBuf,
         /// Why.
-        source: std::io::Error,
+        source: npr_hatch::HatchError,
+    },
+    /// Only some of a folder's files could be written.
+    #[error("{source}; {} is incomplete", folder.display())]
+    Incomplete {
+        /// Which.
+        folder: std::path::PathBuf,
+        /// What failed first.
+        source: Box<HarnessError>,
     },
     /// A style without a light.
     #[error("a style needs one light or two")]
@@ -114,6 +122,14 @@ pub enum HarnessError {
     /// An environment variable that says nothing.
     #[error("NPR_GPU={0:?}: it must be required, auto or off")]
     Policy(String),
+    /// A file that could not be read.
+    #[error("{}: {source}", path.display())]
+    Read {
+        /// Which.
+        path: std::path::PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
     /// A file that could not be written.
     #[error("{}: {source}", path.display())]
     Write {

@@ -5,6 +5,7 @@
 
 mod context;
 mod error;
+mod hatch;
 mod ink;
 mod light;
 mod scene;
@@ -129,12 +130,12 @@ impl<'a> GpuRenderer<'a> {
             depth: &targets.depth_view,
             size_px,
         };
-        self.surface.record(device, &mut encoder, uploaded, scene, style, plan, camera, &light, &drawn);
+        self.surface.record(device, &mut encoder, uploaded, scene, style, plan, camera, &light, &drawn)?;
         if let Some((image, ink)) = &ink {
             if let Some(depth) = &ink.depth {
                 let size_px = DVec2::new(ink.size.0.into(), ink.size.1.into());
                 let drawn = SurfaceTargets { color: None, texels: Some(&ink.texels), depth, size_px };
-                self.surface.record(device, &mut encoder, uploaded, scene, style, plan, camera, &light, &drawn);
+                self.surface.record(device, &mut encoder, uploaded, scene, style, plan, camera, &light, &drawn)?;
             }
             self.ink.record(self.context, &mut encoder, scene.bounds(), image, camera, ink, targets)?;
         }

@@ -3,7 +3,11 @@
 use crate::error::HarnessError;
 use crate::scene::Scene;
 use crate::style::{HatchEncoding, HatchMap, HatchMapping, HatchShade};
-use npr_hatch::{HatchError, Tam, Thresholds};
+use npr_hatch::store::{self, Stored};
+use npr_hatch::{HatchError, Tam, Thresholds, density};
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
 
 /// What of a vertex tells where strokes lie.
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -39,7 +43,20 @@ impl HatchPlan {
             HatchMapping::Coordinates if scene.model.uvs.is_empty() => HatchMapping::Planes,
             other => other,
         };
-        let vertices = Vec::new();
+        let vertices = match mapping {
+            HatchMapping::Planes => Vec::new(),
+            HatchMapping::Form => {
+                let lines = scene.directions()?.iter();
+                lines.map(|line| HatchVertex { diagonal: line.diagonal, others: line.others, octave: 0.0 }).collect()
+            }
+            HatchMapping::Coordinates => {
+                let model = &scene.model;
+                let seams = &scene.edges.representative;
+                let octaves = density::octaves(&model.positions, &model.uvs, &model.faces, seams, tile as f32)?;
+                let vertex = |octave| HatchVertex { diagonal: [0.0; 3], others: [0.0; 3], octave };
+                octaves.into_iter().map(vertex).collect()
+            }
+        };
         let plan = Self { mapping, tile, vertices, map, encoding: shade.encoding };
         plan.map.tam()?;
         plan.drawn_thresholds()?;
@@ -58,4 +75,20 @@ impl HatchPlan {
             HatchEncoding::Thresholds => self.map.thresholds(),
         }
     }
+}
+
+/// Reads what `npr tam` wrote.
+///
+/// # Errors
+/// [`HarnessError::Read`], [`HarnessError::Map`].
+pub fn read_map(path: &Path) -> Result<Stored, HarnessError> {
+    let failed = |source| HarnessError::Read { path: path.to_owned(), source };
+    let mut file = File::open(path).map_err(failed)?;
+    let mut bytes = Vec::new();
+    // A file that is no map may be of any size.
+    file.by_ref().take(store::MAGIC.len() as u64).read_to_end(&mut bytes).map_err(failed)?;
+    if bytes == store::MAGIC {
+        file.read_to_end(&mut bytes).map_err(failed)?;
+    }
+    store::from_bytes(&bytes).map_err(|source| HarnessError::Map { path: path.to_owned(), source })
 }

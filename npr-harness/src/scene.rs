@@ -4,6 +4,8 @@ use crate::color::encode_rgb;
 use crate::error::HarnessError;
 use crate::rays::RayCaster;
 use glam::{DVec3, DVec4, Vec3};
+use npr_hatch::HatchError;
+use npr_hatch::field::{FieldOptions, LineTensor, direction_field};
 use npr_imagespace::artist::LineKind;
 use npr_mesh::edges::{self, EdgeKind, EdgeOptions, Edges};
 use npr_mesh::{AlphaMode, Model};
@@ -32,6 +34,7 @@ pub struct Scene {
     rays: OnceLock<RayCaster>,
     boundary_sides: OnceLock<Vec<u8>>,
     bounds: OnceLock<Option<(Vec3, Vec3)>>,
+    directions: OnceLock<Vec<LineTensor>>,
 }
 
 impl Scene {
@@ -62,6 +65,7 @@ impl Scene {
             rays: OnceLock::new(),
             boundary_sides: OnceLock::new(),
             bounds: OnceLock::new(),
+            directions: OnceLock::new(),
         }
     }
 
@@ -113,6 +117,20 @@ impl Scene {
     /// Whether any face is blended over what is behind it.
     pub fn has_blend(&self) -> bool {
         self.model.materials.iter().any(|m| m.alpha_mode == AlphaMode::Blend)
+    }
+
+    /// Per vertex the direction in which strokes follow the form, found when it is first asked for.
+    ///
+    /// # Errors
+    /// Those of [`direction_field`].
+    pub fn directions(&self) -> Result<&[LineTensor], HatchError> {
+        if let Some(directions) = self.directions.get() {
+            return Ok(directions);
+        }
+        let Model { positions, normals, faces, .. } = &self.model;
+        let seams = &self.edges.representative;
+        let found = direction_field(positions, normals, faces, seams, &FieldOptions::default())?;
+        Ok(self.directions.get_or_init(|| found))
     }
 
     /// The corners of all faces.

@@ -125,6 +125,36 @@ pub enum HatchError {
         /// The darker one.
         tone: usize,
     },
+    /// Thresholds of another map.
+    #[error("the thresholds' side is {found} texels, the map's {expected}")]
+    ThresholdSide {
+        /// The thresholds'.
+        found: u32,
+        /// The map's.
+        expected: u32,
+    },
+    /// The number of the thresholds' levels, or of one's texels, is not what the side says.
+    #[error("level {level} has {texels} thresholds, not {expected}")]
+    ThresholdSize {
+        /// Counted from 0, the finest; the first one that is missing or too many.
+        level: usize,
+        /// How many it has; 0 if it is missing.
+        texels: usize,
+        /// How many it must have; 0 if it is one too many.
+        expected: usize,
+    },
+    /// Another number of a level's texels have a threshold than in an order of all of them.
+    #[error("level {level}: {found} texels have the threshold {threshold}, not {expected}")]
+    ThresholdCount {
+        /// Counted from 0, the finest.
+        level: usize,
+        /// The least one of which that is so.
+        threshold: u16,
+        /// How many have it.
+        found: u32,
+        /// How many must have it.
+        expected: u32,
+    },
     /// The file does not begin as one of this crate's.
     #[error("no tonal art map: the file begins with {found:02x?}")]
     Magic {
@@ -132,9 +162,15 @@ pub enum HatchError {
         found: Vec<u8>,
     },
     /// A version that this crate does not know.
-    #[error("version {found}, where only {} is known", crate::store::VERSION)]
+    #[error("version {found}, where 1 to {} are known", crate::store::VERSION)]
     Version {
         /// What the file says.
+        found: u32,
+    },
+    /// A flag that this crate does not know.
+    #[error("the flags are {found:#x}, where only 0x1 is known")]
+    Flags {
+        /// All of them.
         found: u32,
     },
     /// The file is shorter or longer than its header says.

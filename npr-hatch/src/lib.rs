@@ -1,19 +1,20 @@
 //! Tonal art maps: hatching strokes nested in tones and mips; their weights by light; and one-channel thresholds.
 //!
 //! ```
-//! use npr_hatch::{TamParameters, draw, store};
+//! use npr_hatch::{TamParameters, Thresholds, draw, store};
 //!
 //! let parameters = TamParameters { side: 64, ..TamParameters::default() };
 //! let drawing = draw(&parameters, None)?;
 //! assert!((drawing.tam.mean(2, 0) - 4.0 / 7.0).abs() < 0.005);
-//! let bytes = store::to_bytes(&drawing.tam)?;
-//! assert_eq!(store::from_bytes(&bytes)?, drawing.tam);
+//! let thresholds = Thresholds::new(&drawing, &parameters, None);
+//! let bytes = store::to_bytes(&drawing.tam, Some(&thresholds))?;
+//! assert_eq!(store::from_bytes(&bytes)?.tam, drawing.tam);
 //! # Ok::<(), npr_hatch::HatchError>(())
 //! ```
 //!
 //! - [`draw`] makes the images of a [`Tam`] from [`TamParameters`], with strokes that thin out at their ends or that look
-//!   like a [`StrokeImage`]; [`store`] puts a map into one file, the module `png` (feature `image`, on by default) into
-//!   pictures.
+//!   like a [`StrokeImage`]; [`store`] puts a map into one file, the modules `png` and `sheet` (feature `image`, on by
+//!   default) into pictures.
 //! - [`hatch_weights`] and [`hatch_blend`], listings 4 and 5: six tones by light; [`weights`] tells the transfer
 //!   curve: with a brightness of 7 and the default tones the hatched tone is N·L, down to 1/7. [`hatch_color`] puts
 //!   it over a coloured surface. In shadow, N·L counts as 0: the darkest tone.
@@ -68,6 +69,8 @@ mod parameters;
 mod place;
 #[cfg(feature = "image")]
 pub mod png;
+#[cfg(feature = "image")]
+pub mod sheet;
 pub mod store;
 mod stroke;
 mod tam;

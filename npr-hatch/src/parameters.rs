@@ -125,11 +125,17 @@ impl TamParameters {
     }
 }
 
-/// Whether a map can have these tones and this side.
-pub(crate) fn validate_shape(tones: &[f32], side: u32) -> Result<(), HatchError> {
+/// Whether a map can have this side.
+pub(crate) fn validate_side(side: u32) -> Result<(), HatchError> {
     if !side.is_power_of_two() || !(MIN_SIDE..=MAX_SIDE).contains(&side) {
         return Err(HatchError::Side { side });
     }
+    Ok(())
+}
+
+/// Whether a map can have these tones and this side.
+pub(crate) fn validate_shape(tones: &[f32], side: u32) -> Result<(), HatchError> {
+    validate_side(side)?;
     if tones.is_empty() || tones.len() > MAX_TONES {
         return Err(HatchError::TonesCount { tones: tones.len() });
     }

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use image::{DynamicImage, GrayImage, ImageError, Luma};
 
+use crate::sheet::Sheet;
 use crate::{HatchError, StrokeImage, Tam};
 
 type Gray16 = image::ImageBuffer<Luma<u16>, Vec<u16>>;
@@ -65,7 +66,12 @@ pub fn write_gray(path: impl AsRef<Path>, width: u32, height: u32, texels: &[u8]
     image.save(path).map_err(|source| HatchError::Image { path: path.into(), source })
 }
 
-/// Writes 16-bit gray texels, such as [`crate::threshold::Thresholds`], as a PNG file.
+/// Writes a sheet as a PNG file.
+pub fn write_sheet(path: impl AsRef<Path>, sheet: &Sheet) -> Result<(), HatchError> {
+    write_gray(path, sheet.width, sheet.height, &sheet.texels)
+}
+
+/// Writes 16-bit gray texels, such as [`crate::Thresholds`], as a PNG file.
 pub fn write_gray16(path: impl AsRef<Path>, width: u32, height: u32, texels: &[u16]) -> Result<(), HatchError> {
     let path = path.as_ref();
     let image = Gray16::from_raw(width, height, texels.to_vec());

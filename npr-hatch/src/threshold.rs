@@ -6,8 +6,9 @@
 //! follow each other, and each grows from its start to its end as it gets darker. So exactly a share 1 - t of a
 //! level's texels has a threshold above t, for every t, and no tone shows a step.
 
+use crate::parameters::validate_side;
 use crate::stroke::{Pen, cover};
-use crate::{Drawing, Mark, StrokeImage, TamParameters};
+use crate::{Drawing, HatchError, Mark, StrokeImage, TamParameters};
 
 /// Half of full ink: from here on a texel counts as ink.
 const INK: u8 = 128;
@@ -34,10 +35,45 @@ impl Thresholds {
         Self { side, levels: levels.collect() }
     }
 
+    /// Which rule is broken, if one is; the first found. What [`Thresholds::new`] gives breaks none.
+    ///
+    /// Each level of n texels has the thresholds 65535 (1 - (i + 1/2) / n), i from 0 to n - 1, rounded, in any order, and no
+    /// other. So the share of ink is right at every tone; that the order is one of strokes cannot be told. Counting
+    /// them takes a time linear in the texels, and two tables of 256 KiB.
+    pub fn validate(&self) -> Result<(), HatchError> {
+        validate_side(self.side)?;
+        let levels = self.side.trailing_zeros() as usize + 1;
+        for level in 0..levels.max(self.levels.len()) {
+            let texels = self.levels.get(level).map_or(0, Vec::len);
+            let expected = if level < levels { (self.side as usize >> level).pow(2) } else { 0 };
+            if texels != expected || level >= levels {
+                return Err(HatchError::ThresholdSize { level, texels, expected });
+            }
+        }
+        for (level, texels) in self.levels.iter().enumerate() {
+            let (mut found, mut expected) = (vec![0_u32; 1 << 16], vec![0_u32; 1 << 16]);
+            for (place, &texel) in texels.iter().enumerate() {
+                found[usize::from(texel)] += 1;
+                expected[usize::from(threshold(place, texels.len()))] += 1;
+            }
+            if let Some(value) = (0..=u16::MAX).find(|&value| found[usize::from(value)] != expected[usize::from(value)])
+            {
+                let (found, expected) = (found[usize::from(value)], expected[usize::from(value)]);
+                return Err(HatchError::ThresholdCount { level, threshold: value, found, expected });
+            }
+        }
+        Ok(())
+    }
+
     /// A level in eight bits: 255 tones instead of one for each texel, and a filterable texture everywhere.
     pub fn to_u8(&self, level: usize) -> Vec<u8> {
         self.levels[level].iter().map(|&threshold| (u32::from(threshold) * 255 / 65535) as u8).collect()
     }
+}
+
+/// Of the texel with so many before it that turn to ink earlier, of `count`.
+fn threshold(place: usize, count: usize) -> u16 {
+    ((1.0 - (place as f64 + 0.5) / count as f64) * 65535.0).round() as u16
 }
 
 fn thresholds(drawing: &Drawing, marks: &[Mark], pen: &Pen, side: u32) -> Vec<u16> {
@@ -72,8 +108,7 @@ fn thresholds(drawing: &Drawing, marks: &[Mark], pen: &Pen, side: u32) -> Vec<u1
     order.sort_unstable_by_key(|&texel| times[texel as usize]);
     let mut levels = vec![0; count];
     for (place, &texel) in order.iter().enumerate() {
-        let tone = 1.0 - (place as f64 + 0.5) / count as f64;
-        levels[texel as usize] = (tone * 65535.0).round() as u16;
+        levels[texel as usize] = threshold(place, count);
     }
     levels
 }

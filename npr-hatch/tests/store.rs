@@ -3,75 +3,245 @@
 use npr_hatch::*;
 use proptest::prelude::*;
 
+fn parameters() -> TamParameters {
+    TamParameters { side: 16, tones: even_tones(3), cross_from: None, ..TamParameters::default() }
+}
+
 fn tam() -> Tam {
-    draw(&TamParameters { side: 16, tones: even_tones(3), cross_from: None, ..TamParameters::default() }, None)
-        .unwrap()
-        .tam
+    draw(&parameters(), None).unwrap().tam
+}
+
+fn thresholds() -> Thresholds {
+    Thresholds::new(&draw(&parameters(), None).unwrap(), &parameters(), None)
+}
+
+const TEXELS: usize = 256 + 64 + 16 + 4 + 1;
+
+/// Files with and without thresholds.
+fn files() -> [Vec<u8>; 2] {
+    [None, Some(&thresholds())].map(|thresholds| store::to_bytes(&tam(), thresholds).unwrap())
+}
+
+/// FNV-1a, from its definition.
+fn fnv_1a(bytes: &[u8]) -> u64 {
+    let mut sum: u64 = 14_695_981_039_346_656_037;
+    for &byte in bytes {
+        sum = (sum ^ u64::from(byte)).wrapping_mul(1_099_511_628_211);
+    }
+    sum
+}
+
+/// The file with a checksum that is right for what it holds.
+fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
+    let end = bytes.len().saturating_sub(8);
+    let sum = fnv_1a(&bytes[..end]).to_le_bytes();
+    bytes.truncate(end);
+    bytes.extend(sum);
+    bytes
+}
+
+/// The file of version 1, without flags and thresholds, that the file of a map is otherwise.
+fn version_1(tam: &Tam) -> Vec<u8> {
+    let mut bytes = store::to_bytes(tam, None).unwrap();
+    bytes.drain(20..24);
+    bytes[8] = 1;
+    sealed(bytes)
 }
 
 #[test]
 fn comes_back() {
-    let tam = tam();
-    let bytes = store::to_bytes(&tam).unwrap();
-    assert_eq!(bytes.len(), 20 + 3 * 4 + 3 * (256 + 64 + 16 + 4 + 1) + 8);
-    assert_eq!(store::from_bytes(&bytes).unwrap(), tam);
+    let (tam, thresholds) = (tam(), thresholds());
+    let [bare, whole] = files();
+    assert_eq!(bare.len(), 24 + 3 * 4 + 3 * TEXELS + 8);
+    assert_eq!(store::from_bytes(&bare).unwrap(), store::Stored { tam: tam.clone(), thresholds: None });
+    assert_eq!(whole.len(), bare.len() + 2 * TEXELS);
+    assert_eq!(store::from_bytes(&whole).unwrap(), store::Stored { tam, thresholds: Some(thresholds) });
+    assert_eq!(fnv_1a(b"foobar"), 0x8594_4171_f739_67e8);
+    assert_eq!(sealed(whole.clone()), whole);
+}
+
+#[test]
+fn bytes_are_where_the_table_says() {
+    let (tam, thresholds) = (tam(), thresholds());
+    let [_, bytes] = files();
+    let header = [&b"NPR\0TAM\n"[..], &[2, 0, 0, 0, 16, 0, 0, 0, 3, 0, 0, 0, 1, 0, 0, 0]].concat();
+    assert_eq!(bytes[..24], header);
+    assert_eq!(bytes[24..28], 0.75_f32.to_le_bytes());
+    assert_eq!(bytes[36..36 + 256], *tam.image(0, 0));
+    let at = 36 + 3 * TEXELS;
+    for (i, threshold) in thresholds.levels.concat().iter().enumerate() {
+        assert_eq!(bytes[at + 2 * i..at + 2 * i + 2], threshold.to_le_bytes(), "{i}");
+    }
+}
+
+/// The checksums are those of two maps' files when there was no other version.
+#[test]
+fn files_of_version_1_are_read() {
+    let placement = Placement::BestOf { candidates: 8 };
+    for (parameters, checksum) in [
+        (TamParameters::default(), 13_926_816_079_277_968_299_u64),
+        (TamParameters { side: 128, placement, ..TamParameters::default() }, 15_665_348_023_792_311_422),
+    ] {
+        let tam = draw(&parameters, None).unwrap().tam;
+        let bytes = version_1(&tam);
+        assert_eq!(bytes[bytes.len() - 8..], checksum.to_le_bytes());
+        assert_eq!(store::from_bytes(&bytes).unwrap(), store::Stored { tam, thresholds: None });
+    }
 }
 
 #[test]
 fn truncated_and_long_files_are_errors() {
-    let bytes = store::to_bytes(&tam()).unwrap();
-    for length in 0..bytes.len() {
-        let error = store::from_bytes(&bytes[..length]).unwrap_err();
-        assert!(matches!(error, HatchError::Magic { .. } | HatchError::Length { .. }), "{length}: {error}");
+    for bytes in files().into_iter().chain([version_1(&tam())]) {
+        for length in 0..bytes.len() {
+            let error = store::from_bytes(&bytes[..length]).unwrap_err();
+            assert!(matches!(error, HatchError::Magic { .. } | HatchError::Length { .. }), "{length}: {error}");
+            // The checksum lies over the header of the shortest.
+            let error = store::from_bytes(&sealed(bytes[..length].to_vec())).unwrap_err();
+            assert!(length < 44 || matches!(error, HatchError::Length { .. }), "{length}: {error}");
+        }
+        for more in [1, 2, 2 * TEXELS] {
+            let long = [bytes.as_slice(), &vec![0; more]].concat();
+            assert!(matches!(store::from_bytes(&long), Err(HatchError::Length { .. })));
+            assert!(matches!(store::from_bytes(&sealed(long)), Err(HatchError::Length { .. })));
+        }
     }
-    let long = [bytes.as_slice(), &[0]].concat();
-    assert!(matches!(store::from_bytes(&long), Err(HatchError::Length { .. })));
 }
 
 #[test]
 fn hostile_files_are_errors() {
-    let bytes = store::to_bytes(&tam()).unwrap();
-    let with = |at: usize, new: &[u8]| {
-        let mut bytes = bytes.clone();
-        bytes[at..at + new.len()].copy_from_slice(new);
-        store::from_bytes(&bytes).unwrap_err()
-    };
-    assert!(matches!(with(0, b"\x89PNG"), HatchError::Magic { .. }));
-    assert!(matches!(with(8, &[2]), HatchError::Version { found: 2 }));
-    assert!(matches!(with(12, &u32::MAX.to_le_bytes()), HatchError::Side { side: u32::MAX }));
-    assert!(matches!(with(12, &0_u32.to_le_bytes()), HatchError::Side { side: 0 }));
-    assert!(matches!(with(12, &4096_u32.to_le_bytes()), HatchError::Length { .. }));
-    assert!(matches!(with(16, &u32::MAX.to_le_bytes()), HatchError::TonesCount { .. }));
-    assert!(matches!(with(16, &0_u32.to_le_bytes()), HatchError::TonesCount { tones: 0 }));
-    assert!(matches!(with(20, &f32::NAN.to_le_bytes()), HatchError::Tone { index: 0, .. }));
-    // Any other byte that is changed.
-    for (at, &byte) in bytes.iter().enumerate().skip(32) {
-        assert!(matches!(with(at, &[byte ^ 4]), HatchError::Checksum { .. }), "{at}");
+    for bytes in files() {
+        let with = |at: usize, new: &[u8]| {
+            let mut bytes = bytes.clone();
+            bytes[at..at + new.len()].copy_from_slice(new);
+            store::from_bytes(&bytes).unwrap_err()
+        };
+        assert!(matches!(with(0, b"\x89PNG"), HatchError::Magic { .. }));
+        for version in [0, 3, u32::MAX] {
+            assert!(matches!(with(8, &version.to_le_bytes()), HatchError::Version { found } if found == version));
+        }
+        assert!(matches!(with(12, &u32::MAX.to_le_bytes()), HatchError::Side { side: u32::MAX }));
+        assert!(matches!(with(12, &0_u32.to_le_bytes()), HatchError::Side { side: 0 }));
+        assert!(matches!(with(12, &4096_u32.to_le_bytes()), HatchError::Length { .. }));
+        assert!(matches!(with(16, &u32::MAX.to_le_bytes()), HatchError::TonesCount { .. }));
+        assert!(matches!(with(16, &0_u32.to_le_bytes()), HatchError::TonesCount { tones: 0 }));
+        for flags in [2, 3, 1 << 31, u32::MAX] {
+            assert!(matches!(with(20, &flags.to_le_bytes()), HatchError::Flags { found } if found == flags));
+        }
+        assert!(matches!(with(20, &[1 - bytes[20]]), HatchError::Length { .. }));
+        assert!(matches!(with(24, &f32::NAN.to_le_bytes()), HatchError::Tone { index: 0, .. }));
+        // Version 2 as version 1.
+        assert!(matches!(with(8, &[1]), HatchError::Tone { .. }));
+        for (at, &byte) in bytes.iter().enumerate() {
+            for bit in 0..8 {
+                let error = with(at, &[byte ^ 1 << bit]);
+                assert!(at < 36 || matches!(error, HatchError::Checksum { .. }), "{at}: {error}");
+            }
+        }
     }
 }
 
 #[test]
 fn what_is_not_nested_is_not_stored() {
+    let refused = |map: &Tam| store::to_bytes(map, None).unwrap_err();
     let mut map = tam();
     map.images[5][7] = 0;
     map.images[10][7] = 1;
     map.images[0][7] = 255;
-    assert!(matches!(store::to_bytes(&map), Err(HatchError::NotNested { level: 0, texel: 7, tone: 2 })));
+    assert!(matches!(refused(&map), HatchError::NotNested { level: 0, texel: 7, tone: 2 }));
     let mut map = tam();
     map.images[3].pop();
-    assert!(matches!(store::to_bytes(&map), Err(HatchError::ImageSize { image: 3, texels: 3, expected: 4 })));
+    assert!(matches!(refused(&map), HatchError::ImageSize { image: 3, texels: 3, expected: 4 }));
     map.images.pop();
     assert!(matches!(map.validate(), Err(HatchError::ImageSize { image: 14, expected: 15, .. })));
 }
 
+#[test]
+fn thresholds_that_are_no_order_are_neither_stored_nor_read() {
+    let refused = |change: &dyn Fn(&mut Thresholds)| {
+        let mut changed = thresholds();
+        change(&mut changed);
+        store::to_bytes(&tam(), Some(&changed)).unwrap_err()
+    };
+    // Level 3 has 65535 × 7/8, 5/8, 3/8 and 1/8, rounded.
+    let mut level = thresholds().levels[3].clone();
+    level.sort_unstable();
+    assert_eq!(level, [8192, 24576, 40959, 57343]);
+    let error = refused(&|t| t.levels[3].iter_mut().for_each(|value| *value = (*value).max(24576)));
+    let expected = HatchError::ThresholdCount { level: 3, threshold: 8192, found: 0, expected: 1 };
+    assert_eq!(error.to_string(), expected.to_string());
+    assert!(matches!(refused(&|t| t.levels[0][9] ^= 1), HatchError::ThresholdCount { level: 0, .. }));
+    assert!(matches!(refused(&|t| t.side = 32), HatchError::ThresholdSide { found: 32, expected: 16 }));
+    let size = |change: &dyn Fn(&mut Thresholds)| match refused(change) {
+        HatchError::ThresholdSize { level, texels, expected } => (level, texels, expected),
+        error => panic!("{error}"),
+    };
+    assert_eq!(size(&|t| t.levels[2].truncate(15)), (2, 15, 16));
+    assert_eq!(size(&|t| t.levels[4].push(0)), (4, 2, 1));
+    assert_eq!(size(&|t| t.levels.truncate(4)), (4, 0, 1));
+    assert_eq!(size(&|t| t.levels.clear()), (0, 0, 256));
+    assert_eq!(size(&|t| t.levels.push(vec![])), (5, 0, 0));
+    for side in [0, 3, 8192] {
+        let thresholds = Thresholds { side, ..thresholds() };
+        assert!(matches!(thresholds.validate(), Err(HatchError::Side { side: found }) if found == side));
+    }
+    // In a file whose checksum is right.
+    let [_, bytes] = files();
+    for at in (36 + 3 * TEXELS..bytes.len() - 8).step_by(7) {
+        let mut bytes = bytes.clone();
+        bytes[at] ^= 16;
+        assert!(matches!(store::from_bytes(&sealed(bytes)), Err(HatchError::ThresholdCount { .. })), "{at}");
+    }
+    // Two that change places are another order, which is allowed.
+    let mut swapped = thresholds();
+    swapped.levels[0].swap(1, 200);
+    swapped.validate().unwrap();
+}
+
+#[test]
+fn thresholds_of_any_level_are_an_order() {
+    // 1024² has more texels than there are thresholds.
+    for side in [8, 64, 1024] {
+        let parameters = TamParameters { side, tones: vec![0.9], cross_from: None, ..TamParameters::default() };
+        let thresholds = Thresholds::new(&draw(&parameters, None).unwrap(), &parameters, None);
+        assert_eq!(thresholds.levels.len() as u32, side.ilog2() + 1);
+        thresholds.validate().unwrap();
+        // Counted here in another way, by sorting.
+        let mut level = thresholds.levels[0].clone();
+        level.sort_unstable();
+        let count = level.len() as f64;
+        for (i, &value) in level.iter().enumerate() {
+            let exact = 65535.0 * (i as f64 + 0.5) / count;
+            assert!((f64::from(value) - exact).abs() <= 0.5 + 1e-9, "{side}: {i}");
+        }
+    }
+}
+
 proptest! {
     #[test]
-    fn no_file_is_a_panic(mut bytes in prop::collection::vec(any::<u8>(), 0..200), is_headed in any::<bool>()) {
-        if is_headed {
-            let head = store::to_bytes(&tam()).unwrap();
-            bytes.splice(0..0, head[..12].iter().copied());
-        }
+    fn no_file_is_a_panic(mut bytes in prop::collection::vec(any::<u8>(), 0..200), headed in 0_usize..=24) {
+        let [_, head] = files();
+        bytes.splice(0..0, head[..headed].iter().copied());
         let _ = store::from_bytes(&bytes);
+        let _ = store::from_bytes(&sealed(bytes));
+    }
+
+    /// With a checksum that is right, so that what lies behind it is reached. A file that is read is the only one of
+    /// what is in it.
+    #[test]
+    fn changed_files_are_refused_or_as_good(
+        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..5),
+        in_header in any::<bool>(),
+        with_thresholds in any::<bool>(),
+    ) {
+        let mut bytes = files()[usize::from(with_thresholds)].clone();
+        let end = if in_header { 36 } else { bytes.len() };
+        for (at, byte) in changes {
+            bytes[at.index(end)] = byte;
+        }
+        let bytes = sealed(bytes);
+        if let Ok(stored) = store::from_bytes(&bytes) {
+            prop_assert_eq!(store::to_bytes(&stored.tam, stored.thresholds.as_ref()).unwrap(), bytes);
+        }
     }
 }
 

@@ -68,4 +68,7 @@ pub enum GpuError {
     /// Tones that cannot be shaded.
     #[error(transparent)]
     Gooch(#[from] npr_gooch::GoochError),
+    /// A tonal art map that cannot be looked up.
+    #[error(transparent)]
+    Hatch(#[from] npr_hatch::HatchError),
 }

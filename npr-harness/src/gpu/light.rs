@@ -61,7 +61,7 @@ impl LightVariant {
             stops: 1,
         };
         match &style.shade {
-            Shade::Paper | Shade::Lambert { .. } => {}
+            Shade::Paper | Shade::Lambert { .. } | Shade::Hatch(_) => {}
             Shade::Toon(bands) => {
                 variant.shade = 1;
                 variant.bands = bands.tones.len() as u32;
@@ -146,7 +146,7 @@ impl LightOnDevice {
         let mut numbers = ShadeUniform::zeroed();
         let mut light_scale = Painter::LIGHT_SCALE;
         match &style.shade {
-            Shade::Paper => {}
+            Shade::Paper | Shade::Hatch(_) => {}
             Shade::Lambert { ambient } => numbers.ambient = *ambient,
             Shade::Toon(of) => bands = Some(uniform(bytemuck::bytes_of(&ToonUniform::new(of)?))),
             Shade::Ramp(RampShade { ramp, half_lambert }) => {

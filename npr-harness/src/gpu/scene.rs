@@ -1,10 +1,13 @@
 //! A scene on the device.
 
+use super::hatch::HatchTextures;
 use super::surface::{MaterialUniform, SurfacePass};
 use super::{GpuContext, GpuError};
+use crate::hatch::HatchVertex;
 use crate::plan::Plan;
 use crate::scene::Scene;
 use crate::texture::MipMapped;
+use bytemuck::Zeroable;
 use glam::Vec4;
 use npr_mesh::{AlphaMode, Texture, Wrap};
 use std::collections::HashMap;
@@ -38,6 +41,8 @@ pub struct GpuScene {
     pub(super) strokes: bool,
     /// Fins for all edges, where the printed form is drawn.
     pub(super) fins: Option<npr_outline::fin_pass::FinsOnDevice>,
+    /// What tells where strokes lie, per vertex, and their map, where surfaces are hatched.
+    pub(super) hatch: Option<(wgpu::Buffer, HatchTextures)>,
 }
 
 /// Whether a material's colour differs from pixel to pixel, or its alpha decides.
@@ -86,6 +91,15 @@ impl GpuScene {
             Some(regions) => Some(buffer("regions", bytemuck::cast_slice(regions), wgpu::BufferUsages::VERTEX)?),
             None => None,
         };
+        let hatch = match &plan.hatch {
+            Some(hatch) => {
+                let vertex = |i: usize| hatch.vertices.get(i).copied().unwrap_or(HatchVertex::zeroed());
+                let vertices: Vec<HatchVertex> = sources().map(vertex).collect();
+                let vertices = buffer("strokes", bytemuck::cast_slice(&vertices), wgpu::BufferUsages::VERTEX)?;
+                Some((vertices, HatchTextures::new(&context.device, &context.queue, hatch)?))
+            }
+            None => None,
+        };
         let faces = split.as_ref().map_or(&model.faces, |split| &split.faces);
         let (indices, batches, blended_faces) = batches(scene, faces);
         let indices = if indices.is_empty() {
@@ -105,6 +119,7 @@ impl GpuScene {
             edges: None,
             strokes: false,
             fins: None,
+            hatch,
         })
     }
 }

@@ -1,7 +1,9 @@
 //! The geometry pass.
 
+use super::hatch::{HatchTextures, HatchUniform, HatchVariant};
 use super::light::{Blank, LightOnDevice, LightVariant, uniform_buffer};
 use super::scene::{Batch, GpuScene, is_looked_up};
+use super::GpuError;
 use super::targets::{COLOR_FORMAT, DEPTH_FORMAT};
 use crate::camera::Camera;
 use crate::image_ink::ImagePlan;
@@ -85,6 +87,8 @@ enum Paint {
     Painted,
     /// By any other.
     Lit,
+    /// With strokes.
+    Hatched,
 }
 
 /// What a fragment writes for lines in the image.
@@ -113,6 +117,7 @@ struct Variant {
     cull_back: bool,
     blended: bool,
     light: LightVariant,
+    hatch: Option<HatchVariant>,
     /// Whether there is a picture to paint, even if it is left as it is.
     colored: bool,
     clipped: bool,
@@ -126,16 +131,19 @@ pub(super) struct SurfacePass {
     material_layout: wgpu::BindGroupLayout,
     layout: wgpu::PipelineLayout,
     blank: Blank,
+    no_strokes: HatchTextures,
     pipelines: RefCell<HashMap<Variant, wgpu::RenderPipeline>>,
 }
 
 const SURFACE_LIGHT_WGSL: &str = include_str!("surface_light.wgsl");
 const SURFACE_WGSL: &str = include_str!("surface.wgsl");
+const SURFACE_HATCH_WGSL: &str = include_str!("surface_hatch.wgsl");
 
 /// The whole shader of the geometry pass.
 pub fn wgsl() -> String {
     let ink = [npr_imagespace::format::FORMAT_WGSL, npr_imagespace::artist::ARTIST_WGSL].concat();
-    [npr_toon::WGSL, npr_gooch::WGSL, &ink, SURFACE_LIGHT_WGSL, SURFACE_WGSL].concat()
+    let hatch = [npr_hatch::WGSL, npr_hatch::LOOKUP_WGSL].concat();
+    [npr_toon::WGSL, npr_gooch::WGSL, &hatch, &ink, SURFACE_LIGHT_WGSL, SURFACE_WGSL, SURFACE_HATCH_WGSL].concat()
 }
 
 impl SurfacePass {
@@ -162,14 +170,33 @@ impl SurfacePass {
             view_dimension: wgpu::TextureViewDimension::D2,
             multisampled: false,
         };
+        let words = wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Uint,
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        };
+        let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
         let layout = |label, entries: &[_]| {
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
         };
         let view_layout = layout(
             "surface view",
-            &[uniform(0), uniform(1), uniform(2), uniform(3), uniform(4), uniform(5), uniform(6), fragment(7, texture)],
+            &[
+                uniform(0),
+                uniform(1),
+                uniform(2),
+                uniform(3),
+                uniform(4),
+                uniform(5),
+                uniform(6),
+                fragment(7, texture),
+                uniform(8),
+                fragment(9, texture),
+                fragment(10, texture),
+                fragment(11, sampler),
+                fragment(12, words),
+            ],
         );
-        let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
         let material_layout = layout("surface material", &[uniform(0), fragment(1, texture), fragment(2, sampler)]);
         Self {
             module: device.create_shader_module(wgpu::ShaderModuleDescriptor {
@@ -184,6 +211,7 @@ impl SurfacePass {
             view_layout,
             material_layout,
             blank: Blank::new(device),
+            no_strokes: HatchTextures::blank(device),
             pipelines: RefCell::default(),
         }
     }
@@ -220,12 +248,23 @@ impl SurfacePass {
         camera: &Camera,
         light: &LightOnDevice,
         targets: &SurfaceTargets<'_>,
-    ) {
+    ) -> Result<(), GpuError> {
         let ink = plan.image.as_ref().map_or_else(bytemuck::Zeroable::zeroed, |image| InkUniform::new(image, camera));
         let view = uniform_buffer(device, bytemuck::bytes_of(&SurfaceUniform::new(scene, camera, targets.size_px)));
         let ink = uniform_buffer(device, bytemuck::bytes_of(&ink));
         let blank = &self.blank.uniform;
         let ramp_image = light.ramp_image.as_ref().unwrap_or(&self.blank.ramp_image);
+        let hatch = match (&style.shade, &plan.hatch) {
+            (Shade::Hatch(shade), Some(plan)) => Some((shade, plan)),
+            _ => None,
+        };
+        let hatch_uniform = match hatch {
+            Some((shade, plan)) => {
+                Some(uniform_buffer(device, bytemuck::bytes_of(&HatchUniform::new(style, shade, plan)?)))
+            }
+            None => None,
+        };
+        let strokes = uploaded.hatch.as_ref().map_or(&self.no_strokes, |(_, textures)| textures);
         let bound = [
             view.as_entire_binding(),
             light.bands.as_ref().unwrap_or(blank).as_entire_binding(),
@@ -235,6 +274,11 @@ impl SurfacePass {
             light.ramps.as_ref().unwrap_or(blank).as_entire_binding(),
             light.gooch.as_ref().unwrap_or(blank).as_entire_binding(),
             wgpu::BindingResource::TextureView(ramp_image),
+            hatch_uniform.as_ref().unwrap_or(&strokes.blank).as_entire_binding(),
+            wgpu::BindingResource::TextureView(&strokes.light),
+            wgpu::BindingResource::TextureView(&strokes.dark),
+            wgpu::BindingResource::Sampler(&strokes.sampler),
+            wgpu::BindingResource::TextureView(&strokes.thresholds),
         ];
         let entry = |(binding, resource)| wgpu::BindGroupEntry { binding, resource };
         let entries: Vec<_> = (0..).zip(bound).map(entry).collect();
@@ -246,6 +290,7 @@ impl SurfacePass {
         let paint = match style.shade {
             _ if targets.color.is_none() => Paint::Nothing,
             Shade::Paper => Paint::Nothing,
+            Shade::Hatch(_) => Paint::Hatched,
             _ if plan.lit => Paint::Lit,
             _ => Paint::Painted,
         };
@@ -292,6 +337,9 @@ impl SurfacePass {
         if let Some(regions) = &uploaded.regions {
             pass.set_vertex_buffer(2, regions.slice(..));
         }
+        if let Some((vertices, _)) = &uploaded.hatch {
+            pass.set_vertex_buffer(3, vertices.slice(..));
+        }
         let mut draw = |batch: &Batch, blended: bool| {
             let material = &scene.model.materials[batch.material];
             let double_sided = material.double_sided;
@@ -313,6 +361,7 @@ impl SurfacePass {
                 cull_back: plan.cull_back || !double_sided,
                 blended,
                 light: light.variant,
+                hatch: hatch.filter(|_| paint == Paint::Hatched).map(|(shade, plan)| HatchVariant::new(shade, plan)),
                 colored: targets.color.is_some(),
                 clipped: scene.clip.is_some(),
                 inking,
@@ -338,10 +387,11 @@ impl SurfacePass {
             draw(&Batch { material: material_of(&run[0]) as usize, indices: start..end }, true);
             start = end;
         }
+        Ok(())
     }
 
     fn pipeline(&self, device: &wgpu::Device, variant: Variant) -> wgpu::RenderPipeline {
-        let Variant { paint, looked_up, by_alpha, cull_back, blended, light, colored, clipped, inking } = variant;
+        let Variant { paint, looked_up, by_alpha, cull_back, blended, light, hatch, colored, clipped, inking } = variant;
         // A blended surface is no surface to lines in the image.
         let inked = inking.is_some() && !blended;
         let (vertex, fragment) = match (paint, looked_up, inked) {
@@ -357,6 +407,8 @@ impl SurfacePass {
             (Paint::Painted, false, true) => ("vs_plain_inked", "fs_painted_inked"),
             (Paint::Painted, true, true) => ("vs_textured_inked", "fs_painted_textured_inked"),
             (Paint::Lit, _, true) => ("vs_lit", "fs_lit_inked"),
+            (Paint::Hatched, _, false) => ("vs_hatched", "fs_hatched"),
+            (Paint::Hatched, _, true) => ("vs_hatched", "fs_hatched_inked"),
         };
         let geometry = wgpu::VertexBufferLayout {
             array_stride: 24,
@@ -373,9 +425,20 @@ impl SurfacePass {
             step_mode: wgpu::VertexStepMode::Vertex,
             attributes: &wgpu::vertex_attr_array![4 => Uint32],
         };
-        let everything = vertex == "vs_lit";
+        let strokes = wgpu::VertexBufferLayout {
+            array_stride: 28,
+            step_mode: wgpu::VertexStepMode::Vertex,
+            attributes: &wgpu::vertex_attr_array![5 => Float32x3, 6 => Float32x3, 7 => Float32],
+        };
+        let hatched = paint == Paint::Hatched;
+        let everything = hatched || vertex == "vs_lit";
         let (looks_up, has_regions) = (everything || looked_up, everything || inked);
-        let buffers = [Some(geometry), looks_up.then_some(lookups), has_regions.then_some(regions)];
+        let buffers = [
+            Some(geometry),
+            looks_up.then_some(lookups),
+            has_regions.then_some(regions),
+            hatched.then_some(strokes),
+        ];
         let target = wgpu::ColorTargetState {
             format: COLOR_FORMAT,
             blend: blended.then_some(wgpu::BlendState::ALPHA_BLENDING),
@@ -400,6 +463,7 @@ impl SurfacePass {
         let constants: Vec<_> = light
             .constants()
             .into_iter()
+            .chain(HatchVariant::constants(hatch))
             .chain([
                 ("surface_clipped", flag(clipped)),
                 ("surface_narrow", flag(narrow)),
@@ -508,5 +572,19 @@ mod tests {
             ("padding", offset_of!(ShadeUniform, padding)),
         ];
         assert_eq!(layout("SurfaceShade"), ours(&shade, size_of::<ShadeUniform>()));
+        let hatch = [
+            ("light_tones", offset_of!(HatchUniform, light_tones)),
+            ("texels", offset_of!(HatchUniform, texels)),
+            ("dark_tones", offset_of!(HatchUniform, dark_tones)),
+            ("last_level", offset_of!(HatchUniform, last_level)),
+            ("ink", offset_of!(HatchUniform, ink)),
+            ("tiles", offset_of!(HatchUniform, tiles)),
+            ("paper", offset_of!(HatchUniform, paper)),
+            ("brightness", offset_of!(HatchUniform, brightness)),
+            ("ambient", offset_of!(HatchUniform, ambient)),
+            ("width", offset_of!(HatchUniform, width)),
+            ("padding", offset_of!(HatchUniform, padding)),
+        ];
+        assert_eq!(layout("SurfaceHatch"), ours(&hatch, size_of::<HatchUniform>()));
     }
 }

@@ -379,6 +379,13 @@ fn lit_texel(in: LitSurface) -> vec4<f32> {
     return vec4<f32>(1.0);
 }
 
+fn lit_words(in: LitSurface, texel: vec4<f32>, front: bool) -> vec2<u32> {
+    if surface_looked_up {
+        return textured_words(InkedTexturedSurface(in.position, in.normal, in.uv, in.color, in.region), front, texel);
+    }
+    return plain_words(InkedSurface(in.position, in.normal, in.region), front);
+}
+
 @fragment
 fn fs_lit(in: LitSurface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
     let base = lit_base(in, lit_texel(in));
@@ -413,11 +420,7 @@ fn fs_lit_inked(in: LitSurface, @builtin(front_facing) front: bool) -> Inked {
         discard;
     }
     clip_off(in.position);
-    if surface_looked_up {
-        let textured = InkedTexturedSurface(in.position, in.normal, in.uv, in.color, in.region);
-        return Inked(vec4<f32>(color, base.a), textured_words(textured, front, texel));
-    }
-    return Inked(vec4<f32>(color, base.a), plain_words(InkedSurface(in.position, in.normal, in.region), front));
+    return Inked(vec4<f32>(color, base.a), lit_words(in, texel, front));
 }
 
 @fragment

@@ -3,7 +3,9 @@
 use super::within;
 use crate::error::HarnessError;
 use glam::{DVec3, Vec3};
-use npr_hatch::{Drawing, HATCH_TONES, HatchError, StrokeImage, Tam, TamParameters, Thresholds, draw, store};
+use crate::hatch::read_map;
+use npr_hatch::store::Stored;
+use npr_hatch::{Drawing, HATCH_TONES, HatchError, StrokeImage, Tam, TamParameters, Thresholds, draw};
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
@@ -119,11 +121,10 @@ impl HatchMap {
     /// What `npr tam` wrote.
     ///
     /// # Errors
-    /// [`HarnessError::Map`], or what is wrong with the file's contents.
+    /// Those of [`read_map`].
     pub fn read(file: &Path) -> Result<Self, HarnessError> {
-        let bytes = std::fs::read(file).map_err(|source| HarnessError::Map { path: file.to_owned(), source })?;
-        let tam = store::from_bytes(&bytes)?;
-        Ok(Self::new(HatchSource::File { file: file.to_owned(), tam, thresholds: None }))
+        let Stored { tam, thresholds } = read_map(file)?;
+        Ok(Self::new(HatchSource::File { file: file.to_owned(), tam, thresholds }))
     }
 
     /// Where it comes from.
@@ -197,6 +198,10 @@ impl fmt::Debug for HatchMap {
 }
 
 impl HatchShade {
+    /// The span of tones over which a texel of thresholds turns to ink: so much that a difference of light in the last
+    /// digit does not turn one over.
+    pub(crate) const WIDTH: f64 = 1.0 / 64.0;
+
     /// Which rule is broken, if one is; the first found. Nothing is drawn for it.
     pub(super) fn validate(&self) -> Result<(), HarnessError> {
         if let Some((parameters, _)) = self.map.strokes() {

@@ -1,6 +1,8 @@
 //! `npr`: pictures, tables and checks from the command line.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
+mod tam;
+
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::{DVec3, DVec4};
 use npr_harness::camera::{Camera, Framing};
@@ -54,6 +56,8 @@ enum Command {
         #[arg(long, default_value = "npr-out/check")]
         out: PathBuf,
     },
+    /// Draws a tonal art map for hatching into a folder, or unpacks one: its images, one file with all, and sheets.
+    Tam(tam::Options),
     /// The styles there are.
     Styles,
     /// Prints a style as TOML, to start one's own from.
@@ -156,6 +160,7 @@ fn main() -> ExitCode {
         Some(Command::Render(options)) => run_render(&options),
         Some(Command::Inspect { input, json }) => run_inspect(&input, json),
         Some(Command::Check { inputs, style, json, out }) => run_check(&inputs, &style, json, &out),
+        Some(Command::Tam(options)) => tam::run(&options),
         Some(Command::Styles) => {
             for style in styles() {
                 println!("{:<16}{}", style.name, style.about);
