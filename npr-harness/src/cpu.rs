@@ -4,6 +4,7 @@
 //! that is written as the formulas read. `samples` per pixel along each axis supersample the whole picture, lines
 //! included: that is the truth against which accuracy is measured.
 
+mod hatch;
 mod ink;
 mod lines;
 mod shade;
@@ -18,8 +19,9 @@ use crate::light::lights_in_world;
 use crate::plan::Plan;
 use crate::rays::Hit;
 use crate::scene::Scene;
-use crate::style::{Lines, Style};
+use crate::style::{Lines, Shade, Style};
 use glam::{DVec2, DVec3, DVec4};
+use hatch::Strokes;
 use npr_toon::source::{Light, combined_color};
 
 /// What is asked of a frame on the CPU.
@@ -84,6 +86,8 @@ pub struct FrameContext<'a> {
     textures: &'a [crate::texture::MipMapped],
     shift_px: DVec2,
     plan: &'a Plan,
+    /// What surfaces are hatched with.
+    strokes: Option<Strokes<'a>>,
     /// Whether surfaces get their colours.
     painting: bool,
     /// In px of the grid that is sampled.
@@ -134,6 +138,10 @@ pub fn render_unsure(
         textures: &textures,
         shift_px: options.shift_px * f64::from(samples),
         plan,
+        strokes: match (&style.shade, &plan.hatch) {
+            (Shade::Hatch(shade), Some(plan)) => Some(Strokes::new(shade, plan, style.normals, samples)),
+            _ => None,
+        },
         painting: plan.painted,
         boundary_inset_px: options.boundary_inset_px * f64::from(samples),
     };

@@ -2,9 +2,9 @@
 
 use crate::camera::Camera;
 use crate::error::HarnessError;
+use crate::hatch::HatchPlan;
 use crate::image_ink::{ImagePlan, InkScale};
 use crate::scene::Scene;
-use crate::hatch::HatchPlan;
 use crate::style::{HatchMapping, Lines, Shade, Style};
 use glam::DVec4;
 use npr_imagespace::artist::LineKind as InnerLines;
@@ -85,8 +85,7 @@ impl Plan {
         let each = matches!(style.shade, Shade::Painter(_));
         // Several lights taken together are a direction.
         let hatch = if let Shade::Hatch(shade) = &style.shade { Some(HatchPlan::new(scene, shade)?) } else { None };
-        let lit =
-            painted && (hatch.is_some() || style.normals != NormalUse::PerPixel || placed && (each || !two));
+        let lit = painted && (hatch.is_some() || style.normals != NormalUse::PerPixel || placed && (each || !two));
         let cut_out = used(&|m| matches!(m.alpha_mode, AlphaMode::Mask { .. }));
         let blended = painted && scene.has_blend();
         let cull_back = scene.closed && scene.clip.is_none() && !sees_the_inside(scene, camera);

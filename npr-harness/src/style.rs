@@ -174,5 +174,9 @@ impl Style {
 }
 
 fn within(what: &'static str, value: f32, low: f32, high: f32, range: &'static str) -> Result<(), HarnessError> {
-    if (low..=high).contains(&value) { Ok(()) } else { Err(HarnessError::Range { what, value: f64::from(value), range }) }
+    if (low..=high).contains(&value) {
+        Ok(())
+    } else {
+        Err(HarnessError::Range { what, value: f64::from(value), range })
+    }
 }

@@ -7,9 +7,7 @@ use npr_hatch::mapping::{
     HATCH_TURNS, hatch_doubled, hatch_moved, hatch_octave, hatch_plane, hatch_plane_weights, hatch_share, hatch_turn,
     hatch_turned,
 };
-use npr_hatch::{
-    Drawing, TamParameters, Thresholds, draw, hatch_blend, hatch_linear, hatch_threshold, hatch_weights,
-};
+use npr_hatch::{Drawing, TamParameters, Thresholds, draw, hatch_blend, hatch_linear, hatch_threshold, hatch_weights};
 use oorandom::Rand64;
 use std::f64::consts::PI;
 

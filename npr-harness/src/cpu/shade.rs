@@ -61,6 +61,10 @@ impl FrameContext<'_> {
                 let tone = gooch_tone(model, base, here.x);
                 gooch_over(model, tone, gooch_highlight(model, here.x, here.y))
             }
+            Shade::Hatch(_) => {
+                let strokes = self.strokes.as_ref().expect("a hatched style has strokes");
+                self.hatch(hit, base, here.x, x, y, strokes)
+            }
         }
     }
 
@@ -81,6 +85,11 @@ impl FrameContext<'_> {
             Shade::Ramp(RampShade { half_lambert: Some(how), .. }) => DVec2::new(toon_half_lambert(how, found.x), 0.0),
             _ => found,
         }
+    }
+
+    /// How far the light reaches at the corners of a hit's face.
+    pub(super) fn lit_corners(&self, hit: &Hit) -> [f64; 3] {
+        self.corners(hit).map(|corner| self.light_at(&corner).x)
     }
 
     fn corners(&self, hit: &Hit) -> [Lit; 3] {

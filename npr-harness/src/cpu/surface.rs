@@ -20,9 +20,9 @@ pub(super) struct Surface {
 /// differences, each with the sign that makes the difference a derivative.
 pub(super) struct Footprint {
     pub(super) along_x: [f64; 3],
-    dx: f64,
+    pub(super) dx: f64,
     pub(super) along_y: [f64; 3],
-    dy: f64,
+    pub(super) dy: f64,
 }
 
 impl FrameContext<'_> {

@@ -1,9 +1,9 @@
 //! The geometry pass.
 
+use super::GpuError;
 use super::hatch::{HatchTextures, HatchUniform, HatchVariant};
 use super::light::{Blank, LightOnDevice, LightVariant, uniform_buffer};
 use super::scene::{Batch, GpuScene, is_looked_up};
-use super::GpuError;
 use super::targets::{COLOR_FORMAT, DEPTH_FORMAT};
 use crate::camera::Camera;
 use crate::image_ink::ImagePlan;
@@ -391,7 +391,8 @@ impl SurfacePass {
     }
 
     fn pipeline(&self, device: &wgpu::Device, variant: Variant) -> wgpu::RenderPipeline {
-        let Variant { paint, looked_up, by_alpha, cull_back, blended, light, hatch, colored, clipped, inking } = variant;
+        let Variant { paint, looked_up, by_alpha, cull_back, blended, light, hatch, colored, clipped, inking } =
+            variant;
         // A blended surface is no surface to lines in the image.
         let inked = inking.is_some() && !blended;
         let (vertex, fragment) = match (paint, looked_up, inked) {
@@ -433,12 +434,8 @@ impl SurfacePass {
         let hatched = paint == Paint::Hatched;
         let everything = hatched || vertex == "vs_lit";
         let (looks_up, has_regions) = (everything || looked_up, everything || inked);
-        let buffers = [
-            Some(geometry),
-            looks_up.then_some(lookups),
-            has_regions.then_some(regions),
-            hatched.then_some(strokes),
-        ];
+        let buffers =
+            [Some(geometry), looks_up.then_some(lookups), has_regions.then_some(regions), hatched.then_some(strokes)];
         let target = wgpu::ColorTargetState {
             format: COLOR_FORMAT,
             blend: blended.then_some(wgpu::BlendState::ALPHA_BLENDING),

@@ -1,5 +1,6 @@
 //! The shape of a style's file, key by key.
 
+mod hatch;
 mod lines;
 mod shade;
 
@@ -14,7 +15,7 @@ use npr_toon::normal::NormalUse;
 use npr_toon::source::{Light, LightPlace};
 use serde::{Deserialize, Serialize};
 use shade::ShadeForm;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Red, green and blue; read from `"#rrggbb"`, too.
 #[derive(Clone, Copy, Serialize, Deserialize)]
@@ -175,8 +176,15 @@ impl At<'_> {
         StyleFileError::Form { path: self.path.to_owned(), what: what.into() }
     }
 
+    /// Where a file lies that the style names.
+    fn beside(&self, file: &Path) -> PathBuf {
+        let path = self.path.parent().unwrap_or(Path::new("")).join(file);
+        // So that it is found from anywhere when it is written again.
+        std::path::absolute(&path).unwrap_or(path)
+    }
+
     fn image(&self, file: &Path) -> Result<Image, StyleFileError> {
-        Ok(Image::load_png(&self.path.parent().unwrap_or(Path::new("")).join(file))?)
+        Ok(Image::load_png(&self.beside(file))?)
     }
 }
 

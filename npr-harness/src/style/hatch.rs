@@ -2,8 +2,8 @@
 
 use super::within;
 use crate::error::HarnessError;
-use glam::{DVec3, Vec3};
 use crate::hatch::read_map;
+use glam::{DVec3, Vec3};
 use npr_hatch::store::Stored;
 use npr_hatch::{Drawing, HATCH_TONES, HatchError, StrokeImage, Tam, TamParameters, Thresholds, draw};
 use std::fmt;

@@ -1,10 +1,14 @@
 //! The styles there are.
 
-use super::{Lines, PainterShade, Ramp2dSource, RampShade, RampSource, Shade, Style};
+use super::{
+    HatchEncoding, HatchGround, HatchMap, HatchMapping, HatchShade, HatchSource, HatchTransfer, Lines, PainterShade,
+    Ramp2dSource, RampShade, RampSource, Shade, Style,
+};
 use crate::image_ink::{ImageInk, InkScale};
 use crate::light::{LightFrame, StyleLight};
 use glam::Vec3;
 use npr_gooch::Gooch;
+use npr_hatch::TamParameters;
 use npr_imagespace::composite::Composite;
 use npr_imagespace::morphology::disc::Disc;
 use npr_outline::line_look::{LineLook, widths_px};
@@ -15,6 +19,7 @@ use npr_toon::painter::Painter;
 use npr_toon::ramp::{Ramp, RampBlend, RampStop};
 use npr_toon::source::Light;
 use npr_toon::table::{Corner, Ramp2d};
+use std::sync::LazyLock;
 
 /// A warm white.
 const PAPER: Vec3 = Vec3::new(0.98, 0.97, 0.94);
@@ -65,6 +70,38 @@ fn warm_and_cool() -> Vec<StyleLight> {
     let lamp =
         Light { color: Vec3::new(0.9, 0.95, 1.0), brightness: 0.7, ..Light::positional(Vec3::new(1.3, -0.1, 0.7)) };
     [warm, lamp].map(|light| StyleLight { light, frame: LightFrame::View }).to_vec()
+}
+
+/// Strokes along the texture's x axis, which a field turns.
+static ALONG: LazyLock<HatchMap> = LazyLock::new(|| HatchMap::new(HatchSource::Parameters(fine_strokes())));
+
+/// Oblique strokes, as a right hand draws them.
+static OBLIQUE: LazyLock<HatchMap> =
+    LazyLock::new(|| HatchMap::new(HatchSource::Parameters(TamParameters { angle_deg: 35.0, ..fine_strokes() })));
+
+fn fine_strokes() -> TamParameters {
+    TamParameters {
+        side: 512,
+        length: [0.15, 0.4],
+        bow: 0.02,
+        jitter_deg: 3.0,
+        cross_deg: 70.0,
+        ..TamParameters::default()
+    }
+}
+
+/// Strokes that follow the form, and solid black where no light falls.
+fn hatching() -> HatchShade {
+    HatchShade {
+        map: ALONG.clone(),
+        encoding: HatchEncoding::Thresholds,
+        mapping: HatchMapping::Form,
+        transfer: HatchTransfer::Linear { ambient: 0.15 },
+        tile: 0.5,
+        texel_px: 1.0,
+        ink: Vec3::new(INK[0], INK[1], INK[2]),
+        ground: HatchGround::Paper,
+    }
 }
 
 /// The styles there are; the first is the default.
@@ -161,6 +198,47 @@ pub fn styles() -> Vec<Style> {
                 "printed-gooch",
                 "the cool and warm tones of the 2002 chapter's listing 7, as printed",
                 Shade::Gooch(Gooch::listing_7()),
+                None,
+            )
+        },
+        style("hatch", "strokes that follow the form, fine lines", Shade::Hatch(hatching()), ink_lines(1.4, 1.0)),
+        style(
+            "hatch-planes",
+            "oblique strokes of six tones by three planes, ink lines",
+            Shade::Hatch(HatchShade {
+                map: OBLIQUE.clone(),
+                encoding: HatchEncoding::SixTones,
+                mapping: HatchMapping::Planes,
+                ..hatching()
+            }),
+            ink_lines(1.6, 1.1),
+        ),
+        style(
+            "hatch-color",
+            "coloured strokes over the surface's own colour, by its texture coordinates",
+            Shade::Hatch(HatchShade {
+                map: OBLIQUE.clone(),
+                mapping: HatchMapping::Coordinates,
+                transfer: HatchTransfer::Linear { ambient: 0.3 },
+                ink: Vec3::new(0.20, 0.14, 0.30),
+                ground: HatchGround::Surface,
+                ..hatching()
+            }),
+            ink_lines(1.4, 1.0),
+        ),
+        Style {
+            normals: NormalUse::PerVertex,
+            ..style(
+                "printed-hatch",
+                "hatching by the 2002 chapter's listings 4 and 5, as printed: weights at the vertices",
+                Shade::Hatch(HatchShade {
+                    map: OBLIQUE.clone(),
+                    encoding: HatchEncoding::SixTones,
+                    mapping: HatchMapping::Coordinates,
+                    transfer: HatchTransfer::Listing4 { brightness: 6.0 },
+                    ink: Vec3::ZERO,
+                    ..hatching()
+                }),
                 None,
             )
         },

@@ -3,13 +3,12 @@
 use crate::spinner;
 use clap::Args;
 use npr_harness::error::HarnessError;
+use npr_harness::hatch::read_map;
 use npr_hatch::{
     Drawing, HatchError, MAX_TONES, Placement, StrokeImage, Tam, TamParameters, Thresholds, draw, even_tones, png,
     sheet, store,
 };
 use serde_json::json;
-use std::fs::File;
-use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 

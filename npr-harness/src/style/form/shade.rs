@@ -1,5 +1,6 @@
 //! The keys of surfaces' paint.
 
+use super::hatch::HatchForm;
 use super::{At, Color, ColorForm, one, white, yes};
 use crate::style::file::StyleFileError;
 use crate::style::{PainterShade, Ramp2dSource, RampShade, RampSource, Shade};
@@ -23,6 +24,7 @@ pub(super) enum ShadeForm {
     Ramp(RampShadeForm),
     Painter(PainterForm),
     Gooch(GoochForm),
+    Hatch(HatchForm),
 }
 
 #[derive(Serialize, Deserialize)]
@@ -228,6 +230,7 @@ impl ShadeForm {
             Shade::Ramp(ramp) => Self::Ramp(RampShadeForm::new(ramp)),
             Shade::Painter(painter) => Self::Painter(PainterForm::new(painter)),
             Shade::Gooch(model) => Self::Gooch(GoochForm::new(model)),
+            Shade::Hatch(hatch) => Self::Hatch(HatchForm::new(hatch)),
         }
     }
 
@@ -239,6 +242,7 @@ impl ShadeForm {
             Self::Ramp(ramp) => Shade::Ramp(ramp.ramp(at)?),
             Self::Painter(painter) => Shade::Painter(painter.painter(at)?),
             Self::Gooch(gooch) => Shade::Gooch(gooch.gooch()),
+            Self::Hatch(hatch) => Shade::Hatch(hatch.hatch(at)?),
         })
     }
 }
