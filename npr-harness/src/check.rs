@@ -233,7 +233,7 @@ pub fn scene(
 
 /// The largest difference, of 255, that is allowed outside the exempt pixels.
 pub fn magnitude(plan: &Plan) -> u8 {
-    if plan.textured { TEXTURE_MAGNITUDE } else { SHADING_MAGNITUDE }
+    if plan.textured || plan.hatch.is_some() { TEXTURE_MAGNITUDE } else { SHADING_MAGNITUDE }
 }
 
 /// Whether a picture agrees with its reference.
@@ -439,9 +439,15 @@ pub struct Shot<'a> {
 /// The reference picture of a shot, and the pixels in which it is sensitive to where its samples are: those in which its
 /// colour changes by more than the allowed difference, or, where surfaces are painted, its depth by more than a slope
 /// of [`MAX_SLOPE`] explains.
+///
+/// Strokes are as narrow as pixels, so a hatched picture changes nearly everywhere when its samples are moved, and
+/// would nearly all be exempt. There the same picture in plain light says what is sensitive; strokes are moved by
+/// [`ROUNDED_PX`] alone.
 pub struct Reference<'a> {
     shot: Shot<'a>,
     frame: CpuFrame,
+    /// Of a hatched shot: the same in plain light.
+    plain: Option<Plain>,
     magnitude: u8,
     /// The picture.
     pub image: Image,
@@ -459,8 +465,15 @@ impl<'a> Reference<'a> {
         let magnitude = magnitude(shot.plan);
         let image = frame.image();
         let exempt = vec![false; frame.depth.len()];
-        let mut reference = Self { shot, frame, magnitude, image, exempt };
+        let plain = if shot.plan.hatch.is_some() { Some(Plain::new(&shot)?) } else { None };
+        let mut reference = Self { shot, frame, plain, magnitude, image, exempt };
         reference.exempt_where_moved(SHIFT_PX, 8)?;
+        if reference.plain.is_some() {
+            for shift_px in around(ROUNDED_PX, 8) {
+                let moved = shot.reference(&CpuOptions { shift_px, ..Default::default() });
+                reference.exempt_where(&exempt_mask(&reference.image, &[moved.image()], magnitude)?);
+            }
+        }
         Ok(reference)
     }
 
@@ -476,8 +489,7 @@ impl<'a> Reference<'a> {
         for share in [1.0, 0.5, 0.25, 0.125] {
             self.exempt_where_moved(share * SHIFT_PX, 16)?;
         }
-        let options = CpuOptions { boundary_inset_px: ROUNDED_PX, ..Default::default() };
-        self.exempt_changes(&self.shot.reference(&options))?;
+        self.exempt_changes(&CpuOptions { boundary_inset_px: ROUNDED_PX, ..Default::default() })?;
         self.exempt_around_contours()
     }
 
@@ -498,7 +510,8 @@ impl<'a> Reference<'a> {
         }
         let unsure: Vec<usize> = unsure.into_iter().collect();
         let blotted = cpu::render_unsure(scene, style, plan, camera, size, &CpuOptions::default(), &unsure, &|_| {});
-        self.exempt_changes(&blotted)
+        self.exempt_where(&exempt_mask(&self.image, &[blotted.image()], self.magnitude)?);
+        Ok(())
     }
 
     /// Whether a pixel's depth changes by more than a slope explains when its sample is moved.
@@ -511,27 +524,62 @@ impl<'a> Reference<'a> {
     }
 
     fn exempt_where_moved(&mut self, by_px: f64, directions: u32) -> Result<(), HarnessError> {
-        for direction in 0..directions {
-            let angle = f64::from(direction) / f64::from(directions) * std::f64::consts::TAU;
-            let options = CpuOptions { shift_px: by_px * DVec2::from_angle(angle), ..Default::default() };
-            self.exempt_changes(&self.shot.reference(&options))?;
+        for shift_px in around(by_px, directions) {
+            self.exempt_changes(&CpuOptions { shift_px, ..Default::default() })?;
         }
         Ok(())
     }
 
-    fn exempt_changes(&mut self, moved: &CpuFrame) -> Result<(), HarnessError> {
-        let changes = exempt_mask(&self.image, &[moved.image()], self.magnitude)?;
+    fn exempt_where(&mut self, changes: &[bool]) {
         for (exempt, changes) in self.exempt.iter_mut().zip(changes) {
             *exempt |= changes;
         }
+    }
+
+    /// Where the picture, or in plain light the same one, changes.
+    fn exempt_changes(&mut self, options: &CpuOptions) -> Result<(), HarnessError> {
+        let (moved, image) = match &self.plain {
+            Some(plain) => (self.shot.in_light(plain).reference(options), &plain.image),
+            None => (self.shot.reference(options), &self.image),
+        };
+        self.exempt_where(&exempt_mask(image, &[moved.image()], self.magnitude)?);
         if self.shot.plan.painted {
             // Another surface, even one that happens to have the same colour: a rasteriser may show a third one
             // there, turned away and hidden by exact arithmetic.
             for pixel in 0..self.exempt.len() {
-                self.exempt[pixel] |= self.shows_another_surface(moved, pixel, SHIFT_PX);
+                self.exempt[pixel] |= self.shows_another_surface(&moved, pixel, SHIFT_PX);
             }
         }
         Ok(())
+    }
+}
+
+/// A shot with Lambert's light instead of strokes.
+struct Plain {
+    style: Style,
+    plan: Plan,
+    image: Image,
+}
+
+impl Plain {
+    fn new(shot: &Shot<'_>) -> Result<Self, HarnessError> {
+        let style = Style { shade: Shade::Lambert { ambient: 0.2 }, ..shot.style.clone() };
+        let plan = Plan::new(shot.scene, &style, shot.camera)?;
+        let lit = Shot { style: &style, plan: &plan, ..*shot };
+        let image = lit.reference(&CpuOptions::default()).image();
+        Ok(Self { style, plan, image })
+    }
+}
+
+/// Places on a circle, px.
+fn around(radius_px: f64, directions: u32) -> impl Iterator<Item = DVec2> {
+    let angle = move |number| f64::from(number) / f64::from(directions) * std::f64::consts::TAU;
+    (0..directions).map(move |number| radius_px * DVec2::from_angle(angle(number)))
+}
+
+impl<'a> Shot<'a> {
+    fn in_light(&self, plain: &'a Plain) -> Self {
+        Self { style: &plain.style, plan: &plain.plan, ..*self }
     }
 }
 

@@ -44,8 +44,15 @@ fn hatch_threshold(texel: f32, tone: f32, width: f32) -> f32 {
     return select(0.0, 1.0, texel > tone);
 }
 
-fn hatch_width(tone: f32, width: f32) -> f32 {
-    return max(min(width, 2.0 * min(tone, 1.0 - tone)), 0.0);
+fn hatch_softened(tone: f32, width: f32) -> f32 {
+    let end = 0.5 * width;
+    if tone < end {
+        return sqrt(2.0 * width * max(tone, 0.0)) - end;
+    }
+    if tone > 1.0 - end {
+        return 1.0 + end - sqrt(2.0 * width * max(1.0 - tone, 0.0));
+    }
+    return tone;
 }
 
 struct HatchFootprint {

@@ -127,21 +127,36 @@ pub fn hatch_texels(tam: &Tam, uv: DVec2, footprint: HatchFootprint) -> (DVec3, 
 }
 
 /// How much ink a place has where a tone is wanted, 0..=1: thresholds, compared and then filtered. `width` is the span of
-/// tones over which a texel turns to ink, less where white or black is near ([`hatch_width`]).
+/// tones over which a texel turns to ink.
 pub fn hatch_ink(map: &Thresholds, uv: DVec2, footprint: HatchFootprint, tone: f64, width: f64) -> f64 {
-    let width = hatch_width(tone, width);
+    let at = hatch_softened(tone, width);
     let ink = filtered(uv, footprint, |level, uv| {
         let side = map.side >> level;
         bilinear(uv, side, |x, y| {
             let texel = f64::from(map.levels[level][(y * side + x) as usize]) / 65535.0;
-            DVec3::splat(hatch_threshold(texel, tone, width))
+            DVec3::splat(hatch_threshold(texel, at, width))
         })
     });
     ink.x
 }
 
-/// So much of the width that none of it lies beyond white or black: there are no thresholds there, and tones near the
-/// ends would be off by an eighth of the width. White stays clean.
-pub fn hatch_width(tone: f64, width: f64) -> f64 {
-    width.min(2.0 * tone.min(1.0 - tone)).max(0.0)
+/// What thresholds are compared with for a tone, if texels turn to ink over a width, 0..=1: the tone itself, but near
+/// white and black, where a part of the width lies beyond all thresholds, what keeps the mean.
+///
+/// Thresholds lie evenly between 0 and 1. Compared with τ < width / 2 they leave (τ + width / 2)² / (2 width) of paper on
+/// the mean, so that is solved for τ; and the same at white. There and there alone everything is ink, or paper.
+///
+/// ```
+/// use npr_hatch::lookup::hatch_softened;
+/// assert_eq!([0.0, 0.3, 1.0].map(|tone| hatch_softened(tone, 0.25)), [-0.125, 0.3, 1.125]);
+/// ```
+pub fn hatch_softened(tone: f64, width: f64) -> f64 {
+    let end = 0.5 * width;
+    if tone < end {
+        (2.0 * width * tone.max(0.0)).sqrt() - end
+    } else if tone > 1.0 - end {
+        1.0 + end - (2.0 * width * (1.0 - tone).max(0.0)).sqrt()
+    } else {
+        tone
+    }
 }

@@ -33,7 +33,8 @@ fn hatch_texels(
 
 // One level of a texture of thresholds, 16 bits unsigned, compared and then filtered.
 fn hatch_ink_of_level(map: texture_2d<u32>, uv: vec2<f32>, level: i32, tone: f32, width: f32) -> f32 {
-    let taps = hatch_taps(uv, textureDimensions(map, level).x);
+    // Not the size of `level`, which some software adapters ask once for many pixels (Mesa 22.3's llvmpipe).
+    let taps = hatch_taps(uv, textureDimensions(map).x >> u32(level));
     let a = textureLoad(map, taps.low, level).x;
     let b = textureLoad(map, vec2<u32>(taps.high.x, taps.low.y), level).x;
     let c = textureLoad(map, vec2<u32>(taps.low.x, taps.high.y), level).x;
@@ -58,14 +59,14 @@ fn hatch_ink_at(map: texture_2d<u32>, uv: vec2<f32>, level: f32, tone: f32, widt
 }
 
 fn hatch_ink(map: texture_2d<u32>, uv: vec2<f32>, footprint: HatchFootprint, tone: f32, width: f32) -> f32 {
-    let least = hatch_width(tone, width);
+    let softened = hatch_softened(tone, width);
     if all(footprint.spread == vec2<f32>(0.0)) {
-        return hatch_ink_at(map, uv, footprint.level, tone, least);
+        return hatch_ink_at(map, uv, footprint.level, softened, width);
     }
     var ink = 0.0;
     for (var i = 0; i < 4; i++) {
         let along = -0.375 + 0.25 * f32(i);
-        ink += 0.25 * hatch_ink_at(map, uv + footprint.spread * along, footprint.level, tone, least);
+        ink += 0.25 * hatch_ink_at(map, uv + footprint.spread * along, footprint.level, softened, width);
     }
     return ink;
 }
