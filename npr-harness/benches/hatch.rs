@@ -1,0 +1,50 @@
+//! What strokes cost: encodings, mappings, and weights at vertices or pixels, against a plain Lambert pass.
+//!
+//! `cargo bench -p npr-harness --bench hatch`. Minimum and median of interleaved rounds; read the ratios. The figures
+//! that were measured stand in the README.
+#![allow(clippy::print_stdout)]
+
+mod common;
+
+use npr_harness::gpu::GpuContext;
+use npr_harness::plan::LineMethod;
+use npr_harness::style::{HatchEncoding, HatchMapping, HatchShade, Shade, Style, style};
+use npr_toon::normal::NormalUse;
+
+fn main() {
+    let context = match GpuContext::new() {
+        Ok(context) => context,
+        Err(error) => return println!("skipped: {error}"),
+    };
+    println!("on {}", context.describe());
+    let (scene, camera) = common::bunny(|model| {
+        // It has no texture coordinates.
+        if model.uvs.is_empty() {
+            model.uvs = model.positions.iter().map(|p| p.truncate()).collect();
+        }
+    });
+    let base = Style { lines: None, ..style("hatch").expect("a style of this crate") };
+    let Shade::Hatch(shade) = base.shade.clone() else { panic!("`hatch` hatches") };
+    let hatched = |encoding, mapping, normals| Style {
+        shade: Shade::Hatch(HatchShade { encoding, mapping, ..shade.clone() }),
+        normals,
+        ..base.clone()
+    };
+    let (six, thresholds) = (HatchEncoding::SixTones, HatchEncoding::Thresholds);
+    let (pixel, vertex) = (NormalUse::PerPixel, NormalUse::PerVertex);
+    let (coordinates, planes, form) = (HatchMapping::Coordinates, HatchMapping::Planes, HatchMapping::Form);
+    let cases = [
+        ("Lambert", Style { shade: Shade::Lambert { ambient: 0.25 }, ..base.clone() }),
+        ("six tones, coordinates", hatched(six, coordinates, pixel)),
+        ("six tones at vertices, coordinates", hatched(six, coordinates, vertex)),
+        ("six tones, planes", hatched(six, planes, pixel)),
+        ("six tones at vertices, planes", hatched(six, planes, vertex)),
+        ("six tones, form", hatched(six, form, pixel)),
+        ("thresholds, coordinates", hatched(thresholds, coordinates, pixel)),
+        ("thresholds, light at vertices", hatched(thresholds, coordinates, vertex)),
+        ("thresholds, planes", hatched(thresholds, planes, pixel)),
+        ("thresholds, form", hatched(thresholds, form, pixel)),
+    ];
+    let cases = cases.map(|(name, style)| (name, style, LineMethod::Rectangles));
+    common::compare(&context, &scene, &camera, &cases);
+}
