@@ -15,20 +15,24 @@ fn hatch_texels_at(
     );
 }
 
+// How many samples a footprint asks for.
+fn hatch_samples(footprint: HatchFootprint) -> i32 {
+    return select(4, 1, all(footprint.spread == vec2<f32>(0.0)));
+}
+
 fn hatch_texels(
     light: texture_2d<f32>, dark: texture_2d<f32>, trilinear: sampler, uv: vec2<f32>, footprint: HatchFootprint,
 ) -> HatchTexels {
-    if all(footprint.spread == vec2<f32>(0.0)) {
-        return hatch_texels_at(light, dark, trilinear, uv, footprint.level);
-    }
+    // One loop, whether it runs once or four times: software adapters run through what they branch around.
+    let samples = hatch_samples(footprint);
     var sum = HatchTexels(vec3<f32>(0.0), vec3<f32>(0.0));
-    for (var i = 0; i < 4; i++) {
-        let along = -0.375 + 0.25 * f32(i);
-        let one = hatch_texels_at(light, dark, trilinear, uv + footprint.spread * along, footprint.level);
-        sum.light += 0.25 * one.light;
-        sum.dark += 0.25 * one.dark;
+    for (var i = 0; i < samples; i++) {
+        let at = uv + footprint.spread * (-0.375 + 0.25 * f32(i));
+        let one = hatch_texels_at(light, dark, trilinear, at, footprint.level);
+        sum.light += one.light;
+        sum.dark += one.dark;
     }
-    return sum;
+    return HatchTexels(sum.light / f32(samples), sum.dark / f32(samples));
 }
 
 // One level of a texture of thresholds, 16 bits unsigned, compared and then filtered.
@@ -60,13 +64,11 @@ fn hatch_ink_at(map: texture_2d<u32>, uv: vec2<f32>, level: f32, tone: f32, widt
 
 fn hatch_ink(map: texture_2d<u32>, uv: vec2<f32>, footprint: HatchFootprint, tone: f32, width: f32) -> f32 {
     let softened = hatch_softened(tone, width);
-    if all(footprint.spread == vec2<f32>(0.0)) {
-        return hatch_ink_at(map, uv, footprint.level, softened, width);
-    }
+    let samples = hatch_samples(footprint);
     var ink = 0.0;
-    for (var i = 0; i < 4; i++) {
-        let along = -0.375 + 0.25 * f32(i);
-        ink += 0.25 * hatch_ink_at(map, uv + footprint.spread * along, footprint.level, softened, width);
+    for (var i = 0; i < samples; i++) {
+        let at = uv + footprint.spread * (-0.375 + 0.25 * f32(i));
+        ink += hatch_ink_at(map, at, footprint.level, softened, width);
     }
-    return ink;
+    return ink / f32(samples);
 }
