@@ -14,7 +14,11 @@ use npr_harness::image_ink::ImageInk;
 use npr_harness::light::{LightFrame, StyleLight, lights_in_world};
 use npr_harness::plan::Plan;
 use npr_harness::scene::Scene;
-use npr_harness::style::{Lines, PainterShade, Ramp2dSource, RampShade, RampSource, Shade, Style, style};
+use npr_harness::style::{
+    HatchEncoding, HatchGround, HatchMap, HatchMapping, HatchShade, HatchSource, HatchTransfer, Lines, PainterShade,
+    Ramp2dSource, RampShade, RampSource, Shade, Style, style,
+};
+use npr_hatch::TamParameters;
 use npr_mesh::{AlphaMode, Material, Wrap, embedded};
 use npr_toon::Bands;
 use npr_toon::half_lambert::HalfLambert;
@@ -69,6 +73,39 @@ fn table(filter: TexelFilter) -> RampTable {
 
 fn row(filter: TexelFilter) -> RampRow {
     RampRow::from_ramp(&stops(RampBlend::Smooth), 9, -1.0, 1.0, filter).expect("a row")
+}
+
+/// Every encoding with every mapping; the same with what else can be asked of strokes.
+fn hatchings() -> Vec<(&'static str, Shade, Vec<StyleLight>)> {
+    let parameters = TamParameters { side: 64, length: [0.2, 0.5], ..TamParameters::default() };
+    let plain = HatchShade {
+        map: HatchMap::new(HatchSource::Parameters(parameters)),
+        encoding: HatchEncoding::SixTones,
+        mapping: HatchMapping::Coordinates,
+        transfer: HatchTransfer::Linear { ambient: 0.1 },
+        tile: 0.4,
+        texel_px: 1.0,
+        ink: Vec3::new(0.1, 0.0, 0.3),
+        ground: HatchGround::Paper,
+    };
+    let listing_4 = HatchTransfer::Listing4 { brightness: 6.0 };
+    let (thresholds, surface) = (HatchEncoding::Thresholds, HatchGround::Surface);
+    let near = StyleLight { light: Light::positional(Vec3::new(2.5, 1.0, 1.5)), frame: LightFrame::World };
+    let cases = [
+        ("six tones, coordinates", HatchShade { transfer: listing_4, ..plain.clone() }),
+        ("six tones, planes", HatchShade { mapping: HatchMapping::Planes, ..plain.clone() }),
+        ("six tones, form", HatchShade { mapping: HatchMapping::Form, ground: surface, ..plain.clone() }),
+        ("thresholds, coordinates", HatchShade { encoding: thresholds, ground: surface, ..plain.clone() }),
+        ("thresholds, planes", HatchShade { encoding: thresholds, mapping: HatchMapping::Planes, ..plain.clone() }),
+        (
+            "thresholds, form, large texels",
+            HatchShade { encoding: thresholds, mapping: HatchMapping::Form, texel_px: 1.7, ..plain },
+        ),
+    ];
+    let lit = |(number, (name, hatch))| {
+        (name, Shade::Hatch(hatch), vec![if number % 2 == 0 { StyleLight::KEY } else { near }])
+    };
+    cases.into_iter().enumerate().map(lit).collect()
 }
 
 /// Name, shade, lights.
@@ -126,12 +163,21 @@ fn of(shade: Shade, lights: Vec<StyleLight>, normals: NormalUse, lines: Option<L
 /// Each model with each use of normals agrees with its reference and with no other case's.
 #[test]
 fn every_light_model_is_the_same_on_both() {
+    the_same_on_both(cases());
+}
+
+#[test]
+fn strokes_are_the_same_on_both() {
+    the_same_on_both(hatchings());
+}
+
+fn the_same_on_both(cases: Vec<(&'static str, Shade, Vec<StyleLight>)>) {
     let Some(executor) = device() else { return };
     let scene = scene();
     for fov_y_rad in [Some(0.7), None] {
         let camera = camera(&scene, fov_y_rad);
         let mut before = None;
-        for (number, (name, shade, lights)) in cases().into_iter().enumerate() {
+        for (number, (name, shade, lights)) in cases.clone().into_iter().enumerate() {
             // In a parallel view one use of normals, of half of the cases.
             let all = [NormalUse::PerPixel, NormalUse::Interpolated, NormalUse::PerVertex];
             for normals in all.into_iter().filter(|&n| fov_y_rad.is_some() || n as usize + 3 == number % 6) {
