@@ -41,7 +41,7 @@ fn hatch_threshold(texel: f32, tone: f32, width: f32) -> f32 {
     if width > 0.0 {
         return saturate((texel - tone) / width + 0.5);
     }
-    return select(0.0, 1.0, texel > tone);
+    return select(0.0, 1.0, texel > tone || tone <= 0.0);
 }
 
 fn hatch_width(tone: f32, width: f32) -> f32 {
@@ -64,7 +64,8 @@ fn hatch_footprint(uv_dx: vec2<f32>, uv_dy: vec2<f32>, texels: f32, last_level: 
     let area = abs(along_x.x * along_y.y - along_x.y * along_y.x);
     let ratio = clamp(longer_squared / max(area, 1e-30), 1.0, 16.0);
     let level = clamp(0.5 * log2(max(longer_squared / ratio, 1e-30)), 0.0, last_level);
-    let length_of = max(sqrt(ratio) - sqrt(2.0), 0.0) * exp2(level) / texels;
+    let longer = min(sqrt(ratio), sqrt(longer_squared) / exp2(level));
+    let length_of = max(longer - sqrt(2.0), 0.0) * exp2(level) / texels;
     var axis = vec2<f32>(other, apart - half);
     if half >= 0.0 {
         axis = vec2<f32>(half + apart, other);
