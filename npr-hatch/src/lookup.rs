@@ -56,7 +56,8 @@ pub fn hatch_footprint(uv_dx: DVec2, uv_dy: DVec2, texels: f64, last_level: f64)
     let half = 0.5 * (along_x.x * along_x.x + along_y.x * along_y.x - along_x.y * along_x.y - along_y.y * along_y.y);
     let other = along_x.x * along_x.y + along_y.x * along_y.y;
     let apart = half.hypot(other);
-    let longer_squared = mean + apart;
+    // Finite, so that whatever the derivatives are, level and spread are numbers.
+    let longer_squared = (mean + apart).min(f64::MAX);
     let area = (along_x.x * along_y.y - along_x.y * along_y.x).abs();
     let ratio = (longer_squared / area.max(1e-30)).clamp(1.0, HATCH_MAX_ANISOTROPY);
     let level = (0.5 * (longer_squared / ratio).max(1e-30).log2()).clamp(0.0, last_level);
