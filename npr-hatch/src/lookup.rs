@@ -61,8 +61,8 @@ pub fn hatch_footprint(uv_dx: DVec2, uv_dy: DVec2, texels: f64, last_level: f64)
     let area = (along_x.x * along_y.y - along_x.y * along_y.x).abs();
     let ratio = (longer_squared / area.max(1e-30)).clamp(1.0, HATCH_MAX_ANISOTROPY);
     let level = (0.5 * (longer_squared / ratio).max(1e-30).log2()).clamp(0.0, last_level);
-    // In texels of that level the longer axis is the ratio's root, or less where there is no finer one; up to the root of
-    // 2 one sample is as good.
+    // In texels of that level the longer axis is the ratio's root, or less where there is no finer one; up to the root
+    // of 2 one sample is as good.
     let longer = ratio.sqrt().min(longer_squared.sqrt() / level.exp2());
     let length = (longer - std::f64::consts::SQRT_2).max(0.0) * level.exp2() / texels;
     let axis = if half >= 0.0 { DVec2::new(half + apart, other) } else { DVec2::new(other, apart - half) };

@@ -33,7 +33,7 @@ fn hatch_texels(
 
 // One level of a texture of thresholds, 16 bits unsigned, compared and then filtered.
 fn hatch_ink_of_level(map: texture_2d<u32>, uv: vec2<f32>, level: i32, tone: f32, width: f32) -> f32 {
-    // Not by `textureDimensions(map, level)`: Mesa's llvmpipe answers all pixels of a group with the size of one's level.
+    // Not by `textureDimensions(map, level)`: Mesa's llvmpipe gives all pixels of a group the size of one's level.
     let taps = hatch_taps(uv, textureDimensions(map).x >> u32(level));
     let a = textureLoad(map, taps.low, level).x;
     let b = textureLoad(map, vec2<u32>(taps.high.x, taps.low.y), level).x;

@@ -33,7 +33,8 @@ fn mean(places: &[DVec2], value: impl Fn(DVec2) -> f64) -> f64 {
     places.iter().map(|&uv| value(uv)).sum::<f64>() / places.len() as f64
 }
 
-/// One place in each texel, all at the same place in it: of what is filtered linearly, their mean is that of all places.
+/// One place in each texel, all at the same place in it: of what is filtered linearly, their mean is that of all
+/// places.
 fn places_in_texels(in_texel: DVec2) -> Vec<DVec2> {
     let place = |i: u32| DVec2::new(f64::from(i % SIDE), f64::from(i / SIDE));
     (0..SIDE * SIDE).map(|i| (place(i) + in_texel) / f64::from(SIDE)).collect()
@@ -127,8 +128,8 @@ fn hatchings_that_meet_have_the_tone_together() {
     }
 }
 
-/// How texture coordinates change where a pixel's footprint has these axes, in texels of level 0: the first at an angle,
-/// on a screen turned by another.
+/// How texture coordinates change where a pixel's footprint has these axes, in texels of level 0: the first at an
+/// angle, on a screen turned by another.
 fn derivatives(axes: [f64; 2], angle: f64, screen: f64, texels: f64) -> (DVec2, DVec2) {
     let (long, short) = (DVec2::from_angle(angle) * axes[0], DVec2::from_angle(angle).perp() * axes[1]);
     let (sin, cos) = screen.sin_cos();

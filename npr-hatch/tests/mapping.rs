@@ -66,8 +66,8 @@ fn plane_weights_are_shares() {
 #[test]
 fn plane_weights_are_continuous() {
     let mut random = Rand64::new(2);
-    // With m the largest part above 0.4, at least 0.577 - 0.4, a cube changes by at most 3 m² a unit, so a share of a sum
-    // of at least m³ by no more than 12 / m.
+    // With m the largest part above 0.4, at least 0.577 - 0.4, a cube changes by at most 3 m² a unit, so a share of a
+    // sum of at least m³ by no more than 12 / m.
     let steepest = 12.0 / (1.0 / 3.0_f64.sqrt() - 0.4);
     let step = 1e-4;
     for _ in 0..100 {
@@ -142,8 +142,8 @@ fn a_tensor_has_the_doubled_angle_of_what_is_seen() {
 
 #[test]
 fn turned_strokes_run_along_the_direction() {
-    // A hatching is faded in and out over the middle quarter of a turn: it is seen up to five eighths of one off, and counts for
-    // half or more up to half of one.
+    // A hatching is faded in and out over the middle quarter of a turn: it is seen up to five eighths of one off, and
+    // counts for half or more up to half of one.
     let (mut most_off, mut most_off_of_half) = (0.0_f64, 0.0_f64);
     for axis in 0..3 {
         for number in 0..7200 {

@@ -84,10 +84,10 @@ fn spread(_: &(), g: &Given) -> DVec4 {
     DVec4::new(s.x * s.x, s.x * s.y, s.y * s.y, 0.0) / s.length().max(1e-30)
 }
 
-/// The area comes from a difference of products, each rounded: by 2⁻²² of the longer axis' square, as the derivatives in
-/// texels are rounded too. So where the ratio is at most 16, it is 16 · 2⁻²² = 4e-6 off as a share, its root half of that of
-/// 4: 8e-6. A level is 2e-6 off, so that the longer axis in texels of it is 4 · 1.4e-6 off. The rest is roundings of
-/// up to 4: together 2e-5.
+/// The area comes from a difference of products, each rounded: by 2⁻²² of the longer axis' square, as the derivatives
+/// in texels are rounded too. So where the ratio is at most 16, it is 16 · 2⁻²² = 4e-6 off as a share, its root half of
+/// that of 4: 8e-6. A level is 2e-6 off, so that the longer axis in texels of it is 4 · 1.4e-6 off. The rest is
+/// roundings of up to 4: together 2e-5.
 fn spread_bound(_: &(), _: &Given) -> Allowed {
     Allowed::Within(2e-5)
 }
@@ -168,8 +168,8 @@ fn turned_between(_: &(), g: &Given) -> DVec4 {
     DVec4::new(at.x, at.y, 0.0, 0.0)
 }
 
-/// An arc tangent that is within 1e-5 (they are polynomials; Vulkan asks for 4096 units, 1e-3) is 2e-5 turns off, sums and
-/// products up to 18 turns 4e-6, and a share is four times as steep.
+/// An arc tangent that is within 1e-5 (they are polynomials; Vulkan asks for 4096 units, 1e-3) is 2e-5 turns off, sums
+/// and products up to 18 turns 4e-6, and a share is four times as steep.
 fn turn_bound(_: &(), _: &Given) -> Allowed {
     Allowed::Within(1e-4)
 }
@@ -185,8 +185,8 @@ fn turn(random: &Random, _: &()) -> Given {
     [numbers; 4]
 }
 
-/// Sines within 2⁻²⁰ (what hardware has; Vulkan asks for 2⁻¹¹) and angles rounded by 2⁻²³, times two places of up to 10,
-/// and roundings of up to 20.
+/// Sines within 2⁻²⁰ (what hardware has; Vulkan asks for 2⁻¹¹) and angles rounded by 2⁻²³, times two places of up to
+/// 10, and roundings of up to 20.
 fn turned_bound(_: &(), _: &Given) -> Allowed {
     Allowed::Within(4e-5)
 }

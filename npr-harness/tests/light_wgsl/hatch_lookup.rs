@@ -86,10 +86,10 @@ fn ink(map: &Thresholds, g: &Given, footprint: HatchFootprint) -> DVec4 {
     DVec4::splat(hatch_ink(map, uv(g), footprint, f64::from(g[1].y), f64::from(g[1].z)))
 }
 
-/// Of up to 128 texels: a sample's place, up to 3, is rounded by 2⁻²³, which is 2⁻¹⁶ texels, and as much again by the half
-/// texel less; texels that differ by all their ink pass on both axes' 3e-5. A threshold is off by 2⁻²³, 1/64 of a
-/// tone's width makes that 64 times as steep: 1e-5 more. Where the width is below 1/500, as white is near, it is too steep for
-/// that; black's thresholds are as small as they are near it, and so is what they are off by.
+/// Of up to 128 texels: a sample's place, up to 3, is rounded by 2⁻²³, which is 2⁻¹⁶ texels, and as much again by the
+/// half texel less; texels that differ by all their ink pass on both axes' 3e-5. A threshold is off by 2⁻²³, 1/64 of a
+/// tone's width makes that 64 times as steep: 1e-5 more. Where the width is below 1/500, as white is near, it is too
+/// steep for that; black's thresholds are as small as they are near it, and so is what they are off by.
 fn ink_bound(_: &Arc<Thresholds>, g: &Given) -> Allowed {
     let [_, tone, width, _] = g[1].as_dvec4().to_array();
     let width = hatch_width(tone, width);

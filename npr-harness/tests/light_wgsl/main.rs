@@ -1,5 +1,5 @@
-//! The WGSL of npr-toon, npr-gooch and npr-hatch, run on a device, against the Rust functions of the same names, which are in f64,
-//! on the same seeded inputs.
+//! The WGSL of npr-toon, npr-gooch and npr-hatch, run on a device, against the Rust functions of the same names, which
+//! are in f64, on the same seeded inputs.
 //!
 //! Inputs are f32, so a function and its twin are given exactly the same numbers; what is measured is the arithmetic
 //! alone. Each test prints a table: how many inputs, how many of them allow any result and why (in the check's own
