@@ -41,16 +41,22 @@ fn hatch_threshold(texel: f32, tone: f32, width: f32) -> f32 {
     if width > 0.0 {
         return saturate((texel - tone) / width + 0.5);
     }
-    return select(0.0, 1.0, texel > tone);
+    return select(0.0, 1.0, texel > tone || tone <= 0.0);
 }
 
 fn hatch_softened(tone: f32, width: f32) -> f32 {
     let end = 0.5 * width;
+    if tone <= 0.0 {
+        return -width;
+    }
+    if tone >= 1.0 {
+        return 1.0 + width;
+    }
     if tone < end {
-        return sqrt(2.0 * width * max(tone, 0.0)) - end;
+        return sqrt(2.0 * width * tone) - end;
     }
     if tone > 1.0 - end {
-        return 1.0 + end - sqrt(2.0 * width * max(1.0 - tone, 0.0));
+        return 1.0 + end - sqrt(2.0 * width * (1.0 - tone));
     }
     return tone;
 }
@@ -71,7 +77,8 @@ fn hatch_footprint(uv_dx: vec2<f32>, uv_dy: vec2<f32>, texels: f32, last_level: 
     let area = abs(along_x.x * along_y.y - along_x.y * along_y.x);
     let ratio = clamp(longer_squared / max(area, 1e-30), 1.0, 16.0);
     let level = clamp(0.5 * log2(max(longer_squared / ratio, 1e-30)), 0.0, last_level);
-    let length_of = max(sqrt(ratio) - sqrt(2.0), 0.0) * exp2(level) / texels;
+    let longer = min(sqrt(ratio), sqrt(longer_squared) / exp2(level));
+    let length_of = max(longer - sqrt(2.0), 0.0) * exp2(level) / texels;
     var axis = vec2<f32>(other, apart - half);
     if half >= 0.0 {
         axis = vec2<f32>(half + apart, other);
@@ -82,6 +89,10 @@ fn hatch_footprint(uv_dx: vec2<f32>, uv_dy: vec2<f32>, texels: f32, last_level: 
     // Scaled first: squares of very long or very short axes are no f32.
     let scaled = axis / max(max(abs(axis.x), abs(axis.y)), 1e-30);
     return HatchFootprint(level, scaled * (length_of * inverseSqrt(max(dot(scaled, scaled), 1e-30))));
+}
+
+fn hatch_samples(footprint: HatchFootprint) -> i32 {
+    return select(4, 1, all(footprint.spread == vec2<f32>(0.0)));
 }
 
 struct HatchTaps {

@@ -56,14 +56,22 @@ pub fn hatch_footprint(uv_dx: DVec2, uv_dy: DVec2, texels: f64, last_level: f64)
     let half = 0.5 * (along_x.x * along_x.x + along_y.x * along_y.x - along_x.y * along_x.y - along_y.y * along_y.y);
     let other = along_x.x * along_x.y + along_y.x * along_y.y;
     let apart = half.hypot(other);
-    let longer_squared = mean + apart;
+    // Finite, so that whatever the derivatives are, level and spread are numbers.
+    let longer_squared = (mean + apart).min(f64::MAX);
     let area = (along_x.x * along_y.y - along_x.y * along_y.x).abs();
     let ratio = (longer_squared / area.max(1e-30)).clamp(1.0, HATCH_MAX_ANISOTROPY);
     let level = (0.5 * (longer_squared / ratio).max(1e-30).log2()).clamp(0.0, last_level);
-    // In texels of that level the longer axis is the ratio's root; up to the root of 2 one sample is as good.
-    let length = (ratio.sqrt() - std::f64::consts::SQRT_2).max(0.0) * level.exp2() / texels;
+    // In texels of that level the longer axis is the ratio's root, or less where there is no finer one; up to the root
+    // of 2 one sample is as good.
+    let longer = ratio.sqrt().min(longer_squared.sqrt() / level.exp2());
+    let length = (longer - std::f64::consts::SQRT_2).max(0.0) * level.exp2() / texels;
     let axis = if half >= 0.0 { DVec2::new(half + apart, other) } else { DVec2::new(other, apart - half) };
     HatchFootprint { level, spread: if length > 0.0 { axis.normalize_or_zero() * length } else { DVec2::ZERO } }
+}
+
+/// How many samples a footprint asks for: one, or [`HATCH_SPREAD`].
+pub fn hatch_samples(footprint: HatchFootprint) -> i32 {
+    if footprint.spread == DVec2::ZERO { 1 } else { HATCH_SPREAD.len() as i32 }
 }
 
 /// Four texels around a place, and how much the second of each axis counts.
@@ -101,7 +109,7 @@ fn filtered(uv: DVec2, footprint: HatchFootprint, level: impl Fn(usize, DVec2) -
         let fine = level(finer as usize, uv);
         if share > 0.0 { fine.lerp(level(finer as usize + 1, uv), share) } else { fine }
     };
-    if footprint.spread == DVec2::ZERO {
+    if hatch_samples(footprint) == 1 {
         return at(uv);
     }
     HATCH_SPREAD.iter().map(|&along| at(uv + footprint.spread * along)).sum::<DVec3>() / HATCH_SPREAD.len() as f64
@@ -144,18 +152,23 @@ pub fn hatch_ink(map: &Thresholds, uv: DVec2, footprint: HatchFootprint, tone: f
 /// white and black, where a part of the width lies beyond all thresholds, what keeps the mean.
 ///
 /// Thresholds lie evenly between 0 and 1. Compared with τ < width / 2 they leave (τ + width / 2)² / (2 width) of paper on
-/// the mean, so that is solved for τ; and the same at white. There and there alone everything is ink, or paper.
+/// the mean, so that is solved for τ; and the same at white. Black and white themselves are beyond the ends, so that no
+/// rounding leaves a speck.
 ///
 /// ```
 /// use npr_hatch::lookup::hatch_softened;
-/// assert_eq!([0.0, 0.3, 1.0].map(|tone| hatch_softened(tone, 0.25)), [-0.125, 0.3, 1.125]);
+/// assert_eq!([0.0, 0.3, 1.0].map(|tone| hatch_softened(tone, 0.25)), [-0.25, 0.3, 1.25]);
 /// ```
 pub fn hatch_softened(tone: f64, width: f64) -> f64 {
     let end = 0.5 * width;
-    if tone < end {
-        (2.0 * width * tone.max(0.0)).sqrt() - end
+    if tone <= 0.0 {
+        -width
+    } else if tone >= 1.0 {
+        1.0 + width
+    } else if tone < end {
+        (2.0 * width * tone).sqrt() - end
     } else if tone > 1.0 - end {
-        1.0 + end - (2.0 * width * (1.0 - tone).max(0.0)).sqrt()
+        1.0 + end - (2.0 * width * (1.0 - tone)).sqrt()
     } else {
         tone
     }

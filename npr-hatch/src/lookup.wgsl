@@ -15,11 +15,6 @@ fn hatch_texels_at(
     );
 }
 
-// How many samples a footprint asks for.
-fn hatch_samples(footprint: HatchFootprint) -> i32 {
-    return select(4, 1, all(footprint.spread == vec2<f32>(0.0)));
-}
-
 fn hatch_texels(
     light: texture_2d<f32>, dark: texture_2d<f32>, trilinear: sampler, uv: vec2<f32>, footprint: HatchFootprint,
 ) -> HatchTexels {
@@ -37,7 +32,7 @@ fn hatch_texels(
 
 // One level of a texture of thresholds, 16 bits unsigned, compared and then filtered.
 fn hatch_ink_of_level(map: texture_2d<u32>, uv: vec2<f32>, level: i32, tone: f32, width: f32) -> f32 {
-    // Not the size of `level`, which some software adapters ask once for many pixels (Mesa 22.3's llvmpipe).
+    // Not by `textureDimensions(map, level)`: Mesa's llvmpipe gives all pixels of a group the size of one's level.
     let taps = hatch_taps(uv, textureDimensions(map).x >> u32(level));
     let a = textureLoad(map, taps.low, level).x;
     let b = textureLoad(map, vec2<u32>(taps.high.x, taps.low.y), level).x;

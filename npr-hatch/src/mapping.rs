@@ -21,7 +21,8 @@
 //! its opposite are one), so it is given as the tensor d dᵀ, which may be interpolated; seen along an axis, two of its
 //! elements and a difference are the doubled angle ([`hatch_doubled`]), and that is between two of the turns
 //! ([`hatch_turn`]). Each turned hatching covers its whole plane, so nothing is cut, and no parametrisation has to be
-//! found. A stroke is straight, and at most 7.5° off its direction at its middle.
+//! found. A stroke is straight, and at its middle at most 7.5° off its direction where its hatching counts for half or
+//! more, and 9.4° where it counts at all.
 //!
 //! # Scales
 //!

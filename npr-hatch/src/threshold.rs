@@ -117,11 +117,12 @@ fn thresholds(drawing: &Drawing, marks: &[Mark], pen: &Pen, side: u32) -> Vec<u1
 ///
 /// `texel` is its threshold as a share of white. `width` is the span of tones over which a texel turns to ink: 0 gives
 /// hard texels, whose share is exact; about as much as thresholds differ between the texels of an edge (0.02 to
-/// 0.1) smooths them. Like the tones' images, thresholds may be filtered.
+/// 0.1) smooths them. Like the tones' images, thresholds may be filtered. Black is solid: a threshold that rounds to 0,
+/// as one does in a map of side 256, is ink there too.
 pub fn hatch_threshold(texel: f64, tone: f64, width: f64) -> f64 {
     if width > 0.0 {
         ((texel - tone) / width + 0.5).clamp(0.0, 1.0)
-    } else if texel > tone {
+    } else if texel > tone || tone <= 0.0 {
         1.0
     } else {
         0.0

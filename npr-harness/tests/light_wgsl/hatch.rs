@@ -1,8 +1,13 @@
-//! npr-hatch. Nothing in it needs a uniform.
+//! npr-hatch, but for its lookups in textures. Nothing in it needs a uniform.
 
 use crate::check::{Allowed, Check, Given, MODELS, SMALL, compare};
 use crate::random::{Random, with};
-use glam::{DVec3, DVec4, Vec3, Vec4};
+use glam::{DVec2, DVec3, DVec4, Vec2, Vec3, Vec4};
+use npr_hatch::lookup::{HatchFootprint, HatchTaps, hatch_footprint, hatch_samples, hatch_softened, hatch_taps};
+use npr_hatch::mapping::{
+    HatchStep, hatch_doubled, hatch_moved, hatch_octave, hatch_plane, hatch_plane_weights, hatch_share, hatch_turn,
+    hatch_turned,
+};
 use npr_hatch::{hatch_blend, hatch_color, hatch_level, hatch_linear, hatch_threshold, hatch_transfer, hatch_weights};
 
 fn xyz(v: Vec4) -> DVec3 {
@@ -15,6 +20,14 @@ fn x(v: Vec4) -> f64 {
 
 fn small(_: &(), _: &Given) -> Allowed {
     Allowed::Within(SMALL)
+}
+
+fn xy(v: Vec4) -> DVec2 {
+    DVec2::new(f64::from(v.x), f64::from(v.y))
+}
+
+fn zw(v: Vec4) -> DVec2 {
+    DVec2::new(f64::from(v.z), f64::from(v.w))
 }
 
 /// At and around the whole numbers, where the weights are bent, and far away.
@@ -38,6 +51,176 @@ fn tones(random: &Random, _: &()) -> Given {
 fn texels(random: &Random, _: &()) -> Given {
     [with(random.color(), 0.0), with(random.color(), 0.0), Vec4::splat(factor(random)), Vec4::ZERO]
 }
+
+/// How texture coordinates change along x and y, and how many texels they have for how many levels.
+fn derivatives(random: &Random, _: &()) -> Given {
+    let last = 4.0 + random.below(7) as f32;
+    let texels = random.pick(&[1.0, 1.0, 0.7, 1.3]) * last.exp2();
+    let long = random.log_range(0.01, 2000.0) / texels;
+    let ratio = random.pick(&[1.0, random.range(1.0, 3.0), random.range(1.0, 20.0), random.log_range(1.0, 1e4)]);
+    let [axis, screen] = [(); 2].map(|()| Vec2::from_angle(random.range(-3.2, 3.2)));
+    let axis = random.pick(&[Vec2::X, Vec2::Y, axis, axis, axis]);
+    let screen = random.pick(&[Vec2::X, screen, screen]);
+    let (longer, shorter) = (axis * long, axis.perp() * (long / ratio));
+    let (dx, dy) = (longer * screen.x + shorter * screen.y, shorter * screen.x - longer * screen.y);
+    let (dx, dy) = match random.below(20) {
+        0 => (dx, Vec2::ZERO),
+        1 => (Vec2::ZERO, dy),
+        2 => (dx, dx * random.range(-2.0, 2.0)),
+        3 => (Vec2::ZERO, Vec2::ZERO),
+        _ => (dx, dy),
+    };
+    [Vec4::new(dx.x, dx.y, dy.x, dy.y), Vec4::new(texels, last, 0.0, 0.0), Vec4::ZERO, Vec4::ZERO]
+}
+
+fn footprint(g: &Given) -> HatchFootprint {
+    hatch_footprint(xy(g[0]), zw(g[0]), x(g[1]), f64::from(g[1].y))
+}
+
+/// s sᵀ / |s| of the spread in texels of its level, up to 2.6.
+fn spread(_: &(), g: &Given) -> DVec4 {
+    let HatchFootprint { level, spread } = footprint(g);
+    let s = spread * (x(g[1]) / level.exp2());
+    DVec4::new(s.x * s.x, s.x * s.y, s.y * s.y, 0.0) / s.length().max(1e-30)
+}
+
+/// The area comes from a difference of products, each rounded: by 2⁻²² of the longer axis' square, as the derivatives
+/// in texels are rounded too. So where the ratio is at most 16, it is 16 · 2⁻²² = 4e-6 off as a share, its root half of
+/// that of 4: 8e-6. A level is 2e-6 off, so that the longer axis in texels of it is 4 · 1.4e-6 off. The rest is
+/// roundings of up to 4: together 2e-5.
+fn spread_bound(_: &(), _: &Given) -> Allowed {
+    Allowed::Within(2e-5)
+}
+
+/// A place, and the side of a level as a power of two.
+fn place(random: &Random, _: &()) -> Given {
+    let side = (random.below(9) as f32).exp2();
+    let centre = |random: &Random| (random.below(6 * side as u32) as f32 + random.pick(&[0.0, 0.5])) / side - 3.0;
+    let place = [(); 2].map(|()| {
+        let centre = centre(random);
+        random.pick(&[centre, centre.next_up(), centre.next_down(), random.range(-3.0, 3.0), random.range(-3.0, 3.0)])
+    });
+    [Vec4::new(place[0], place[1], side, 0.0); 4]
+}
+
+/// Where on a circle of `turn` a number is, so that 0 and `turn` are the same: of two triangle waves, a quarter apart.
+fn on_circle(number: f64, turn: f64) -> DVec2 {
+    (DVec2::new(number, number + 0.25 * turn).map(|at| at.rem_euclid(turn)) - 0.5 * turn).abs()
+}
+
+fn low_taps(_: &(), g: &Given) -> DVec4 {
+    let HatchTaps { low, share, .. } = hatch_taps(xy(g[0]), g[0].z as u32);
+    let at = low.as_dvec2() + share;
+    let [x, y] = [at.x, at.y].map(|at| on_circle(at, f64::from(g[0].z)));
+    DVec4::new(x.x, x.y, y.x, y.y)
+}
+
+/// A place times a power of two is exact; half a texel less is rounded by up to 2⁻¹⁵ of 768 texels. On the circle it is
+/// moved, which rounds up to 384 by 2⁻¹⁷ twice. Jumps from texel to texel are none there.
+fn taps_bound(_: &(), _: &Given) -> Allowed {
+    Allowed::Within(5e-5)
+}
+
+/// The texel after `low`.
+fn high_taps(_: &(), g: &Given) -> DVec4 {
+    let HatchTaps { low, high, .. } = hatch_taps(xy(g[0]), g[0].z as u32);
+    let side = g[0].z as u32;
+    let after = ((low + 1) % side).as_dvec2();
+    assert_eq!(high.as_dvec2(), after);
+    DVec4::ZERO
+}
+
+/// Of any length for planes' weights, mostly of a unit.
+fn normal(random: &Random, _: &()) -> Given {
+    let unit = random.direction();
+    let axis = random.pick(&[Vec3::X, Vec3::Y, Vec3::Z]);
+    let near = (axis + random.range(0.0, 1.0) * unit).normalize();
+    let normal = random.pick(&[unit, near, near, axis, -axis, Vec3::splat(0.577_350_26)]);
+    let normal = if random.one_in(30) { Vec3::ZERO } else { normal };
+    [with(normal, 0.0); 4]
+}
+
+/// A point, a tensor of a direction or of the mean of several, and an axis.
+fn seen(random: &Random, _: &()) -> Given {
+    let (d, e, share) = (random.direction(), random.direction(), random.pick(&[0.0, random.unit()]));
+    let element = |a: fn(Vec3) -> f32| a(d) + (a(e) - a(d)) * share;
+    let diagonal = Vec3::new(element(|d| d.x * d.x), element(|d| d.y * d.y), element(|d| d.z * d.z));
+    let others = Vec3::new(element(|d| d.x * d.y), element(|d| d.x * d.z), element(|d| d.y * d.z));
+    [with(diagonal, 0.0), with(others, 0.0), Vec4::splat(random.below(3) as f32), Vec4::ZERO]
+}
+
+/// A doubled angle, of all lengths: at, beside and between the turns.
+fn doubled(random: &Random, _: &()) -> Given {
+    let step = std::f32::consts::PI / 6.0;
+    let turn = random.below(13) as f32 - 6.0;
+    let near = (turn + random.pick(&[0.0, 0.375, 0.5, 0.625])) * step + random.range(-1e-4, 1e-4);
+    let angle = random.pick(&[turn * step, near, near, random.range(-3.2, 3.2)]);
+    let length = random.pick(&[1.0, random.unit(), random.log_range(1e-6, 1.0)]);
+    let there = Vec2::from_angle(angle) * length;
+    let axes = [Vec2::ZERO, Vec2::X, Vec2::Y, Vec2::NEG_X, Vec2::NEG_Y, Vec2::new(-1.0, -0.0)];
+    let there = if random.one_in(20) { random.pick(&axes) } else { there };
+    [there.extend(0.0).extend(0.0); 4]
+}
+
+fn turned_between(_: &(), g: &Given) -> DVec4 {
+    let HatchStep { first, share } = hatch_turn(xy(g[0]));
+    let at = on_circle(f64::from(first) + share, 12.0);
+    DVec4::new(at.x, at.y, 0.0, 0.0)
+}
+
+/// An arc tangent that is within 1e-5 (they are polynomials; Vulkan asks for 4096 units, 1e-3) is 2e-5 turns off, sums
+/// and products up to 18 turns 4e-6, and a share is four times as steep.
+fn turn_bound(_: &(), _: &Given) -> Allowed {
+    Allowed::Within(1e-4)
+}
+
+fn octave(random: &Random, _: &()) -> Given {
+    let whole = random.below(21) as f32 - 10.0;
+    let at = whole + random.pick(&[0.0, 0.375, 0.5, 0.625]);
+    [Vec4::splat(random.pick(&[whole, at, at.next_up(), at.next_down(), random.range(-10.0, 10.0)])); 4]
+}
+
+fn turn(random: &Random, _: &()) -> Given {
+    let numbers = Vec4::new(random.range(-10.0, 10.0), random.range(-10.0, 10.0), random.below(12) as f32, 0.0);
+    [numbers; 4]
+}
+
+/// Sines within 2⁻²⁰ (what hardware has; Vulkan asks for 2⁻¹¹) and angles rounded by 2⁻²³, times two places of up to
+/// 10, and roundings of up to 20.
+fn turned_bound(_: &(), _: &Given) -> Allowed {
+    Allowed::Within(4e-5)
+}
+
+fn tone_and_share(random: &Random, _: &()) -> Given {
+    let tone = random.pick(&[0.0, 1.0, 1e-6, random.log_range(1e-7, 1.0), random.unit(), random.unit()]);
+    [Vec4::new(tone, random.pick(&[0.0, 1.0, random.unit(), random.unit()]), 0.0, 0.0); 4]
+}
+
+/// What the checks call, behind the library: see [`spread`] and [`on_circle`].
+const CONTINUOUS: &str = "
+    fn spread_line(footprint: HatchFootprint, texels: f32) -> vec4<f32> {
+        let s = footprint.spread * (texels / exp2(footprint.level));
+        return vec4(s.x * s.x, s.x * s.y, s.y * s.y, 0.0) / max(length(s), 1e-30);
+    }
+    fn wave(number: f32, turn: f32) -> f32 {
+        return abs(number - turn * floor(number / turn) - 0.5 * turn);
+    }
+    fn on_circle(number: f32, turn: f32) -> vec2<f32> {
+        return vec2(wave(number, turn), wave(number + 0.25 * turn, turn));
+    }
+    fn taps_on_circle(taps: HatchTaps, side: f32) -> vec4<f32> {
+        let at = vec2<f32>(taps.low) + taps.share;
+        return vec4(on_circle(at.x, side), on_circle(at.y, side));
+    }
+    fn high_beside_low(taps: HatchTaps, side: u32) -> vec4<f32> {
+        return vec4(vec2<f32>(taps.high) - vec2<f32>((taps.low + 1u) % side), 0.0, 0.0);
+    }
+    fn step_on_circle(at: HatchStep) -> vec4<f32> {
+        return vec4(on_circle(f32(at.first) + at.share, 12.0), 0.0, 0.0);
+    }
+    fn step_as_number(at: HatchStep) -> vec4<f32> {
+        return vec4(f32(at.first) + at.share);
+    }";
 
 const CHECKS: &[Check<()>] = &[
     Check {
@@ -102,6 +285,118 @@ const CHECKS: &[Check<()>] = &[
         rust: |(), g| DVec4::splat(hatch_threshold(x(g[0]), f64::from(g[0].y), f64::from(g[0].z))),
         allowed: small,
     },
+    Check {
+        name: "hatch_samples",
+        wgsl: "vec4(f32(hatch_samples(HatchFootprint(a.x, a.yz))))",
+        given: |random, ()| {
+            let part = || random.pick(&[0.0, 0.0, random.range(-1.0, 1.0)]);
+            [Vec4::new(random.unit(), part(), part(), 0.0); 4]
+        },
+        rust: |(), g| {
+            let spread = g[0].as_dvec4().truncate();
+            DVec4::splat(
+                hatch_samples(HatchFootprint { level: spread.x, spread: DVec2::new(spread.y, spread.z) }).into(),
+            )
+        },
+        allowed: |_, _| Allowed::Within(0.0),
+    },
+    Check {
+        name: "hatch_softened",
+        wgsl: "vec4(hatch_softened(a.x, a.y))",
+        given: |random, ()| {
+            let tone = random.pick(&[0.0, 1.0, random.range(-0.2, 1.2), random.unit(), random.log_range(1e-6, 1.0)]);
+            [Vec4::new(tone, random.pick(&[0.0, 1.0 / 64.0, random.unit()]), 0.0, 0.0); 4]
+        },
+        rust: |(), g| DVec4::splat(hatch_softened(x(g[0]), f64::from(g[0].y))),
+        allowed: small,
+    },
+    Check {
+        name: "hatch_footprint, level",
+        wgsl: "vec4(hatch_footprint(a.xy, a.zw, b.x, b.y).level)",
+        given: derivatives,
+        rust: |(), g| DVec4::splat(footprint(g).level),
+        allowed: small,
+    },
+    Check {
+        name: "hatch_footprint, spread",
+        wgsl: "spread_line(hatch_footprint(a.xy, a.zw, b.x, b.y), b.x)",
+        given: derivatives,
+        rust: spread,
+        allowed: spread_bound,
+    },
+    Check {
+        name: "hatch_taps, low and share",
+        wgsl: "taps_on_circle(hatch_taps(a.xy, u32(a.z)), a.z)",
+        given: place,
+        rust: low_taps,
+        allowed: taps_bound,
+    },
+    Check {
+        name: "hatch_taps, high",
+        wgsl: "high_beside_low(hatch_taps(a.xy, u32(a.z)), u32(a.z))",
+        given: place,
+        rust: high_taps,
+        allowed: |(), _| Allowed::Within(0.0),
+    },
+    Check {
+        name: "hatch_plane_weights",
+        wgsl: "vec4(hatch_plane_weights(a.xyz), 0.0)",
+        given: normal,
+        rust: |(), g| hatch_plane_weights(xyz(g[0])).extend(0.0),
+        allowed: small,
+    },
+    Check {
+        name: "hatch_plane",
+        wgsl: "vec4(hatch_plane(a.xyz, u32(c.x)), 0.0, 0.0)",
+        given: seen,
+        rust: |(), g| hatch_plane(xyz(g[0]), g[2].x as u32).extend(0.0).extend(0.0),
+        allowed: |(), _| Allowed::Within(0.0),
+    },
+    Check {
+        name: "hatch_doubled",
+        wgsl: "vec4(hatch_doubled(a.xyz, b.xyz, u32(c.x)), 0.0, 0.0)",
+        given: seen,
+        rust: |(), g| hatch_doubled(xyz(g[0]), xyz(g[1]), g[2].x as u32).extend(0.0).extend(0.0),
+        allowed: small,
+    },
+    Check {
+        name: "hatch_turn",
+        wgsl: "step_on_circle(hatch_turn(a.xy))",
+        given: doubled,
+        rust: turned_between,
+        allowed: turn_bound,
+    },
+    Check {
+        name: "hatch_octave",
+        wgsl: "step_as_number(hatch_octave(a.x))",
+        given: octave,
+        rust: |(), g| {
+            let HatchStep { first, share } = hatch_octave(x(g[0]));
+            DVec4::splat(f64::from(first) + share)
+        },
+        allowed: small,
+    },
+    Check {
+        name: "hatch_turned",
+        wgsl: "vec4(hatch_turned(a.xy, i32(a.z)), 0.0, 0.0)",
+        given: turn,
+        rust: |(), g| hatch_turned(xy(g[0]), g[0].z as i32).extend(0.0).extend(0.0),
+        allowed: turned_bound,
+    },
+    Check {
+        name: "hatch_moved",
+        wgsl: "vec4(hatch_moved(i32(a.x)), 0.0, 0.0)",
+        given: |random, ()| [Vec4::splat(random.below(81) as f32 - 40.0); 4],
+        rust: |(), g| hatch_moved(g[0].x as i32).extend(0.0).extend(0.0),
+        allowed: small,
+    },
+    Check {
+        name: "hatch_share",
+        wgsl: "vec4(hatch_share(a.x, a.y))",
+        given: tone_and_share,
+        rust: |(), g| DVec4::splat(hatch_share(x(g[0]), f64::from(g[0].y))),
+        allowed: small,
+    },
 ];
 
 pub fn calls() -> Vec<&'static str> {
@@ -111,5 +406,6 @@ pub fn calls() -> Vec<&'static str> {
 #[test]
 fn hatch_is_its_reference() {
     let Some(gpu) = crate::device() else { return };
-    compare(&gpu, npr_hatch::WGSL, "vec4<f32>", &[], &[(); MODELS], |()| [0.0_f32; 4], CHECKS);
+    let library = [npr_hatch::WGSL, CONTINUOUS].concat();
+    compare(&gpu, &library, "vec4<f32>", &[], &[(); MODELS], |()| [0.0_f32; 4], CHECKS);
 }
