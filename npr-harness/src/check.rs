@@ -193,6 +193,7 @@ pub fn run(
         checker.model("scene", &scene, &[("composed".into(), camera)], &|s| progress(s / 2.0))?;
         if styles.is_empty() {
             checker.borders("scene", "composed", &scene, &camera)?;
+            checker.strokes("scene", "composed", &scene, &camera)?;
         }
         let painted = [("composed".into(), painted_camera())];
         checker.model("painted", &painted_scene(), &painted, &|s| progress(0.5 + s / 2.0))?;
@@ -208,6 +209,7 @@ pub fn run(
         checker.model(&name, &scene, &views, &|share| progress((number as f64 + share) / total))?;
         if let (true, Some((view, camera))) = (styles.is_empty(), views.first()) {
             checker.borders(&name, view, &scene, camera)?;
+            checker.strokes(&name, view, &scene, camera)?;
         }
     }
     checker.finish()
@@ -305,6 +307,16 @@ impl Checker<'_> {
         let metric = Metric { model: model.into(), view: view.into(), technique, metric, value, limit, pass };
         (self.tell)(&metric);
         self.metrics.push(metric);
+    }
+
+    /// The pictures of the hatched styles.
+    fn strokes(&mut self, model: &str, view: &str, scene: &Scene, camera: &Camera) -> Result<(), HarnessError> {
+        for name in ["hatch", "hatch-planes", "hatch-color", "printed-hatch"] {
+            if scene.clip.is_none() {
+                self.picture(model, view, scene, camera, &style(name).expect("a style of this crate"))?;
+            }
+        }
+        Ok(())
     }
 
     /// The device's picture against the reference.

@@ -10,6 +10,7 @@ use npr_harness::light::{LightFrame, StyleLight};
 use npr_harness::style::{
     PainterShade, Ramp2dSource, RampShade, RampSource, Shade, Style, StyleFileError, style, styles,
 };
+use npr_hatch::{TamParameters, Thresholds, draw, store};
 use npr_toon::row::{RampRow, TexelFilter};
 use npr_toon::source::Light;
 use npr_toon::table::RampTable;
@@ -82,6 +83,8 @@ fn an_unknown_key_is_named() {
         "[shade.painter.image]\n",
         "[shade.gooch]\n",
         "[shade.gooch.highlight]\nexponent = 3\n",
+        "[shade.hatch]\n",
+        "[shade.hatch.map]\n",
         "[lines.fins]\nsilhouette-px = 1\nboundary-px = 1\ncrease-px = 1\nink = [0, 0, 0]\n",
         "[lines.printed]\nwidth-px = 1\nink = [0, 0, 0]\n",
         "[lines.image]\n",
@@ -125,6 +128,22 @@ fn what_is_wrong_is_said() {
         ("[shade.painter]\n", "either tables `first` and `second`"),
         ("[shade.gooch]\nalpha = -1", "alpha"),
         ("[shade.lambert]\nambient = 2", "ambient"),
+        ("[shade.hatch]\nambient = 0.1\nbrightness = 6", "either `ambient`"),
+        ("[shade.hatch]\nambient = 2", "ambient light of 2"),
+        ("[shade.hatch]\nbrightness = 0", "brightness of 0"),
+        ("[shade.hatch]\ntile = 0", "a hatching's tile of 0"),
+        ("[shade.hatch]\ntexel-px = nan", "a hatching's texels"),
+        ("[shade.hatch]\nink = [0, 0, 2]", "a component of the ink of 2"),
+        ("[shade.hatch.map]\nside = 100", "the side is 100"),
+        ("[shade.hatch.map]\ntones = []", "0 tones"),
+        ("[shade.hatch.map]\ntones = [0.5, 0.6]", "tone 1 is 0.6"),
+        ("[shade.hatch.map]\ncross-from = 6", "tone 6 of 6"),
+        ("[shade.hatch.map]\ncross-from = \"no\"", "the number of a tone, or \"never\""),
+        ("[shade.hatch.map]\ncandidates = 0", "0 candidates"),
+        ("[shade.hatch.map]\nfile = \"none.tam\"", "none.tam"),
+        ("[shade.hatch.map]\nfile = \"none.tam\"\nseed = 3", "either a file or what a map is to be like"),
+        ("[shade.hatch.map]\nstroke = \"none.png\"", "none.png"),
+        ("[shade.hatch]\nencoding = \"six-tones\"\n[shade.hatch.map]\ntones = [0.5]", "a map of 1 tones"),
         ("= 3", "mine.toml:1:1"),
     ];
     for (text, said) in cases {
@@ -153,4 +172,50 @@ fn a_ramp_comes_from_an_image_beside_the_file() {
     assert!(matches!(Style::read(&folder.0), Err(StyleFileError::Read { .. })));
     assert!(matches!(Style::read(&folder.0.join("none.toml")), Err(StyleFileError::Read { .. })));
     let _: HarnessError = Style::read(&folder.0).expect_err("a folder").into();
+}
+
+#[test]
+fn a_map_comes_from_a_file_or_a_picture_of_a_stroke() {
+    let folder = Folder::new();
+    let parameters = TamParameters { side: 32, ..TamParameters::default() };
+    let drawing = draw(&parameters, None).expect("a map");
+    let thresholds = Thresholds::new(&drawing, &parameters, None);
+    let write = |name: &str, thresholds| {
+        let bytes = store::to_bytes(&drawing.tam, thresholds).expect("a file");
+        std::fs::write(folder.join(name), bytes).expect("written");
+    };
+    write("all.tam", Some(&thresholds));
+    write("tones.tam", None);
+    let path = folder.join("mine.toml");
+    let read = |text: &str| {
+        std::fs::write(&path, text).expect("written");
+        Style::read(&path)
+    };
+    let style = read("[shade.hatch.map]\nfile = \"all.tam\"\n").expect("a style");
+    let Shade::Hatch(hatch) = &style.shade else { panic!("no strokes") };
+    assert_eq!(hatch.map.tam().expect("a map"), &drawing.tam);
+    assert_eq!(hatch.map.thresholds().expect("a map"), Some(&thresholds));
+    // Written, it is found from anywhere.
+    let text = style.to_toml().expect("a form");
+    assert_eq!(Style::from_toml(&text, Path::new("/else/where.toml")).expect("a style"), style);
+    let said = read("[shade.hatch.map]\nfile = \"tones.tam\"\n").expect_err("no thresholds").to_string();
+    assert!(said.contains("tones.tam") && said.contains("no thresholds"), "{said}");
+    read("[shade.hatch]\nencoding = \"six-tones\"\n[shade.hatch.map]\nfile = \"tones.tam\"\n").expect("a style");
+    std::fs::write(folder.join("text.tam"), "no map").expect("written");
+    let said = read("[shade.hatch.map]\nfile = \"text.tam\"\n").expect_err("no map").to_string();
+    assert!(said.contains("text.tam") && said.contains("no tonal art map"), "{said}");
+
+    let stroke = |name: &str, value: u8| {
+        let image = Image::new(8, 2, [value, value, value, 255].repeat(16)).expect("16 pixels");
+        image.save_png(&folder.join(name)).expect("written");
+    };
+    stroke("ink.png", 0);
+    stroke("paper.png", 255);
+    let style = read("[shade.hatch.map]\nstroke = \"ink.png\"\nside = 64\nwidth-px = 3\n").expect("a style");
+    let text = style.to_toml().expect("a form");
+    assert_eq!(Style::from_toml(&text, Path::new("/else/where.toml")).expect("a style"), style);
+    let Shade::Hatch(hatch) = &style.shade else { panic!("no strokes") };
+    assert!((hatch.map.tam().expect("a map").mean(2, 0) - 4.0 / 7.0).abs() < 0.005);
+    let said = read("[shade.hatch.map]\nstroke = \"paper.png\"\n").expect_err("no ink").to_string();
+    assert!(said.contains("has no ink"), "{said}");
 }
