@@ -28,6 +28,8 @@ pub const ENCODINGS: [HatchEncoding; 2] = [HatchEncoding::SixTones, HatchEncodin
 pub const MAPPINGS: [HatchMapping; 3] = [HatchMapping::Coordinates, HatchMapping::Planes, HatchMapping::Form];
 /// Tones by N·L itself.
 pub const LINEAR: HatchTransfer = HatchTransfer::Linear { ambient: 0.0 };
+/// The same with some light everywhere, so that there are strokes on all of a surface, and nowhere black alone.
+pub const LIT: HatchTransfer = HatchTransfer::Linear { ambient: 0.15 };
 /// Listing 4 with the brightness that makes tones N·L, but for the darkest.
 pub const LISTING_4: HatchTransfer = HatchTransfer::Listing4 { brightness: 7.0 };
 

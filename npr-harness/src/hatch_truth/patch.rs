@@ -3,6 +3,9 @@
 //! The square has a side of 2 and four tiles of the map along it. What is measured are the pixels within its middle
 //! three by three tiles, so that every stroke of the map counts as often as it should; only where it lies across the
 //! planes that it is mapped by, and tiles are cut off somewhere, does the mean depend on which strokes are within.
+//!
+//! Far away the square has a few hundred pixels, and whether these happen to lie on strokes is a matter of chance. So
+//! pictures that are moved by parts of a pixel may be taken together.
 
 use super::{asked, hatched};
 use crate::camera::{Camera, Framing};
@@ -22,6 +25,8 @@ pub const DISTANCES: [f64; 5] = [1.0, 1.5, 2.0, 4.0, 8.0];
 pub const TILTS_DEG: [f64; 3] = [0.0, 45.0, 70.0];
 /// The map's side for four tiles along the square, in halves of its diagonal.
 pub const TILE: f64 = SQRT_2 / 4.0;
+/// The same by which texture coordinates are halfway between two scales, of four tiles and of eight.
+pub const TILE_BETWEEN: f64 = 0.25;
 
 /// What is turned so that the square is seen at a slant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,10 +66,12 @@ pub struct PatchTone {
     pub light: f64,
     /// The tones that count as right, see [`asked`].
     pub asked: [f64; 2],
-    /// The mean of the pixels.
+    /// The mean of the pixels, of all pictures.
     pub shown: f64,
-    /// How many.
+    /// How many there are in all pictures.
     pub pixels: usize,
+    /// How many pictures were taken together.
+    pub pictures: u32,
 }
 
 impl PatchTone {
@@ -87,7 +94,8 @@ fn square(right: DVec3, up: DVec3) -> Model {
     }
 }
 
-/// The square's tone under lights of these N·L, 0..=1, in a picture of `size` × `size` px.
+/// The square's tone under lights of these N·L, 0..=1, in pictures of `size` × `size` px: one, or as many as it takes,
+/// up to 256, for about `least` pixels.
 ///
 /// # Errors
 /// What is wrong with the shade.
@@ -96,6 +104,7 @@ pub fn patch_tones(
     view: PatchView,
     lights: &[f64],
     size: u32,
+    least: usize,
 ) -> Result<Vec<PatchTone>, HarnessError> {
     let tilt = view.tilt_deg.to_radians();
     let (right, yaw_rad) = match view.tilted {
@@ -114,16 +123,26 @@ pub fn patch_tones(
         let mut context = FrameContext::new(&scene, &style, &plan, &camera, (size, size), &options, &textures);
         let (mut sum, mut pixels) = (0.0, 0usize);
         let [left, top, width, height] = camera.area(scene.bounds().expect("it has faces"), (size, size), 1);
-        for y in top..top + height {
-            for x in left..left + width {
-                let Some((at, color)) = context.seen_at(DVec2::new(f64::from(x), f64::from(y)) + 0.5) else { continue };
+        let of_one = f64::from(width * height) * 0.75 * 0.75;
+        let along = (least as f64 / of_one).sqrt().ceil().clamp(1.0, 16.0) as u32;
+        // Pictures that are moved by less than a pixel are one picture of so many more.
+        for y in top * along..(top + height) * along {
+            for x in left * along..(left + width) * along {
+                let point_px = (DVec2::new(f64::from(x), f64::from(y)) + 0.5) / f64::from(along);
+                let Some((at, color)) = context.seen_at(point_px) else { continue };
                 if at.dot(right).abs() < 0.75 && at.dot(up).abs() < 0.75 {
                     sum += color.x;
                     pixels += 1;
                 }
             }
         }
-        Ok(PatchTone { light, asked: asked(shade, light), shown: sum / pixels.max(1) as f64, pixels })
+        Ok(PatchTone {
+            light,
+            asked: asked(shade, light),
+            shown: sum / pixels.max(1) as f64,
+            pixels,
+            pictures: along * along,
+        })
     };
     lights.iter().map(measured).collect()
 }

@@ -49,19 +49,19 @@ pub struct Picture<'a> {
     pub camera: &'a Camera,
 }
 
-/// The cameras before and after a motion, a scene's size fitted to a picture of `aspect`.
-pub fn cameras(scene: &Scene, motion: Motion, aspect: f64) -> [Camera; 2] {
-    let before = Framing::default();
+/// The cameras before and after a motion that begins at `before`, the ball around a scene fitted to a picture of `aspect`.
+pub fn cameras(scene: &Scene, before: &Framing, motion: Motion, aspect: f64) -> [Camera; 2] {
+    let before = *before;
     let after = match motion {
         Motion::Turn => Framing { yaw_rad: before.yaw_rad + 1f64.to_radians(), ..before },
         Motion::Zoom => Framing { distance: before.distance / 1.01, ..before },
     };
-    // A box's frame changes with its turn; a ball's does not.
+    // What just fits is nearer from one side than from another; a ball is not.
     let (middle, radius) = (scene.middle(), scene.radius());
     let ball = [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z];
     let ball = ball.map(|axis| (middle + axis * radius).as_vec3());
-    let first = Camera::framed(ball.into_iter(), aspect, &before);
-    let distance = first.eye.distance(middle) / before.distance;
+    let first = Camera::framed(ball.into_iter(), aspect, &Framing { distance: 1.0, ..before });
+    let distance = first.eye.distance(middle);
     [before, after].map(|framing| {
         let (yaw, pitch) = (framing.yaw_rad, framing.pitch_rad);
         let back = DVec3::new(yaw.sin() * pitch.cos(), pitch.sin(), yaw.cos() * pitch.cos());
@@ -112,7 +112,7 @@ pub fn stability(before: Picture<'_>, after: Picture<'_>, size: (u32, u32)) -> R
     Ok(Stability { pixels, mean: sum / n, tone: signed / n })
 }
 
-/// The light for it: from the upper left of the first camera, and there it stays.
+/// The light for it, from above and in front, wherever the camera is.
 pub const TO_LIGHT: DVec3 = DVec3::new(0.1, 0.7, 0.7);
 
 /// How well a hatching stays where it is on a scene, while a camera moves.
@@ -122,11 +122,12 @@ pub const TO_LIGHT: DVec3 = DVec3::new(0.1, 0.7, 0.7);
 pub fn hatch_stability(
     scene: &Scene,
     shade: &HatchShade,
+    from: &Framing,
     motion: Motion,
     size: (u32, u32),
 ) -> Result<Stability, HarnessError> {
     let style = hatched(shade, NormalUse::PerPixel, TO_LIGHT);
-    let [before, after] = cameras(scene, motion, f64::from(size.0) / f64::from(size.1));
+    let [before, after] = cameras(scene, from, motion, f64::from(size.0) / f64::from(size.1));
     let of = |camera| Picture { scene, style: &style, camera };
     stability(of(&before), of(&after), size)
 }
