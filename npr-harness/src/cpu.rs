@@ -20,6 +20,7 @@ use crate::plan::Plan;
 use crate::rays::Hit;
 use crate::scene::Scene;
 use crate::style::{Lines, Shade, Style};
+use crate::texture::MipMapped;
 use glam::{DVec2, DVec3, DVec4};
 use hatch::Strokes;
 use npr_toon::source::{Light, combined_color};
@@ -83,7 +84,7 @@ pub struct FrameContext<'a> {
     pub lights: Vec<Light>,
     /// Of all of them.
     light_color: DVec3,
-    textures: &'a [crate::texture::MipMapped],
+    textures: &'a [MipMapped],
     shift_px: DVec2,
     plan: &'a Plan,
     /// What surfaces are hatched with.
@@ -122,29 +123,8 @@ pub fn render_unsure(
     progress: &(dyn Fn(f64) + Sync),
 ) -> CpuFrame {
     let samples = options.samples.max(1);
-    let textures: Vec<_> = if plan.painted || plan.cut_out || plan.image.as_ref().is_some_and(|i| i.ink.artist) {
-        scene.model.textures.iter().map(crate::texture::MipMapped::new).collect()
-    } else {
-        Vec::new()
-    };
-    let lights = lights_in_world(style, scene, camera);
-    let context = FrameContext {
-        scene,
-        style,
-        camera,
-        size_px: DVec2::new(f64::from(width * samples), f64::from(height * samples)),
-        light_color: combined_color(&lights),
-        lights,
-        textures: &textures,
-        shift_px: options.shift_px * f64::from(samples),
-        plan,
-        strokes: match (&style.shade, &plan.hatch) {
-            (Shade::Hatch(shade), Some(plan)) => Some(Strokes::new(shade, plan, style.normals, samples)),
-            _ => None,
-        },
-        painting: plan.painted,
-        boundary_inset_px: options.boundary_inset_px * f64::from(samples),
-    };
+    let textures = textures(scene, plan);
+    let context = FrameContext::new(scene, style, plan, camera, (width, height), options, &textures);
     let mut fine = context.trace(width * samples, height * samples, options.threads, progress);
     let shared_texels = std::mem::take(&mut fine.texels);
     match &style.lines {
@@ -173,7 +153,59 @@ pub fn render_unsure(
     frame
 }
 
+/// The scene's textures as a frame looks them up; none if it does not.
+pub(crate) fn textures(scene: &Scene, plan: &Plan) -> Vec<MipMapped> {
+    if plan.painted || plan.cut_out || plan.image.as_ref().is_some_and(|i| i.ink.artist) {
+        scene.model.textures.iter().map(MipMapped::new).collect()
+    } else {
+        Vec::new()
+    }
+}
+
+impl<'a> FrameContext<'a> {
+    /// `size`: the picture's, px.
+    pub(crate) fn new(
+        scene: &'a Scene,
+        style: &'a Style,
+        plan: &'a Plan,
+        camera: &'a Camera,
+        (width, height): (u32, u32),
+        options: &CpuOptions,
+        textures: &'a [MipMapped],
+    ) -> Self {
+        let samples = options.samples.max(1);
+        let lights = lights_in_world(style, scene, camera);
+        Self {
+            scene,
+            style,
+            camera,
+            size_px: DVec2::new(f64::from(width * samples), f64::from(height * samples)),
+            light_color: combined_color(&lights),
+            lights,
+            textures,
+            shift_px: options.shift_px * f64::from(samples),
+            plan,
+            strokes: match (&style.shade, &plan.hatch) {
+                (Shade::Hatch(shade), Some(plan)) => Some(Strokes::new(shade, plan, style.normals, samples)),
+                _ => None,
+            },
+            painting: plan.painted,
+            boundary_inset_px: options.boundary_inset_px * f64::from(samples),
+        }
+    }
+}
+
 impl FrameContext<'_> {
+    /// The solid surface that is seen through any point of the picture, px: where it is, and its display-referred
+    /// colour, as a pixel that had its centre there would show it. What is blended over it is left out.
+    pub(crate) fn seen_at(&mut self, point_px: DVec2) -> Option<(DVec3, DVec3)> {
+        let corner = point_px.floor().max(DVec2::ZERO);
+        self.shift_px = point_px - corner - 0.5;
+        let (x, y) = (corner.x as u32, corner.y as u32);
+        let hit = self.first_solid(x, y)?;
+        Some((self.interpolate(&hit, hit.barycentric).at, self.paint(&hit, x, y).truncate()))
+    }
+
     /// Paints surfaces; lines are drawn over them afterwards.
     fn trace(&self, width: u32, height: u32, threads: usize, progress: &(dyn Fn(f64) + Sync)) -> CpuFrame {
         let pixels = width as usize * height as usize;

@@ -13,6 +13,7 @@ pub mod gallery;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod hatch;
+pub mod hatch_truth;
 pub mod image_ink;
 pub mod inspect;
 pub mod light;
