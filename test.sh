@@ -143,7 +143,7 @@ run() {
 }
 
 prepare_adapter
-run cargo test --workspace --features npr-outline/wgpu,npr-imagespace/wgpu
+run cargo test --workspace --features npr-hatch/wgpu,npr-outline/wgpu,npr-imagespace/wgpu
 # Each crate alone, as someone gets it who wants no more than that.
 for crate in npr-mesh npr-outline npr-toon npr-gooch npr-hatch npr-imagespace npr-harness; do
     run cargo check -p "$crate" --no-default-features

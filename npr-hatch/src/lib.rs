@@ -19,9 +19,13 @@
 //!   curve: with a brightness of 7 and the default tones the hatched tone is N·L, down to 1/7. [`hatch_color`] puts
 //!   it over a coloured surface. In shadow, N·L counts as 0: the darkest tone.
 //! - [`Thresholds`] and [`hatch_threshold`]: all tones in one channel.
+//! - [`lookup`]: which level a pixel shows of a map, and how it is filtered without changing the tone; [`mapping`]: where a
+//!   map lies on a surface, by planes, turned by a [`field`] of directions that follow the form, or by texture
+//!   coordinates of any [`density`].
 //!
 //! Functions that begin with `hatch_` stand here twice, in Rust in f64, the reference, and in [`WGSL`], a library without
-//! bindings or entry points to put in front of a shader.
+//! bindings or entry points to put in front of a shader; lookups in textures are in [`LOOKUP_WGSL`], to be put after it.
+//! With the feature `wgpu` the module `upload` makes the textures.
 //!
 //! # Sources
 //!
@@ -30,6 +34,9 @@
 //! - D. Card, J. L. Mitchell: *Non-Photorealistic Rendering with Pixel and Vertex Shaders*, in *Direct3D ShaderX*, 2002,
 //!   section "Hatching", listings 4 (vertex shader) and 5 (pixel shader), and figure 10.
 //! - M. Webb, E. Praun, A. Finkelstein, H. Hoppe: *Fine Tone Control in Hardware Hatching*, NPAR 2002: thresholds.
+//! - W. T. Reeves, D. H. Salesin, R. L. Cook: *Rendering Antialiased Shadows with Depth Maps*, SIGGRAPH 1987: compare, then
+//!   filter.
+//! - S. Rusinkiewicz: *Estimating Curvatures and Their Derivatives on Triangle Meshes*, 3DPVT 2004: curvature.
 //! - A. B. Owen: *Randomly Permuted (t,m,s)-Nets and (t,s)-Sequences*, 1995: where strokes go.
 //!
 //! What was wrong in print: the comment in listing 4 says that N·L is multiplied by six and clamped at zero. The
