@@ -33,6 +33,10 @@ fn hatch_linear(light: vec3<f32>, dark: vec3<f32>, tone: f32) -> f32 {
     return 1.0 + dot(from_dark + from_light, vec3(1.0));
 }
 
+fn hatch_shadowed(tone: f32, darkest: f32, lit: f32) -> f32 {
+    return tone * lit + min(tone, darkest) * (1.0 - lit);
+}
+
 fn hatch_color(tone: f32, paper: vec3<f32>, ink: vec3<f32>) -> vec3<f32> {
     return ink + (paper - ink) * tone;
 }

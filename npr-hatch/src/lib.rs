@@ -17,7 +17,7 @@
 //!   default) into pictures.
 //! - [`hatch_weights`] and [`hatch_blend`], listings 4 and 5: six tones by light; [`weights`] tells the transfer
 //!   curve: with a brightness of 7 and the default tones the hatched tone is N·L, down to 1/7. [`hatch_color`] puts
-//!   it over a coloured surface. In shadow, N·L counts as 0: the darkest tone.
+//!   it over a coloured surface. [`hatch_shadowed`] has the darkest tone in shadows.
 //! - [`Thresholds`] and [`hatch_threshold`]: all tones in one channel.
 //! - [`lookup`]: which level a pixel shows of a map, and how it is filtered without changing the tone; [`mapping`]: where a
 //!   map lies on a surface, by planes, turned by a [`field`] of directions that follow the form, or by texture
@@ -93,7 +93,8 @@ pub use stroke::{Stroke, StrokeImage};
 pub use tam::Tam;
 pub use threshold::{Thresholds, hatch_threshold};
 pub use weights::{
-    HATCH_TONES, HatchWeights, hatch_blend, hatch_color, hatch_level, hatch_linear, hatch_transfer, hatch_weights,
+    HATCH_TONES, HatchWeights, hatch_blend, hatch_color, hatch_level, hatch_linear, hatch_shadowed, hatch_transfer,
+    hatch_weights,
 };
 
 /// The functions of this crate in WGSL: no bindings, no entry points, every name begins with `hatch_` or `Hatch`.

@@ -85,6 +85,12 @@ pub fn hatch_linear(light: DVec3, dark: DVec3, tone: f64) -> f64 {
     knots.windows(2).fold(1.0, |level, part| level + ((tone - part[0]) / (part[1] - part[0])).clamp(0.0, 1.0))
 }
 
+/// The tone that is asked for in a shadow: `lit` is 1 where the light arrives, and 0 in full shadow, which has the darkest
+/// tone (figure 10c), whatever its N·L. What is darker already stays so.
+pub fn hatch_shadowed(tone: f64, darkest: f64, lit: f64) -> f64 {
+    tone * lit + tone.min(darkest) * (1.0 - lit)
+}
+
 /// A blended tone as a colour: paper where it is 1, ink where it is 0. Over a textured surface (figure 10d) `paper`
 /// is the surface's colour, and with black ink the tone multiplies it. Colours are display-referred.
 pub fn hatch_color(tone: f64, paper: DVec3, ink: DVec3) -> DVec3 {

@@ -171,3 +171,15 @@ fn thresholds_and_colors() {
     let (paper, ink) = (DVec3::new(0.9, 0.7, 0.5), DVec3::new(0.1, 0.1, 0.3));
     assert_eq!((hatch_color(0.0, paper, ink), hatch_color(1.0, paper, DVec3::ZERO)), (ink, paper));
 }
+
+#[test]
+fn shadows_have_the_darkest_tone() {
+    let darkest = 1.0 / 7.0;
+    for step in 0..=20 {
+        let tone = f64::from(step) / 20.0;
+        assert_eq!(hatch_shadowed(tone, darkest, 1.0), tone);
+        assert_eq!(hatch_shadowed(tone, darkest, 0.0), tone.min(darkest));
+        let soft = hatch_shadowed(tone, darkest, 0.5);
+        assert!((soft - 0.5 * (tone + tone.min(darkest))).abs() < 1e-15);
+    }
+}

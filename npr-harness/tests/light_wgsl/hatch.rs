@@ -8,7 +8,9 @@ use npr_hatch::mapping::{
     HatchStep, hatch_doubled, hatch_moved, hatch_octave, hatch_plane, hatch_plane_weights, hatch_share, hatch_turn,
     hatch_turned,
 };
-use npr_hatch::{hatch_blend, hatch_color, hatch_level, hatch_linear, hatch_threshold, hatch_transfer, hatch_weights};
+use npr_hatch::{
+    hatch_blend, hatch_color, hatch_level, hatch_linear, hatch_shadowed, hatch_threshold, hatch_transfer, hatch_weights,
+};
 
 fn xyz(v: Vec4) -> DVec3 {
     v.truncate().as_dvec3()
@@ -263,6 +265,16 @@ const CHECKS: &[Check<()>] = &[
         wgsl: "vec4(hatch_linear(a.rgb, b.rgb, c.x))",
         given: tones,
         rust: |(), g| DVec4::splat(hatch_linear(xyz(g[0]), xyz(g[1]), x(g[2]))),
+        allowed: small,
+    },
+    Check {
+        name: "hatch_shadowed",
+        wgsl: "vec4(hatch_shadowed(a.x, a.y, a.z))",
+        given: |random, ()| {
+            let lit = random.pick(&[0.0, 1.0, random.unit()]);
+            [Vec4::new(random.unit(), random.range(0.0, 0.5), lit, 0.0); 4]
+        },
+        rust: |(), g| DVec4::splat(hatch_shadowed(x(g[0]), f64::from(g[0].y), f64::from(g[0].z))),
         allowed: small,
     },
     Check {
