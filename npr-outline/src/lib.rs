@@ -26,6 +26,9 @@
 //! [`fin_printed`] (and `fin_pass`) are the fins of 2002 as they were printed, all edges of a model in a vertex buffer,
 //! to be measured against. [`normal_format`] has their face normals in f32, i16, i8 and octahedral records.
 //!
+//! Seen from a light, the same edges bound the model's shadows: [`shadow_volume`], which `shadow_pass` counts in a stencil
+//! buffer.
+//!
 //! Formulas stand here twice, in Rust (f64, the reference) and in WGSL under the same names.
 //!
 //! # Sources
@@ -47,6 +50,9 @@ pub mod line_pass;
 pub mod line_strokes;
 pub mod normal_format;
 pub mod segment;
+#[cfg(feature = "wgpu")]
+pub mod shadow_pass;
+pub mod shadow_volume;
 
 pub use contour::{ContourEdges, ContourOptions, LineKind, contour_edges};
 pub use error::OutlineError;

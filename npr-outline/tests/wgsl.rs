@@ -12,6 +12,9 @@ const NORMAL_FORMAT: &str = include_str!("../src/normal_format.wgsl");
 const FIN_PRINTED: &str = include_str!("../src/fin_printed.wgsl");
 const FIN_PASS: &str = include_str!("../src/fin_pass.wgsl");
 
+const SHADOW_VOLUME: &str = include_str!("../src/shadow_volume.wgsl");
+const SHADOW_PASS: &str = include_str!("../src/shadow_pass.wgsl");
+
 fn validated(parts: &[&str]) -> naga::Module {
     let source = parts.concat();
     let module = naga::front::wgsl::parse_str(&source).unwrap_or_else(|e| panic!("{}", e.emit_to_string(&source)));
@@ -32,13 +35,16 @@ fn modules_validate_as_the_passes_use_them() {
     assert_eq!(entry_points(&[LINE, LINE_INK, LINE_STROKES]), ["stroke", "mix_ink", "lay_ink"]);
     assert_eq!(entry_points(&[LINE, COMPACTION]), ["compact"]);
     assert_eq!(entry_points(&[NORMAL_FORMAT, FIN_PRINTED, FIN_PASS]), ["vs_fin", "vs_fin_oct", "fs_fin"]);
+    assert_eq!(entry_points(&[SHADOW_VOLUME, SHADOW_PASS]), ["vs_side", "vs_cap"]);
 }
 
 #[test]
 fn libraries_have_no_bindings_no_entry_points_and_one_prefix_each() {
     // Together, too: no name stands in two of them.
-    validated(&[LINE, NORMAL_FORMAT, FIN_PRINTED]);
-    for (library, prefix) in [(LINE, "outline_"), (NORMAL_FORMAT, "normal_"), (FIN_PRINTED, "fin_printed_")] {
+    validated(&[LINE, NORMAL_FORMAT, FIN_PRINTED, SHADOW_VOLUME]);
+    let libraries =
+        [(LINE, "outline_"), (NORMAL_FORMAT, "normal_"), (FIN_PRINTED, "fin_printed_"), (SHADOW_VOLUME, "outline_")];
+    for (library, prefix) in libraries {
         let module = validated(&[library]);
         assert!(module.entry_points.is_empty() && module.global_variables.is_empty());
         assert!(!module.functions.is_empty());

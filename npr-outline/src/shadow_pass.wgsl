@@ -1,0 +1,66 @@
+// Shadow volumes into a stencil buffer. Appended to `shadow_volume.wgsl`.
+
+struct ShadowView {
+    clip_from_world: mat4x4<f32>,
+    // World space: a point with w = 1, or the direction to the light with w = 0.
+    light: vec4<f32>,
+    // The same, relative to what the planes are relative to.
+    local_light: vec4<f32>,
+}
+
+@group(0) @binding(0) var<uniform> view: ShadowView;
+
+// Vertices of one sweep of an edge: a triangle to the one point at infinity, or two.
+override sweep_vertices: u32 = 6u;
+// 1: the faces that are turned towards the light, -1: the others.
+override cap_turn: i32 = 1;
+
+// Where nothing is drawn.
+const NOWHERE: vec4<f32> = vec4<f32>(0.0, 0.0, 0.0, 1.0);
+
+struct Placed {
+    @invariant @builtin(position) position: vec4<f32>,
+}
+
+@vertex
+fn vs_side(
+    @builtin(vertex_index) index: u32, @location(0) first: vec3<f32>, @location(1) flags: u32,
+    @location(2) second: vec3<f32>, @location(3) plane0: vec4<f32>, @location(4) plane1: vec4<f32>,
+) -> Placed {
+    let sweeps = outline_sweeps(flags, plane0, plane1, view.local_light);
+    if u32(abs(sweeps)) <= index / sweep_vertices {
+        return Placed(NOWHERE);
+    }
+    let from = select(second, first, sweeps > 0);
+    let to = select(first, second, sweeps > 0);
+    var place = vec4<f32>(to, 1.0);
+    switch index % sweep_vertices {
+        case 1u: { place = vec4<f32>(from, 1.0); }
+        case 2u, 4u: { place = outline_swept(from, view.light); }
+        case 5u: { place = outline_swept(to, view.light); }
+        default: {}
+    }
+    return Placed(view.clip_from_world * place);
+}
+
+@vertex
+fn vs_cap(
+    @builtin(vertex_index) index: u32, @location(0) a: vec3<f32>, @location(1) flags: u32,
+    @location(2) b: vec3<f32>, @location(3) c: vec3<f32>, @location(4) plane: vec4<f32>,
+) -> Placed {
+    if outline_casting(plane, (flags & VOLUME_OPEN) != 0u, view.local_light) != cap_turn {
+        return Placed(NOWHERE);
+    }
+    // The near cap as wound, the far one turned over.
+    var corner = a;
+    switch index {
+        case 1u, 5u: { corner = b; }
+        case 2u, 4u: { corner = c; }
+        default: {}
+    }
+    if index > 2u {
+        return Placed(view.clip_from_world * outline_swept(corner, view.light));
+    }
+    // As the scene's faces are placed, to the last bit: a cap lies exactly on its face.
+    return Placed(view.clip_from_world * vec4<f32>(corner, 1.0));
+}

@@ -1,0 +1,323 @@
+//! Shadow volumes: what lies in the dark behind a model's faces, from the same edges as the lines.
+//!
+//! # What casts
+//!
+//! A shadow volume is bounded by the casting faces themselves (its near caps), by the quadrilaterals that edges sweep
+//! away from the light, and by the faces swept to infinity (its far caps). How often a point lies inside is how many
+//! casting faces there are between it and the light, so whatever else the topology is, a count above zero is shadow.
+//!
+//! - Of a *closed* surface, every edge with two faces that are wound alike, only the faces towards the light cast. Then
+//!   an edge sweeps where one of its faces is turned towards the light and the other away from it: the contour seen from
+//!   the light, by the very test that finds contours for the eye ([`outline_facing`], once a face).
+//! - Elsewhere every face casts on its own, turned so that it faces the light, and an edge sweeps as often as the
+//!   directions in which its faces run over it do not cancel out: once at a boundary, not at all where a surface goes
+//!   on, twice where it folds over. No winding is believed and no neighbour is needed, so nothing can leak.
+//!
+//! Since each face is turned as a whole, by one number that all its edges share, the volumes are closed by construction,
+//! also where a face is within rounding of edge-on.
+//!
+//! Faces of zero area cast nothing, but stay, so that the edges around them fit. Redundant faces
+//! ([`npr_mesh::edges::EdgeOptions::skip_redundant`]) and blended materials cast nothing. A material that alpha cuts out
+//! casts the shadow of its whole faces: a volume knows no texture.
+//!
+//! # Sources
+//!
+//! - F. C. Crow: *Shadow Algorithms for Computer Graphics*, SIGGRAPH 1977: shadow volumes.
+//! - C. Everitt, M. J. Kilgard: *Practical and Robust Stenciled Shadow Volumes for Hardware-Accelerated Rendering*, 2002:
+//!   counting behind the surface (depth fail), caps at infinity, a projection without far plane.
+//! - G. Aldridge, E. Woods: *Robust, geometry-independent shadow volumes*, GRAPHITE 2004, and B. Kim, K. Kim, G. Turk: *A
+//!   Shadow-Volume Algorithm for Opaque and Transparent Nonmanifold Casters*, Journal of Graphics Tools 13:3, 2008: edges
+//!   that sweep as often as their faces' directions do not cancel out.
+//! - D. Card, J. L. Mitchell 2002, "Shadow Outlines": stencil shadows in an NPR renderer.
+
+use crate::contour::outline_facing;
+use glam::{DVec3, DVec4, Vec3, Vec4};
+use npr_mesh::edges::{Edge, EdgeKind, Edges, NO_FACE};
+use npr_mesh::{AlphaMode, Model};
+
+/// Of a [`VolumeEdge`]: there is a second face.
+pub const VOLUME_SECOND: u32 = 1;
+/// Of a [`VolumeEdge`]: the second face runs over the edge in the direction of the first.
+pub const VOLUME_SAME_WAY: u32 = 2;
+/// Of a [`VolumeEdge`] and a [`VolumeFace`]: the (first) face casts whichever side the light is on.
+pub const VOLUME_OPEN: u32 = 4;
+/// Of a [`VolumeEdge`]: the second face does.
+pub const VOLUME_SECOND_OPEN: u32 = 8;
+
+/// An edge that may sweep a side of a volume: 64 bytes.
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub struct VolumeEdge {
+    /// World space; the first face runs from here.
+    pub from: [f32; 3],
+    /// Of the `VOLUME_` bits.
+    pub flags: u32,
+    /// World space.
+    pub to: [f32; 3],
+    /// Unused, 0.
+    pub padding: u32,
+    /// Of the first face, as it is wound, relative to [`ShadowCasters::origin`].
+    pub plane0: [f32; 4],
+    /// Of the second face, as it is wound; zeros without one.
+    pub plane1: [f32; 4],
+}
+
+/// A face that may cap a volume: 64 bytes.
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub struct VolumeFace {
+    /// World space, as wound.
+    pub a: [f32; 3],
+    /// [`VOLUME_OPEN`] or 0.
+    pub flags: u32,
+    /// World space.
+    pub b: [f32; 3],
+    /// Unused, 0.
+    pub padding0: u32,
+    /// World space.
+    pub c: [f32; 3],
+    /// Unused, 0.
+    pub padding1: u32,
+    /// As in the edges.
+    pub plane: [f32; 4],
+}
+
+const _: () = assert!(size_of::<VolumeEdge>() == 64 && size_of::<VolumeFace>() == 64);
+
+/// Everything of a model that can cast a shadow.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ShadowCasters {
+    /// What the planes are relative to.
+    pub origin: Vec3,
+    /// At most as many as there are sides of faces.
+    pub edges: Vec<VolumeEdge>,
+    /// At most as many as the model has.
+    pub faces: Vec<VolumeFace>,
+    /// Whether some face casts whichever side the light is on; then an edge may sweep twice.
+    pub open: bool,
+}
+
+/// Whether a face casts at all, whatever its place.
+fn casts(model: &Model, edges: &Edges, face: usize) -> bool {
+    let blended =
+        model.materials.get(model.face_material[face] as usize).map(|m| m.alpha_mode) == Some(AlphaMode::Blend);
+    !blended && edges.skipped.get(face) != Some(&true)
+}
+
+/// Gathers what casts.
+///
+/// `edges`: of this model's triangles, found without polygons (an empty `face_polygon`), so that diagonals are among
+/// them: a polygon may be warped, and its triangles then face a light differently.
+pub fn shadow_casters(model: &Model, edges: &Edges) -> ShadowCasters {
+    let origin = model.bounds().map_or(Vec3::ZERO, |(low, high)| low.midpoint(high));
+    let corner = |v: u32| model.positions[v as usize];
+    let casting: Vec<bool> = (0..model.faces.len()).map(|face| casts(model, edges, face)).collect();
+    let planes: Vec<[f32; 4]> = model.faces.iter().map(|&face| plane(face.map(corner), origin)).collect();
+    let open = open_faces(edges, &casting);
+    let mut casters =
+        ShadowCasters { origin, open: (0..open.len()).any(|f| casting[f] && open[f]), ..Default::default() };
+    for (face, &[a, b, c]) in model.faces.iter().enumerate() {
+        if casting[face] {
+            casters.faces.push(VolumeFace {
+                a: corner(a).to_array(),
+                flags: if open[face] { VOLUME_OPEN } else { 0 },
+                b: corner(b).to_array(),
+                padding0: 0,
+                c: corner(c).to_array(),
+                padding1: 0,
+                plane: planes[face],
+            });
+        }
+    }
+    let runs = |face: u32, [from, to]: [u32; 2]| {
+        let corners = model.faces[face as usize].map(|v| edges.representative[v as usize]);
+        (0..3).any(|side| [corners[side], corners[(side + 1) % 3]] == [from, to])
+    };
+    let mut add = |[from, to]: [u32; 2], first: u32, second: Option<(u32, bool)>| {
+        let mut flags = if open[first as usize] { VOLUME_OPEN } else { 0 };
+        if let Some((second, same_way)) = second {
+            flags |= VOLUME_SECOND;
+            flags |= if same_way { VOLUME_SAME_WAY } else { 0 };
+            flags |= if open[second as usize] { VOLUME_SECOND_OPEN } else { 0 };
+        }
+        casters.edges.push(VolumeEdge {
+            from: corner(from).to_array(),
+            flags,
+            to: corner(to).to_array(),
+            padding: 0,
+            plane0: planes[first as usize],
+            plane1: second.map_or([0.0; 4], |(second, _)| planes[second as usize]),
+        });
+    };
+    let mut further = edges.further_faces.iter().peekable();
+    for (number, edge) in (0u32..).zip(&edges.edges) {
+        let [first, second] = edge.faces();
+        let is_casting = |face: u32| face != NO_FACE && casting[face as usize];
+        if edge.kind() == EdgeKind::TwoFace && is_casting(first) && is_casting(second) {
+            add(edge.ends, first, Some((second, edge.wound_oppositely())));
+        } else {
+            for face in [first, second].into_iter().filter(|&face| is_casting(face)) {
+                let [from, to] = edge.ends;
+                add(if runs(face, edge.ends) { [from, to] } else { [to, from] }, face, None);
+            }
+        }
+        while let Some(&(_, face)) = further.next_if(|(of, _)| *of == number) {
+            if is_casting(face) {
+                let [from, to] = edge.ends;
+                add(if runs(face, edge.ends) { [from, to] } else { [to, from] }, face, None);
+            }
+        }
+    }
+    casters
+}
+
+/// The plane of a triangle as it is wound: a unit normal and −n · a; zeros where it has no area.
+fn plane(corners: [Vec3; 3], origin: Vec3) -> [f32; 4] {
+    let [a, b, c] = corners.map(|corner| corner.as_dvec3() - origin.as_dvec3());
+    // Brought to a common size, so that no square leaves the range.
+    let (ab, ac) = (b - a, c - a);
+    let size = ab.abs().max_element().max(ac.abs().max_element());
+    let normal = (ab / size).cross(ac / size).normalize_or_zero();
+    if normal == DVec3::ZERO || !normal.is_finite() {
+        return [0.0; 4];
+    }
+    normal.as_vec3().extend(-normal.dot(a) as f32).to_array()
+}
+
+/// Per face whether its part of the surface is not closed, or is not wound alike.
+fn open_faces(edges: &Edges, casting: &[bool]) -> Vec<bool> {
+    let mut above: Vec<u32> = (0..casting.len() as u32).collect();
+    fn root(above: &mut [u32], mut face: u32) -> u32 {
+        while above[face as usize] != face {
+            above[face as usize] = above[above[face as usize] as usize];
+            face = above[face as usize];
+        }
+        face
+    }
+    let fits = |edge: &Edge| {
+        edge.kind() == EdgeKind::TwoFace
+            && !edge.wound_oppositely()
+            && edge.faces().into_iter().all(|face| casting[face as usize])
+    };
+    for edge in edges.edges.iter().filter(|edge| fits(edge)) {
+        let [a, b] = edge.faces().map(|face| root(&mut above, face));
+        above[a.max(b) as usize] = a.min(b);
+    }
+    let mut open = vec![false; casting.len()];
+    let mut open_up = |above: &mut [u32], face: u32| {
+        if face != NO_FACE {
+            open[root(above, face) as usize] = true;
+        }
+    };
+    for edge in edges.edges.iter().filter(|edge| !fits(edge)) {
+        edge.faces().into_iter().for_each(|face| open_up(&mut above, face));
+    }
+    edges.further_faces.iter().for_each(|&(_, face)| open_up(&mut above, face));
+    (0..casting.len() as u32).map(|face| open[root(&mut above, face) as usize]).collect()
+}
+
+/// 1 where a face is turned towards the light, −1 where away from it: how it casts.
+#[inline]
+pub fn outline_turn(plane: [f32; 4], light: Vec4) -> i32 {
+    if outline_facing(plane, light) >= 0.0 { 1 } else { -1 }
+}
+
+/// How a face casts: 1 turned towards the light, −1 away from it, 0 not at all.
+#[inline]
+pub fn outline_casting(plane: [f32; 4], open: bool, light: Vec4) -> i32 {
+    let turn = outline_turn(plane, light);
+    if open { turn } else { turn.max(0) }
+}
+
+/// How often an edge sweeps, −2..=2: from `from` to `to` if positive, else from `to` to `from`.
+///
+/// `light`: relative to [`ShadowCasters::origin`], a point with w = 1 or the direction to the light with w = 0.
+#[inline]
+pub fn outline_sweeps(edge: &VolumeEdge, light: Vec4) -> i32 {
+    let mut sweeps = outline_casting(edge.plane0, edge.flags & VOLUME_OPEN != 0, light);
+    if edge.flags & VOLUME_SECOND != 0 {
+        let second = outline_casting(edge.plane1, edge.flags & VOLUME_SECOND_OPEN != 0, light);
+        sweeps += if edge.flags & VOLUME_SAME_WAY != 0 { second } else { -second };
+    }
+    sweeps
+}
+
+/// Where what lies at a point ends up, swept away from the light to infinity: a direction, w = 0.
+///
+/// `light`: world space, a point with w = 1 or the direction to the light with w = 0.
+#[inline]
+pub fn outline_swept(point: DVec3, light: DVec4) -> DVec4 {
+    (point * light.w - light.truncate()).extend(0.0)
+}
+
+impl ShadowCasters {
+    /// The light in the planes' own coordinates. `light` is a world-space point with w = 1 or direction with w = 0.
+    pub fn local_light(&self, light: DVec4) -> Vec4 {
+        (light - self.origin.as_dvec3().extend(0.0) * light.w).as_vec4()
+    }
+
+    /// Gathers the edges that sweep and the faces that cap for a light: what is worth sending where the device is
+    /// software. `edges` and `faces` are emptied first; at most as many as there are.
+    ///
+    /// `light`: world space, a point with w = 1 or the direction to the light with w = 0.
+    pub fn scan(&self, light: DVec4, edges: &mut Vec<VolumeEdge>, faces: &mut Vec<VolumeFace>) {
+        let light = self.local_light(light);
+        edges.clear();
+        edges.extend(self.edges.iter().filter(|edge| outline_sweeps(edge, light) != 0));
+        faces.clear();
+        faces.extend(
+            self.faces.iter().filter(|face| outline_casting(face.plane, face.flags & VOLUME_OPEN != 0, light) != 0),
+        );
+    }
+
+    /// In how many volumes a point lies, by the signed crossings of a ray from it to `beyond`, a point that lies in none:
+    /// the definition, for tests, in f64. Sides are taken as they are swept, caps as they are turned.
+    pub fn count_at(&self, point: DVec3, beyond: DVec3, light: DVec4) -> i32 {
+        let local = self.local_light(light);
+        let mut count = 0;
+        let mut crossed = |corners: [DVec4; 3], times: i32| count += times * crossing(corners, point, beyond);
+        for edge in &self.edges {
+            let sweeps = outline_sweeps(edge, local);
+            let ends = [edge.from, edge.to].map(|end| Vec3::from(end).as_dvec3());
+            let [from, to] = if sweeps > 0 { ends } else { [ends[1], ends[0]] };
+            let [near_from, near_to] = [from, to].map(|end| end.extend(1.0));
+            let [far_from, far_to] = [from, to].map(|end| outline_swept(end, light));
+            crossed([near_to, near_from, far_from], sweeps.abs());
+            if light.w != 0.0 {
+                crossed([near_to, far_from, far_to], sweeps.abs());
+            }
+        }
+        for face in &self.faces {
+            let casting = outline_casting(face.plane, face.flags & VOLUME_OPEN != 0, local);
+            let corners = [face.a, face.b, face.c].map(|corner| Vec3::from(corner).as_dvec3());
+            crossed(corners.map(|corner| corner.extend(1.0)), casting);
+            if light.w != 0.0 {
+                let [a, b, c] = corners.map(|corner| outline_swept(corner, light));
+                crossed([a, c, b], casting);
+            }
+        }
+        count
+    }
+}
+
+/// 1 where the way from `inside` to `outside` leaves through a homogeneous triangle, counter-clockwise from outside, −1
+/// where it enters, 0 where it passes by.
+fn crossing(corners: [DVec4; 3], inside: DVec3, outside: DVec3) -> i32 {
+    // Signs of 4×4 determinants: the sides of planes through three homogeneous points.
+    let side = |a: DVec4, b: DVec4, c: DVec4, d: DVec4| glam::DMat4::from_cols(a, b, c, d).determinant();
+    let [a, b, c] = corners;
+    let (p, q) = (inside.extend(1.0), outside.extend(1.0));
+    let (at_p, at_q) = (side(a, b, c, p), side(a, b, c, q));
+    if at_p * at_q >= 0.0 {
+        return 0;
+    }
+    let [u, v, w] = [side(p, q, a, b), side(p, q, b, c), side(p, q, c, a)];
+    let within = (u > 0.0 && v > 0.0 && w > 0.0) || (u < 0.0 && v < 0.0 && w < 0.0);
+    if !within {
+        return 0;
+    }
+    if at_p > 0.0 { 1 } else { -1 }
+}
+
+#[cfg(test)]
+mod tests;

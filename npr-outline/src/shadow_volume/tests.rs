@@ -1,0 +1,154 @@
+use super::*;
+use npr_mesh::edges::{EdgeOptions, find};
+use npr_mesh::{Material, embedded};
+use proptest::prelude::*;
+
+fn casters_of(model: &Model) -> ShadowCasters {
+    let edges = find(&model.positions, &model.faces, &[], &model.face_material, &EdgeOptions::default());
+    shadow_casters(model, &edges)
+}
+
+fn soup(positions: Vec<Vec3>, faces: Vec<[u32; 3]>) -> Model {
+    Model {
+        normals: vec![Vec3::Y; positions.len()],
+        face_material: vec![0; faces.len()],
+        materials: vec![Material::default()],
+        positions,
+        faces,
+        ..Default::default()
+    }
+}
+
+fn far(to_light: DVec3) -> DVec4 {
+    to_light.extend(0.0)
+}
+
+fn near(place: DVec3) -> DVec4 {
+    place.extend(1.0)
+}
+
+/// A point in no volume: far towards the light, or right beside it.
+fn beyond(light: DVec4) -> DVec3 {
+    let aside = DVec3::new(0.31, -0.17, 0.23);
+    if light.w == 0.0 { light.truncate() * 1e3 + aside } else { light.truncate() + aside * 1e-4 }
+}
+
+/// How many faces that cast lie between a point and the light: the definition, by straight intersection in f64.
+fn layers(casters: &ShadowCasters, point: DVec3, light: DVec4) -> i32 {
+    let local = casters.local_light(light);
+    let way = light.truncate() - point * light.w;
+    let reach = if light.w == 0.0 { f64::INFINITY } else { 1.0 };
+    let hit = |face: &&VolumeFace| {
+        let [a, b, c] = [face.a, face.b, face.c].map(|corner| Vec3::from(corner).as_dvec3());
+        let n = (b - a).cross(c - a);
+        let t = n.dot(a - point) / n.dot(way);
+        let at = point + way * t;
+        let sides = [(a, b), (b, c), (c, a)].map(|(p, q)| n.dot((q - p).cross(at - p)));
+        t > 0.0 && t < reach && sides.iter().all(|&side| side > 0.0)
+    };
+    let casting = |face: &&VolumeFace| outline_casting(face.plane, face.flags & VOLUME_OPEN != 0, local) != 0;
+    casters.faces.iter().filter(casting).filter(hit).count() as i32
+}
+
+#[test]
+fn a_square_shadows_what_is_behind_it_whichever_way_it_is_wound() {
+    let positions = vec![Vec3::ZERO, Vec3::X, Vec3::new(1.0, 0.0, 1.0), Vec3::Z];
+    for faces in [vec![[0, 1, 2], [0, 2, 3]], vec![[0, 2, 1], [0, 3, 2]], vec![[0, 1, 2], [0, 3, 2]]] {
+        let casters = casters_of(&soup(positions.clone(), faces));
+        assert!(casters.open);
+        for light in [far(DVec3::Y), near(DVec3::new(0.4, 3.0, 0.4)), far(-DVec3::Y), near(DVec3::new(0.4, -3.0, 0.4))]
+        {
+            let (up, count) = (if light.y > 0.0 { 1.0 } else { -1.0 }, |at| casters.count_at(at, beyond(light), light));
+            assert_eq!(count(DVec3::new(0.3, -up, 0.55)), 1, "{light}");
+            assert_eq!(count(DVec3::new(0.3, up, 0.55)), 0, "{light}");
+            assert_eq!(count(DVec3::new(2.3, -up, 0.55)), 0, "{light}");
+            // The middle of the square is darkened once, whatever the winding: no crack and no double along the diagonal.
+            let (mut edges, mut faces) = (Vec::new(), Vec::new());
+            casters.scan(light, &mut edges, &mut faces);
+            assert_eq!((edges.len(), faces.len()), (4, 2));
+        }
+    }
+}
+
+#[test]
+fn of_a_cube_half_casts_and_its_contour_sweeps_once() {
+    let casters = casters_of(&embedded::cube());
+    assert!(!casters.open);
+    let (mut edges, mut faces) = (Vec::new(), Vec::new());
+    for light in [far(DVec3::new(1.0, 2.0, 3.0)), near(DVec3::new(5.0, 6.0, 7.0))] {
+        casters.scan(light, &mut edges, &mut faces);
+        assert_eq!((edges.len(), faces.len()), (6, 6));
+        let local = casters.local_light(light);
+        assert!(edges.iter().all(|edge| outline_sweeps(edge, local).abs() == 1));
+    }
+    // Straight above, and within, where every face is turned away and nothing casts.
+    casters.scan(far(DVec3::Y), &mut edges, &mut faces);
+    assert_eq!(faces.len(), 2 + 8, "edge-on counts as turned towards the light");
+    casters.scan(near(DVec3::ZERO), &mut edges, &mut faces);
+    assert_eq!((edges.len(), faces.len()), (0, 0));
+}
+
+#[test]
+fn three_faces_at_one_edge_cast_one_each() {
+    let positions = vec![Vec3::ZERO, Vec3::Z, Vec3::X, Vec3::NEG_X, Vec3::new(0.1, -1.0, 0.0)];
+    let casters = casters_of(&soup(positions, vec![[0, 1, 2], [1, 0, 3], [0, 1, 4]]));
+    let light = far(DVec3::new(0.05, 1.0, 0.0));
+    for at in [DVec3::new(0.2, -2.0, 0.3), DVec3::new(-0.4, -2.0, 0.3), DVec3::new(3.0, -2.0, 0.3)] {
+        assert_eq!(casters.count_at(at, beyond(light), light), layers(&casters, at, light), "{at}");
+    }
+    assert_eq!(casters.edges.iter().filter(|edge| edge.flags & VOLUME_SECOND != 0).count(), 0);
+}
+
+#[test]
+fn doubled_and_blended_faces_cast_nothing_more() {
+    let positions = vec![Vec3::ZERO, Vec3::X, Vec3::Z];
+    let light = far(DVec3::Y);
+    let below = DVec3::new(0.2, -1.0, 0.2);
+    let doubled = casters_of(&soup(positions.clone(), vec![[0, 1, 2], [2, 1, 0]]));
+    assert_eq!((doubled.faces.len(), doubled.count_at(below, beyond(light), light)), (1, 1));
+    let mut glass = soup(positions, vec![[0, 1, 2]]);
+    glass.materials[0].alpha_mode = AlphaMode::Blend;
+    assert_eq!(casters_of(&glass), ShadowCasters { origin: casters_of(&glass).origin, ..Default::default() });
+}
+
+#[test]
+fn the_teapot_on_the_ground_is_counted_as_its_faces_are() {
+    let model = embedded::scene();
+    let casters = casters_of(&model);
+    assert!(casters.open, "the ground is");
+    assert!(casters.faces.iter().any(|face| face.flags == 0), "the solids are closed");
+    let (low, high) = model.bounds().unwrap();
+    let size = (high - low).as_dvec3();
+    for light in [far(DVec3::new(0.3, 1.0, 0.4)), near(high.as_dvec3() + size * 0.4)] {
+        for step in 0..40 {
+            let along = DVec3::new(0.618_034, 0.754_878, 0.569_840) * f64::from(step);
+            let at = low.as_dvec3() + size * along.fract();
+            assert_eq!(casters.count_at(at, beyond(light), light), layers(&casters, at, light), "{at} {light}");
+        }
+    }
+}
+
+/// Corners of a lattice, so that faces share edges and corners, fold, coincide and lose their area.
+fn lattice() -> impl Strategy<Value = (Vec<Vec3>, Vec<[u32; 3]>)> {
+    let corner = prop::array::uniform3(0..3i8).prop_map(|c| Vec3::from(c.map(f32::from)));
+    (prop::collection::vec(corner, 4..12), 1..14usize).prop_flat_map(|(corners, faces)| {
+        let count = corners.len() as u32;
+        (Just(corners), prop::collection::vec(prop::array::uniform3(0..count), faces))
+    })
+}
+
+proptest! {
+    #[test]
+    fn volumes_of_any_soup_count_the_faces_before_the_light(
+        (corners, faces) in lattice(),
+        at in prop::array::uniform3(-1.0..3.0f64),
+        light in prop::array::uniform3(-4.0..6.0f64),
+        is_near in any::<bool>(),
+    ) {
+        let casters = casters_of(&soup(corners, faces));
+        // In no plane of the lattice.
+        let (at, light) = (DVec3::from(at) + 0.001_234, DVec3::from(light) + DVec3::new(0.004_1, 0.007_3, 0.002_9));
+        let light = if is_near { near(light) } else { far(light) };
+        prop_assert_eq!(casters.count_at(at, beyond(light), light), layers(&casters, at, light));
+    }
+}
