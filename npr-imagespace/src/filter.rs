@@ -24,7 +24,8 @@ pub mod printed;
 pub mod region;
 pub mod separate;
 
-/// WGSL of the modules in this one: no bindings, no entry points. Needs [`crate::format::FORMAT_WGSL`].
+/// WGSL of the modules in this one: no bindings, no entry points. Needs [`crate::format::FORMAT_WGSL`]
+/// and [`crate::shadow::SHADOW_WGSL`].
 pub const FILTER_WGSL: &str = concat!(
     include_str!("filter.wgsl"),
     include_str!("filter/normal.wgsl"),

@@ -33,6 +33,7 @@
 //! 1. [`mod@format`]: normal, region and depth of a pixel as a G-buffer holds them, encoded and decoded.
 //! 2. [`region`], [`artist`]: what else than the surface's own normals draws lines: numbers of regions, and directions
 //!    that no visible surface has.
+//!    [`shadow`]: whether they lie in shadow.
 //! 3. [`filter`]: where neighbouring pixels differ there is ink.
 //! 4. [`morphology`]: thicker, thinner, opened and closed.
 //! 5. [`composite`], [`resample`]: ink over a picture, also of another size.
@@ -75,14 +76,15 @@ pub mod pass;
 pub mod picture;
 pub mod region;
 pub mod resample;
+pub mod shadow;
 
 pub use error::ImageSpaceError;
 
 /// The functions of this crate in WGSL: no bindings, no entry points, every name begins with `ink_`, `INK_` or `Ink`.
 ///
-/// It is all parts in a row: [`picture::PICTURE_WGSL`], [`format::FORMAT_WGSL`], [`filter::FILTER_WGSL`],
-/// [`morphology::MORPHOLOGY_WGSL`], [`composite::COMPOSITE_WGSL`], [`resample::RESAMPLE_WGSL`] and
-/// [`artist::ARTIST_WGSL`]. Each stands alone, but for the filters, which need the formats.
+/// It is all parts in a row: [`picture::PICTURE_WGSL`], [`format::FORMAT_WGSL`], [`shadow::SHADOW_WGSL`],
+/// [`filter::FILTER_WGSL`], [`morphology::MORPHOLOGY_WGSL`], [`composite::COMPOSITE_WGSL`], [`resample::RESAMPLE_WGSL`]
+/// and [`artist::ARTIST_WGSL`]. Each stands alone, but for the filters, which need the formats and the shadows.
 pub const WGSL: &str = concat!(
     include_str!("picture.wgsl"),
     include_str!("format.wgsl"),
@@ -90,6 +92,7 @@ pub const WGSL: &str = concat!(
     include_str!("format/depth.wgsl"),
     include_str!("format/normal.wgsl"),
     include_str!("format/texel.wgsl"),
+    include_str!("shadow.wgsl"),
     include_str!("filter.wgsl"),
     include_str!("filter/normal.wgsl"),
     include_str!("filter/depth.wgsl"),

@@ -1,7 +1,6 @@
 //! Region numbers: what the region filter draws borders between. 0 is background, so numbers start at 1.
 //!
-//! By material, by mesh, by smooth-connected patch, by a texture's colours, in shadow and out of it, and any of them
-//! together. They are numbers of any size here; [`crate::format::texel`] folds them to what a texel has room for.
+//! By material, by mesh, by smooth-connected patch, by a texture's colours, and any of them together. They are numbers of any size here; [`crate::format::texel`] folds them to what a texel has room for.
 
 use crate::ImageSpaceError;
 use std::collections::HashMap;
@@ -81,12 +80,4 @@ pub fn ink_region_pair(a: u32, b: u32) -> u32 {
     // Fibonacci hashing: the upper bits of a product with 2^32 over the golden ratio.
     let mixed = (a.wrapping_mul(0x9e37_79b1) ^ b).wrapping_mul(0x85eb_ca6b);
     1 + (mixed >> 8) % 0x00ff_ffff
-}
-
-/// A region in the light and in shadow: two numbers, so that the shadow's outline is a border of regions.
-///
-/// The papers negate the normals in shadow. A shadowed surface with normal n is then like a lit one with −n, the line
-/// between the two vanishes, and negated depth does not fit an unsigned format; a bit has neither fault.
-pub fn ink_region_in_shadow(region: u32, shadowed: bool) -> u32 {
-    if region == 0 { 0 } else { 2 * region - u32::from(!shadowed) }
 }

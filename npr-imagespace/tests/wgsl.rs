@@ -15,6 +15,7 @@ use npr_imagespace::format::texel::DepthCode;
 use npr_imagespace::morphology::MORPHOLOGY_WGSL;
 use npr_imagespace::picture::PICTURE_WGSL;
 use npr_imagespace::resample::RESAMPLE_WGSL;
+use npr_imagespace::shadow::SHADOW_WGSL;
 use std::mem::{offset_of, size_of};
 
 fn validated(source: &str) -> Module {
@@ -48,12 +49,21 @@ fn is_a_library() {
 
 #[test]
 fn the_parts_stand_alone_and_are_the_whole() {
-    let parts = [PICTURE_WGSL, FORMAT_WGSL, FILTER_WGSL, MORPHOLOGY_WGSL, COMPOSITE_WGSL, RESAMPLE_WGSL, ARTIST_WGSL];
+    let parts = [
+        PICTURE_WGSL,
+        FORMAT_WGSL,
+        SHADOW_WGSL,
+        FILTER_WGSL,
+        MORPHOLOGY_WGSL,
+        COMPOSITE_WGSL,
+        RESAMPLE_WGSL,
+        ARTIST_WGSL,
+    ];
     assert_eq!(parts.concat(), WGSL);
-    for part in [PICTURE_WGSL, FORMAT_WGSL, MORPHOLOGY_WGSL, COMPOSITE_WGSL, RESAMPLE_WGSL, ARTIST_WGSL] {
+    for part in [PICTURE_WGSL, FORMAT_WGSL, SHADOW_WGSL, MORPHOLOGY_WGSL, COMPOSITE_WGSL, RESAMPLE_WGSL, ARTIST_WGSL] {
         validated(part);
     }
-    validated(&[FORMAT_WGSL, FILTER_WGSL].concat());
+    validated(&[FORMAT_WGSL, SHADOW_WGSL, FILTER_WGSL].concat());
 }
 
 /// Every function of the WGSL stands in the Rust files, but for helpers of the WGSL that have no Rust form.
@@ -82,6 +92,7 @@ fn functions_have_the_names_of_the_rust_ones() {
         "ink_depth_step_tap",
         "ink_normal_tap",
         "ink_oct_decode",
+        "ink_shadows_differ",
         "ink_tap_cross",
         "ink_tap_diagonal",
         "ink_taps_bends",
@@ -89,6 +100,7 @@ fn functions_have_the_names_of_the_rust_ones() {
         "ink_taps_depth_thresholds",
         "ink_taps_normals_differ",
         "ink_taps_normals_soft",
+        "ink_taps_shadows_differ",
     ];
     for (_, function) in validated(WGSL).functions.iter() {
         let name = function.name.as_deref().unwrap();
@@ -120,7 +132,19 @@ fn uniforms_have_the_layout_of_the_shader() {
     assert_layout!(
         "InkFilter",
         FilterUniform,
-        [asked, normal_cos2, depth_slack, depth_base, depth_step, depth_shift, weight, normal_cos, softness]
+        [
+            asked,
+            normal_cos2,
+            depth_slack,
+            depth_base,
+            depth_step,
+            depth_shift,
+            weight,
+            normal_cos,
+            softness,
+            region_mask,
+            shadow_bits
+        ]
     );
     assert_layout!("InkInker", InkerUniform, [form, normal_cos, normal_fall, depth_delta, softness]);
     assert_layout!("InkPrinted", PrintedUniform, [normal_threshold, depth_threshold, depth_form]);

@@ -31,13 +31,13 @@ fn vs_side(
     if u32(abs(sweeps)) <= index / sweep_vertices {
         return Placed(NOWHERE);
     }
-    let from = select(second, first, sweeps > 0);
-    let to = select(first, second, sweeps > 0);
-    var place = vec4<f32>(to, 1.0);
+    let start = select(second, first, sweeps > 0);
+    let end = select(first, second, sweeps > 0);
+    var place = vec4<f32>(end, 1.0);
     switch index % sweep_vertices {
-        case 1u: { place = vec4<f32>(from, 1.0); }
-        case 2u, 4u: { place = outline_swept(from, view.light); }
-        case 5u: { place = outline_swept(to, view.light); }
+        case 1u: { place = vec4<f32>(start, 1.0); }
+        case 2u, 4u: { place = outline_swept(start, view.light); }
+        case 5u: { place = outline_swept(end, view.light); }
         default: {}
     }
     return Placed(view.clip_from_world * place);

@@ -5,6 +5,7 @@
 //!
 //! - one of the two is background and the other is not (if both are, it does not, whatever else they hold); or
 //! - regions are asked for and r ≠ rᵢ; or
+//! - shadows are asked for, one of the two is lit and the other in a cast shadow ([`crate::shadow`]); or
 //! - normals are asked for and a · aᵢ < t |a| |aᵢ|, which is decided as a · aᵢ < 0 or (a · aᵢ)² < t² |a|² |aᵢ|²: dot
 //!   products of whole numbers, exact in f32 however they are summed, and three products, each rounded to the nearest;
 //!   or
@@ -27,6 +28,7 @@ use crate::filter::ink_ramp;
 use crate::filter::normal::COS_OS;
 use crate::format::texel::{DepthCode, Tap, TexelLayout};
 use crate::picture::Taps;
+use crate::shadow::ink_shadow_differs;
 use bytemuck::{Pod, Zeroable};
 use glam::IVec3;
 
@@ -39,6 +41,8 @@ pub struct FusedFilter {
     pub depth: Option<DepthTest>,
     /// Borders of regions.
     pub regions: bool,
+    /// Borders of shadows.
+    pub shadows: ShadowTest,
     /// Where it looks.
     pub taps: Taps,
     /// 0 for hard lines; else the width of the transition, in cosines for normals and as a share of its threshold for
@@ -55,6 +59,20 @@ pub struct DepthTest {
     pub plain: bool,
 }
 
+/// What texels say of shadows, and what becomes of it: see [`crate::shadow`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum ShadowTest {
+    /// They say nothing: all bits of a region's number are its own.
+    #[default]
+    Absent,
+    /// They do, and it is left to another pass.
+    Ignored,
+    /// The borders of shadows are lines like the others.
+    Lines,
+    /// They alone are lines, where none of the others is: for shadow lines of another colour or width.
+    Alone,
+}
+
 impl Default for DepthTest {
     fn default() -> Self {
         Self { step: BEND, plain: false }
@@ -68,6 +86,7 @@ impl Default for FusedFilter {
             normal_cos: Some(COS_OS),
             depth: Some(DepthTest::default()),
             regions: true,
+            shadows: ShadowTest::Absent,
             taps: Taps::Diagonal,
             softness: 0.0,
         }
@@ -82,6 +101,10 @@ pub const ASKED_BEND: u32 = 2;
 pub const ASKED_STEP: u32 = 4;
 /// In [`FilterUniform::asked`]: regions.
 pub const ASKED_REGION: u32 = 8;
+/// In [`FilterUniform::asked`]: borders of shadows.
+pub const ASKED_SHADOW: u32 = 16;
+/// In [`FilterUniform::asked`]: borders of shadows, and of the others only where they are not.
+pub const ASKED_ALONE: u32 = 32;
 
 /// A [`FusedFilter`] in the integers of a layout: `InkFilter` of the WGSL, 48 bytes.
 #[repr(C)]
@@ -105,8 +128,12 @@ pub struct FilterUniform {
     pub normal_cos: f32,
     /// In cosines; 0 for hard lines.
     pub softness: f32,
+    /// The bits of a region that number it.
+    pub region_mask: u32,
+    /// The bits of a region that say whether it is in shadow; 0 for none.
+    pub shadow_bits: u32,
     /// Unused, 0.
-    pub padding: [u32; 3],
+    pub padding: u32,
 }
 
 impl FilterUniform {
@@ -134,11 +161,17 @@ impl FilterUniform {
             (-step * f64::from(code.bias), step)
         };
         let most = f64::from(layout.depth_most());
+        let shadow_bits = if filter.shadows == ShadowTest::Absent { 0 } else { layout.shadow_bits() };
         let asked_depth = if test.plain { ASKED_STEP } else { ASKED_BEND };
         Ok(Self {
             asked: filter.normal_cos.map_or(0, |_| ASKED_NORMAL)
                 | filter.depth.map_or(0, |_| asked_depth)
-                | if filter.regions { ASKED_REGION } else { 0 },
+                | if filter.regions { ASKED_REGION } else { 0 }
+                | match filter.shadows {
+                    ShadowTest::Absent | ShadowTest::Ignored => 0,
+                    ShadowTest::Lines => ASKED_SHADOW,
+                    ShadowTest::Alone => ASKED_SHADOW | ASKED_ALONE,
+                },
             normal_cos2: cos * cos,
             depth_slack: layout.depth_slack(),
             // No difference of three codes exceeds twice the largest.
@@ -148,7 +181,9 @@ impl FilterUniform {
             weight: filter.taps.weight(),
             normal_cos: cos,
             softness: filter.softness,
-            padding: [0; 3],
+            region_mask: !shadow_bits,
+            shadow_bits,
+            padding: 0,
         })
     }
 }
@@ -180,19 +215,37 @@ fn step_excess(filter: &FilterUniform, a: &Tap, b: &Tap) -> (i32, i32) {
     ((a.depth - b.depth).abs() - threshold, threshold)
 }
 
-/// Whether a tap lies across a border.
+/// Whether a tap shows a surface. A state of shadow without a region does not make one.
+fn is_surface(filter: &FilterUniform, tap: &Tap) -> bool {
+    tap.region & filter.region_mask != 0
+}
+
+/// Whether a tap lies across a border of shadows.
+pub fn ink_tap_shadow_differs(filter: &FilterUniform, centre: &Tap, tap: &Tap) -> bool {
+    filter.asked & ASKED_SHADOW != 0
+        && is_surface(filter, centre)
+        && is_surface(filter, tap)
+        && ink_shadow_differs(centre.region & filter.shadow_bits, tap.region & filter.shadow_bits, filter.shadow_bits)
+}
+
+/// Whether regions are asked for and differ.
+fn region_differs(filter: &FilterUniform, a: &Tap, b: &Tap) -> bool {
+    filter.asked & ASKED_REGION != 0 && (a.region ^ b.region) & filter.region_mask != 0
+}
+
+/// Whether a tap lies across a border, but for those of shadows.
 pub fn ink_tap_across(filter: &FilterUniform, centre: &Tap, tap: &Tap) -> bool {
-    if centre.region == 0 || tap.region == 0 {
-        return centre.region != tap.region;
+    if !(is_surface(filter, centre) && is_surface(filter, tap)) {
+        return is_surface(filter, centre) != is_surface(filter, tap);
     }
-    (filter.asked & ASKED_REGION != 0 && centre.region != tap.region)
+    region_differs(filter, centre, tap)
         || (filter.asked & ASKED_STEP != 0 && step_excess(filter, centre, tap).0 > 0)
         || (filter.asked & ASKED_NORMAL != 0 && ink_tap_normal_differs(filter, centre.normal, tap.normal))
 }
 
 /// By how much a pair's bend exceeds its threshold, and the threshold; none beside the background.
 fn bend_excess(filter: &FilterUniform, a: &Tap, centre: &Tap, b: &Tap) -> Option<(i32, i32)> {
-    if filter.asked & ASKED_BEND == 0 || a.region == 0 || centre.region == 0 || b.region == 0 {
+    if filter.asked & ASKED_BEND == 0 || ![a, centre, b].into_iter().all(|tap| is_surface(filter, tap)) {
         return None;
     }
     let threshold = ink_tap_depth_threshold(filter, a.depth.max(centre.depth).max(b.depth));
@@ -206,9 +259,11 @@ pub fn ink_tap_bends(filter: &FilterUniform, a: &Tap, centre: &Tap, b: &Tap) -> 
 
 /// Whether a pixel is a line.
 pub fn ink_fused_hard(filter: &FilterUniform, centre: &Tap, taps: &[Tap; 4]) -> bool {
-    taps.iter().any(|tap| ink_tap_across(filter, centre, tap))
+    let others = taps.iter().any(|tap| ink_tap_across(filter, centre, tap))
         || ink_tap_bends(filter, &taps[0], centre, &taps[2])
-        || ink_tap_bends(filter, &taps[1], centre, &taps[3])
+        || ink_tap_bends(filter, &taps[1], centre, &taps[3]);
+    let shadows = taps.iter().any(|tap| ink_tap_shadow_differs(filter, centre, tap));
+    if filter.asked & ASKED_ALONE != 0 { shadows && !others } else { shadows || others }
 }
 
 /// The soft form of [`ink_tap_normal_differs`].
@@ -228,10 +283,10 @@ fn depth_soft(filter: &FilterUniform, (excess, threshold): (i32, i32)) -> f64 {
 
 /// The soft form of [`ink_tap_across`].
 pub fn ink_tap_soft(filter: &FilterUniform, centre: &Tap, tap: &Tap) -> f64 {
-    if centre.region == 0 || tap.region == 0 {
-        return f64::from(u8::from(centre.region != tap.region));
+    if !(is_surface(filter, centre) && is_surface(filter, tap)) {
+        return f64::from(u8::from(is_surface(filter, centre) != is_surface(filter, tap)));
     }
-    if filter.asked & ASKED_REGION != 0 && centre.region != tap.region {
+    if region_differs(filter, centre, tap) {
         return 1.0;
     }
     let mut ink = 0.0f64;
@@ -244,15 +299,24 @@ pub fn ink_tap_soft(filter: &FilterUniform, centre: &Tap, tap: &Tap) -> f64 {
     ink
 }
 
-/// Ink of a pixel, 0..=1: weight · max(Σ taps, Σ pairs), at most 1.
+/// Ink of a pixel, 0..=1: weight · max(Σ taps, Σ pairs), at most 1. A border of shadows is one of taps; asked for alone,
+/// its taps' ink fades where there is ink of others.
 pub fn ink_fused_soft(filter: &FilterUniform, centre: &Tap, taps: &[Tap; 4]) -> f64 {
-    let across: f64 = taps.iter().map(|tap| ink_tap_soft(filter, centre, tap)).sum();
+    let weight = f64::from(filter.weight);
+    let shadow = |tap: &Tap| f64::from(u8::from(ink_tap_shadow_differs(filter, centre, tap)));
+    let alone = filter.asked & ASKED_ALONE != 0;
+    let across = |tap: &Tap| {
+        let ink = ink_tap_soft(filter, centre, tap);
+        if alone { ink } else { ink.max(shadow(tap)) }
+    };
+    let across: f64 = taps.iter().map(across).sum();
     let bends: f64 = [(0, 2), (1, 3)]
         .into_iter()
         .filter_map(|(a, b)| bend_excess(filter, &taps[a], centre, &taps[b]))
         .map(|excess| depth_soft(filter, excess))
         .sum();
-    (f64::from(filter.weight) * across.max(bends)).min(1.0)
+    let ink = (weight * across.max(bends)).min(1.0);
+    if alone { (weight * taps.iter().map(shadow).sum::<f64>()).min(1.0) * (1.0 - ink) } else { ink }
 }
 
 /// Ink of a pixel, 0..=1, hard or soft as the filter says.

@@ -17,15 +17,18 @@ struct InkFilter {
     normal_cos: f32,
     // 0 for hard lines.
     softness: f32,
-    padding0: u32,
-    padding1: u32,
-    padding2: u32,
+    // The bits of a region that number it, and those that say whether it is in shadow.
+    region_mask: u32,
+    shadow_bits: u32,
+    padding: u32,
 }
 
 const INK_ASKED_NORMAL: u32 = 1u;
 const INK_ASKED_BEND: u32 = 2u;
 const INK_ASKED_STEP: u32 = 4u;
 const INK_ASKED_REGION: u32 = 8u;
+const INK_ASKED_SHADOW: u32 = 16u;
+const INK_ASKED_ALONE: u32 = 32u;
 
 // The four taps side by side: for each whether, or by how much, it lies across. Only the uniform's wishes are
 // branched on.
@@ -52,6 +55,14 @@ fn ink_taps_bends(what: InkFilter, centre: i32, depths: vec4<i32>) -> vec4<i32> 
     return vec4<i32>(bends, ink_taps_depth_thresholds(what, nearest.xyxy).xy);
 }
 
+// Which taps lie across a border of shadows.
+fn ink_taps_shadows_differ(what: InkFilter, centre: u32, regions: vec4<u32>) -> vec4<bool> {
+    let bits = vec4<u32>(what.shadow_bits);
+    let surfaces = ((regions & vec4<u32>(what.region_mask)) != vec4<u32>(0u))
+        & vec4<bool>((centre & what.region_mask) != 0u);
+    return surfaces & ink_shadows_differ(vec4<u32>(centre) & bits, regions & bits, bits);
+}
+
 // Whether a pixel is a line.
 fn ink_fused_hard(
     what: InkFilter,
@@ -61,13 +72,15 @@ fn ink_fused_hard(
     tap2: InkTap,
     tap3: InkTap,
 ) -> bool {
-    let regions = vec4<u32>(tap0.region, tap1.region, tap2.region, tap3.region);
+    let words = vec4<u32>(tap0.region, tap1.region, tap2.region, tap3.region);
+    let regions = words & vec4<u32>(what.region_mask);
+    let region = centre.region & what.region_mask;
     let depths = vec4<i32>(tap0.depth, tap1.depth, tap2.depth, tap3.depth);
-    let surface = vec4<bool>(centre.region != 0u);
+    let surface = vec4<bool>(region != 0u);
     let surfaces = regions != vec4<u32>(0u);
     var across = surfaces != surface;
     if (what.asked & INK_ASKED_REGION) != 0u {
-        across = regions != vec4<u32>(centre.region);
+        across = regions != vec4<u32>(region);
     }
     if (what.asked & INK_ASKED_STEP) != 0u {
         let thresholds = ink_taps_depth_thresholds(what, max(depths, vec4<i32>(centre.depth)));
@@ -88,6 +101,13 @@ fn ink_fused_hard(
         let bends = ink_taps_bends(what, centre.depth, depths);
         let bent = surfaces.xy & surfaces.zw & surface.xy & (bends.xy > bends.zw);
         across = across | bent.xyxy;
+    }
+    if (what.asked & INK_ASKED_SHADOW) != 0u {
+        let shadows = ink_taps_shadows_differ(what, centre.region, words);
+        if (what.asked & INK_ASKED_ALONE) != 0u {
+            return any(shadows) && !any(across);
+        }
+        across = across | shadows;
     }
     return any(across);
 }
@@ -116,9 +136,11 @@ fn ink_fused_soft(
     tap2: InkTap,
     tap3: InkTap,
 ) -> f32 {
-    let regions = vec4<u32>(tap0.region, tap1.region, tap2.region, tap3.region);
+    let words = vec4<u32>(tap0.region, tap1.region, tap2.region, tap3.region);
+    let regions = words & vec4<u32>(what.region_mask);
+    let region = centre.region & what.region_mask;
     let depths = vec4<i32>(tap0.depth, tap1.depth, tap2.depth, tap3.depth);
-    let surface = vec4<bool>(centre.region != 0u);
+    let surface = vec4<bool>(region != 0u);
     let surfaces = regions != vec4<u32>(0u);
     let paper = vec4<f32>(0.0);
     var ink = paper;
@@ -140,7 +162,14 @@ fn ink_fused_soft(
     ink = select(paper, ink, surfaces & surface);
     var across = surfaces != surface;
     if (what.asked & INK_ASKED_REGION) != 0u {
-        across = regions != vec4<u32>(centre.region);
+        across = regions != vec4<u32>(region);
+    }
+    var shadows = paper;
+    if (what.asked & INK_ASKED_SHADOW) != 0u {
+        shadows = select(paper, vec4<f32>(1.0), ink_taps_shadows_differ(what, centre.region, words));
+        if (what.asked & INK_ASKED_ALONE) == 0u {
+            ink = max(ink, shadows);
+        }
     }
     ink = select(ink, vec4<f32>(1.0), across);
     var bent = vec2<f32>(0.0);
@@ -149,7 +178,11 @@ fn ink_fused_soft(
         bent = ink_taps_depth_soft(what, bends.xyxy, bends.zwzw).xy;
         bent = select(vec2<f32>(0.0), bent, surfaces.xy & surfaces.zw & surface.xy);
     }
-    return min(what.weight * max(ink.x + ink.y + (ink.z + ink.w), bent.x + bent.y), 1.0);
+    let line = min(what.weight * max(ink.x + ink.y + (ink.z + ink.w), bent.x + bent.y), 1.0);
+    if (what.asked & INK_ASKED_ALONE) != 0u {
+        return min(what.weight * (shadows.x + shadows.y + (shadows.z + shadows.w)), 1.0) * (1.0 - line);
+    }
+    return line;
 }
 
 // Ink of a pixel, 0..1, hard or soft as the filter says.

@@ -58,6 +58,16 @@ impl TexelLayout {
         }
     }
 
+    /// The largest number of a region beside a state of shadow, which takes two bits of it: [`crate::shadow`].
+    pub const fn shadowed_region_most(self) -> u32 {
+        self.region_most() >> 2
+    }
+
+    /// Where a region's number holds a state of shadow, where it does.
+    pub const fn shadow_bits(self) -> u32 {
+        self.region_most() & !self.shadowed_region_most()
+    }
+
     /// What the octahedral numbers run to.
     pub const fn normal_most(self) -> i32 {
         match self {

@@ -50,11 +50,6 @@ fn ink_region_pair(a: u32, b: u32) -> u32 {
     return select(1u + (mixed >> 8u) % 0xffffffu, 0u, a == 0u || b == 0u);
 }
 
-// A region in the light and in shadow: two numbers.
-fn ink_region_in_shadow(region: u32, shadowed: bool) -> u32 {
-    return select(2u * region - select(1u, 0u, shadowed), 0u, region == 0u);
-}
-
 // A surface in one word, for an r32uint target. The region is folded.
 fn ink_narrow_word(normal: vec3<f32>, folded: u32, depth_code: u32) -> u32 {
     let oct = ink_oct_encode(normal, INK_OCT5_MOST);

@@ -28,7 +28,7 @@ use super::fullscreen::uniform;
 use super::fused::TAPS_WGSL;
 use crate::ImageSpaceError;
 use crate::composite::{Composite, ink_alpha_passes};
-use crate::filter::fused::{FilterUniform, FusedFilter};
+use crate::filter::fused::{FilterUniform, FusedFilter, ShadowTest};
 use crate::format::texel::{DepthCode, TexelLayout};
 use crate::picture::Taps;
 use bytemuck::{Pod, Zeroable};
@@ -65,9 +65,10 @@ fn opaque_line(composite: &Composite) -> Option<Vec3> {
     }
 }
 
-/// Whether a filter under a composite can be drawn by strips: the filter is hard, and its lines are opaque.
+/// Whether a filter under a composite can be drawn by strips: the filter is hard, looks not for shadows alone, and its
+/// lines are opaque.
 pub fn serves(filter: &FusedFilter, composite: &Composite) -> bool {
-    filter.softness == 0.0 && opaque_line(composite).is_some()
+    filter.softness == 0.0 && filter.shadows != ShadowTest::Alone && opaque_line(composite).is_some()
 }
 
 /// The pipelines of a hard filter, for a layout.
@@ -81,12 +82,19 @@ pub struct FusedStrips {
     made_for: Structure,
 }
 
-/// What of a filter the pipelines are made for: taps, and whether normals, depth (plain or not) and regions count.
-pub type Structure = (Taps, bool, Option<bool>, bool);
+/// What of a filter the pipelines are made for: taps, and whether normals, depth (plain or not) regions and shadows
+/// count.
+pub type Structure = (Taps, bool, Option<bool>, bool, bool);
 
 /// The same for two filters that differ in their thresholds alone.
 pub fn structure(filter: &FusedFilter) -> Structure {
-    (filter.taps, filter.normal_cos.is_some(), filter.depth.map(|test| test.plain), filter.regions)
+    (
+        filter.taps,
+        filter.normal_cos.is_some(),
+        filter.depth.map(|test| test.plain),
+        filter.regions,
+        filter.shadows == ShadowTest::Lines,
+    )
 }
 
 impl FusedStrips {
@@ -111,6 +119,7 @@ impl FusedStrips {
             constant("asks_bends", filter.depth.is_some_and(|test| !test.plain)),
             constant("asks_steps", filter.depth.is_some_and(|test| test.plain)),
             constant("asks_regions", filter.regions),
+            constant("asks_shadows", filter.shadows == ShadowTest::Lines),
             ("rows", f64::from(ROWS)),
         ];
         let pipeline = |entry, constants: &[_]| {

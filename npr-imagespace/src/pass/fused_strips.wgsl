@@ -22,6 +22,7 @@ override asks_normals: bool;
 override asks_bends: bool;
 override asks_steps: bool;
 override asks_regions: bool;
+override asks_shadows: bool;
 // Of a strip; a multiple of 4.
 override rows: i32;
 
@@ -41,6 +42,8 @@ struct Texels {
     // On differences of depth codes of which this one is the largest. It never falls as the code grows, so that of
     // several thresholds the largest is that of the largest code.
     threshold: vec4<i32>,
+    // The state of shadow, if asked for.
+    shadow: vec4<u32>,
 }
 
 // Six columns, four and two; of the last four two are never looked at, nor worked out.
@@ -82,11 +85,16 @@ fn texels_of(words0: vec4<u32>, words1: vec4<u32>) -> Texels {
         v = words0 >> vec4<u32>(27u);
         most = INK_OCT5_MOST;
     }
+    let shadow = region & vec4<u32>(what.shadow_bits);
+    region &= vec4<u32>(what.region_mask);
     let surface = region != vec4<u32>(0u);
     var four: Texels;
     four.key = select(vec4<u32>(0u), vec4<u32>(1u), surface);
     if asks_regions {
         four.key = region;
+    }
+    if asks_shadows {
+        four.shadow = select(vec4<u32>(0u), shadow, surface);
     }
     if asks_normals {
         // As `ink_oct_load` and `ink_oct_vector`, where z < 0: sign(x) (most - |y|) = x - sign(x) |z|.
@@ -146,6 +154,7 @@ fn shifted_four(a: Texels, b: Texels) -> Texels {
         vec4<u32>(a.key.yzw, b.key.x),
         vec4<i32>(a.depth.yzw, b.depth.x),
         vec4<i32>(a.threshold.yzw, b.threshold.x),
+        vec4<u32>(a.shadow.yzw, b.shadow.x),
     );
 }
 
@@ -156,6 +165,9 @@ fn shifted(row: Row) -> Row {
 
 fn four_across(a: Texels, b: Texels) -> vec4<bool> {
     var is = a.key != b.key;
+    if asks_shadows {
+        is = is | ink_shadows_differ(a.shadow, b.shadow, vec4<u32>(what.shadow_bits));
+    }
     if asks_steps {
         is = is | (abs(a.depth - b.depth) > max(a.threshold, b.threshold));
     }

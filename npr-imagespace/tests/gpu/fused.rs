@@ -4,7 +4,7 @@ use crate::device::{gpu, view};
 use crate::inputs::{Random, SIZES, direction, px, scene};
 use crate::targets::{COMPOSITES, PICTURE, assert_areas, assert_laid, difference, drawn, laid};
 use npr_imagespace::composite::Composite;
-use npr_imagespace::filter::fused::{DepthTest, FilterUniform, FusedFilter, ink_fused};
+use npr_imagespace::filter::fused::{DepthTest, FilterUniform, FusedFilter, ShadowTest, ink_fused};
 use npr_imagespace::format::texel::*;
 use npr_imagespace::pass::InkTarget;
 use npr_imagespace::pass::fused::{FusedPass, texel_format};
@@ -54,6 +54,11 @@ fn filters() -> Vec<FusedFilter> {
         FusedFilter { depth: plain, ..none },
         FusedFilter { regions: true, ..none },
         FusedFilter { normal_cos: Some(1.0), depth: plain, ..usual },
+        FusedFilter { shadows: ShadowTest::Lines, ..usual },
+        FusedFilter { shadows: ShadowTest::Lines, ..none },
+        FusedFilter { shadows: ShadowTest::Ignored, ..usual },
+        FusedFilter { shadows: ShadowTest::Alone, ..usual },
+        FusedFilter { shadows: ShadowTest::Alone, ..none },
     ]
 }
 

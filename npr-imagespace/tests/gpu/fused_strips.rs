@@ -3,7 +3,7 @@
 use crate::device::{Gpu, gpu, view};
 use glam::{UVec2, Vec3};
 use npr_imagespace::composite::{AlphaTest, Composite, composite_picture};
-use npr_imagespace::filter::fused::{DepthTest, FilterUniform, FusedFilter, ink_fused};
+use npr_imagespace::filter::fused::{DepthTest, FilterUniform, FusedFilter, ShadowTest, ink_fused};
 use npr_imagespace::format::texel::{DepthCode, TexelLayout, ink_narrow_tap, ink_wide_tap};
 use npr_imagespace::pass::Onto;
 use npr_imagespace::pass::fused::texel_format;
@@ -125,14 +125,16 @@ const LAYOUTS: [TexelLayout; 2] = [TexelLayout::Narrow, TexelLayout::Wide];
 #[test]
 fn whatever_is_asked_for_the_ink_is_the_references() {
     let Some(gpu) = gpu() else { return };
-    let mut numbers = Numbers(1);
+    let (mut numbers, mut turn) = (Numbers(1), 0);
     for layout in LAYOUTS {
         for taps in [Taps::Diagonal, Taps::Cross] {
             for normal_cos in [None, Some(0.8)] {
                 for plain in [None, Some(false), Some(true)] {
                     for regions in [false, true] {
                         let depth = plain.map(|plain| DepthTest { step: 0.001, plain });
-                        let filter = FusedFilter { normal_cos, depth, regions, taps, softness: 0.0 };
+                        turn += 1;
+                        let shadows = [ShadowTest::Absent, ShadowTest::Ignored, ShadowTest::Lines][turn % 3];
+                        let filter = FusedFilter { normal_cos, depth, regions, shadows, taps, softness: 0.0 };
                         let strips = FusedStrips::new(&gpu.device, &filter, layout);
                         // Among any depths a threshold near the depths themselves, so that it matters whose it is.
                         let depth = plain.map(|plain| DepthTest { step: 0.7, plain });

@@ -1,0 +1,28 @@
+// Shadows in what the filters look at. The twin of `shadow.rs`. No bindings and no entry points.
+
+const INK_TURNED: u32 = 0u;
+const INK_LIT: u32 = 1u;
+const INK_CAST: u32 = 2u;
+
+// Regions beside a state, in one word and in two.
+const INK_NARROW_SHADOWED_MOST: u32 = 63u;
+const INK_WIDE_SHADOWED_MOST: u32 = 4194303u;
+
+// A region with a state in the two bits above `most`. 0, background, stays 0.
+fn ink_shadow_region(folded: u32, state: u32, most: u32) -> u32 {
+    return select(folded | (state * (most + 1u)), 0u, folded == 0u);
+}
+
+// Of states as they lie in `bits` of a region: where one is lit and the other in a cast shadow.
+fn ink_shadows_differ(a: vec4<u32>, b: vec4<u32>, bits: vec4<u32>) -> vec4<bool> {
+    return (a | b) == bits;
+}
+
+// As printed: negated in shadow.
+fn ink_shadow_normal(normal: vec3<f32>, in_shadow: bool) -> vec3<f32> {
+    return select(normal, -normal, in_shadow);
+}
+
+fn ink_shadow_depth(depth: f32, in_shadow: bool) -> f32 {
+    return select(depth, -depth, in_shadow);
+}
