@@ -443,6 +443,7 @@ fn one_px_style(lines: Lines) -> Style {
         shade: Shade::Paper,
         normals: Default::default(),
         lights: vec![Default::default()],
+        shadow: None,
         lines: Some(lines),
         crease_angle_rad: 45f32.to_radians(),
     }

@@ -8,6 +8,7 @@ mod hatch;
 mod ink;
 mod lines;
 mod shade;
+mod shadow;
 mod surface;
 
 pub use lines::draw_lines;
@@ -24,6 +25,7 @@ use crate::texture::MipMapped;
 use glam::{DVec2, DVec3, DVec4};
 use hatch::Strokes;
 use npr_toon::source::{Light, combined_color};
+use shadow::Casting;
 
 /// What is asked of a frame on the CPU.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -93,6 +95,8 @@ pub struct FrameContext<'a> {
     painting: bool,
     /// In px of the grid that is sampled.
     boundary_inset_px: f64,
+    /// Where shadows come from.
+    casting: Option<Casting>,
 }
 
 /// Renders a frame.
@@ -191,6 +195,7 @@ impl<'a> FrameContext<'a> {
             },
             painting: plan.painted,
             boundary_inset_px: options.boundary_inset_px * f64::from(samples),
+            casting: plan.shadow.as_ref().map(|shadow| Casting::new(shadow, scene, style, camera)),
         }
     }
 }

@@ -50,6 +50,22 @@ pub enum HarnessError {
         /// What failed first.
         source: Box<HarnessError>,
     },
+    /// A light from within, and one picture of depths to hold all that it shines on.
+    #[error(
+        "a shadow map holds what a light sees from outside: it is {radii} radii from the model's middle, and needs {least} (volumes take any light)"
+    )]
+    ShadowMapLight {
+        /// Halves of the diagonal of the model's box.
+        radii: f64,
+        /// The same.
+        least: f64,
+    },
+    /// Lines around shadows that nothing casts.
+    #[error("style {style} draws lines around shadows, and has none (the table `shadow`)")]
+    NoShadow {
+        /// Which.
+        style: String,
+    },
     /// A style without a light.
     #[error("a style needs one light or two")]
     NoLight,

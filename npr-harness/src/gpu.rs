@@ -9,6 +9,7 @@ mod hatch;
 mod ink;
 mod light;
 mod scene;
+mod shadow;
 mod surface;
 mod targets;
 
@@ -20,9 +21,10 @@ pub use targets::Targets;
 
 use crate::camera::Camera;
 use crate::compare::Image;
-use crate::light::lights_in_world;
+use crate::light::{casting_light, lights_in_world};
 use crate::plan::{LineMethod, Plan};
 use crate::scene::Scene;
+use crate::shadow::{ShadowLines, ShadowMethod};
 use crate::style::{Lines, Style};
 use glam::DVec2;
 use light::LightOnDevice;
@@ -30,6 +32,7 @@ use npr_outline::fin_pass::FinPass;
 use npr_outline::line_pass::{LineRecord, LineSource, LineTargets, line_records};
 use npr_outline::line_strokes::{LineStrokes, StrokeTargets};
 use npr_outline::normal_format::NormalFormat;
+use shadow::{ShadowFrame, ShadowPasses, StencilTarget};
 use std::cell::{OnceCell, RefCell};
 use surface::{SurfacePass, SurfaceTargets};
 
@@ -41,6 +44,7 @@ pub struct GpuRenderer<'a> {
     strokes: OnceCell<LineStrokes>,
     printed: OnceCell<FinPass>,
     ink: ink::InkPasses,
+    shadows: ShadowPasses,
     scratch: RefCell<(Vec<u32>, Vec<LineRecord>)>,
 }
 
@@ -58,6 +62,7 @@ impl<'a> GpuRenderer<'a> {
             strokes: OnceCell::new(),
             printed: OnceCell::new(),
             ink: Default::default(),
+            shadows: Default::default(),
             scratch: Default::default(),
         }
     }
@@ -79,6 +84,10 @@ impl<'a> GpuRenderer<'a> {
             uploaded.edges = Some(self.lines.upload_edges(&self.context.device, contours, &scene.model.positions)?);
         }
         uploaded.strokes = strokes;
+        if let Some(shadow) = plan.shadow.as_ref().filter(|shadow| shadow.style.method == ShadowMethod::Volumes) {
+            let sorted_there = on_device || method == LineMethod::Auto && hardware;
+            uploaded.casting = Some(self.shadows.upload(self.context, &shadow.casters, sorted_there)?);
+        }
         if let Some(fins) = &plan.printed_fins {
             uploaded.fins = Some(self.printed().upload(&self.context.device, fins)?);
         }
@@ -121,8 +130,26 @@ impl<'a> GpuRenderer<'a> {
         targets.begin();
         let mut encoder = device.create_command_encoder(&Default::default());
         let ink = match &plan.image {
-            Some(image) => Some((image, targets.ink(self.context, &image.ink)?)),
+            Some(image) => Some((image, targets.ink(self.context, image)?)),
             None => None,
+        };
+        let shadow_of = |encoder: &mut wgpu::CommandEncoder, size: (u32, u32), stencil: &StencilTarget| {
+            let Some(shadow) = &plan.shadow else { return Ok(None) };
+            let frame = ShadowFrame { plan: shadow, light: casting_light(style, scene, camera), camera, size };
+            let mut draw_depth = |encoder: &mut wgpu::CommandEncoder, depth: &wgpu::TextureView| {
+                let size_px = DVec2::new(size.0.into(), size.1.into());
+                let drawn = SurfaceTargets { color: None, texels: None, depth, size_px };
+                self.surface.record(device, encoder, uploaded, scene, style, plan, camera, &light, None, &drawn)
+            };
+            let context = self.context;
+            self.shadows.record(context, encoder, uploaded, scene, &frame, stencil, &mut draw_depth).map(Some)
+        };
+        // A picture that is left as paper shows nothing of shadows but by its lines.
+        let one_pass = ink.as_ref().is_none_or(|(_, ink)| ink.depth.is_none());
+        let shadow = if plan.painted || one_pass {
+            shadow_of(&mut encoder, (targets.width, targets.height), &targets.stencil)?
+        } else {
+            None
         };
         let drawn = SurfaceTargets {
             color: Some(&targets.color_view),
@@ -130,12 +157,31 @@ impl<'a> GpuRenderer<'a> {
             depth: &targets.depth_view,
             size_px,
         };
-        self.surface.record(device, &mut encoder, uploaded, scene, style, plan, camera, &light, &drawn)?;
+        let shadow = shadow.as_ref();
+        self.surface.record(device, &mut encoder, uploaded, scene, style, plan, camera, &light, shadow, &drawn)?;
         if let Some((image, ink)) = &ink {
             if let Some(depth) = &ink.depth {
+                // Only lines are drawn here: without lines of shadows there is no need for them.
+                let shadow = if image.ink.shadows == ShadowLines::None {
+                    None
+                } else {
+                    shadow_of(&mut encoder, ink.size, &ink.stencil)?
+                };
+                let shadow = shadow.as_ref();
                 let size_px = DVec2::new(ink.size.0.into(), ink.size.1.into());
                 let drawn = SurfaceTargets { color: None, texels: Some(&ink.texels), depth, size_px };
-                self.surface.record(device, &mut encoder, uploaded, scene, style, plan, camera, &light, &drawn)?;
+                self.surface.record(
+                    device,
+                    &mut encoder,
+                    uploaded,
+                    scene,
+                    style,
+                    plan,
+                    camera,
+                    &light,
+                    shadow,
+                    &drawn,
+                )?;
             }
             self.ink.record(self.context, &mut encoder, scene.bounds(), image, camera, ink, targets)?;
         }

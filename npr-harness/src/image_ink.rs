@@ -2,11 +2,12 @@
 
 use crate::camera::{Camera, Projection};
 use crate::scene::Scene;
+use crate::shadow::ShadowLines;
 use glam::{DVec3, UVec2};
 use npr_imagespace::ImageSpaceError;
 use npr_imagespace::artist::LineKind;
 use npr_imagespace::composite::Composite;
-use npr_imagespace::filter::fused::{FilterUniform, FusedFilter, ink_fused};
+use npr_imagespace::filter::fused::{FilterUniform, FusedFilter, ShadowTest, ink_fused};
 use npr_imagespace::format::texel::{DepthCode, TexelLayout, ink_fold_region, ink_narrow_tap, ink_wide_tap};
 use npr_imagespace::morphology::disc::Disc;
 use npr_imagespace::morphology::flood::{FloodPlan, disc_plan, flood};
@@ -63,12 +64,21 @@ pub struct ImageInk {
     pub regions: Regions,
     /// Whether materials say where their inner lines come from ([`Scene::line_kinds`]); else all from their normals.
     pub artist: bool,
+    /// How the borders of shadows are drawn.
+    pub shadows: ShadowLines,
     /// Thickens the lines.
     pub brush: Option<Disc>,
     /// Of the target in which they are found.
     pub scale: InkScale,
     /// How they come over the picture.
     pub composite: Composite,
+}
+
+impl ImageInk {
+    /// The largest number of a region, beside a state of shadow where there is one.
+    pub fn region_most(&self) -> u32 {
+        if self.shadows.has_states() { self.layout.shadowed_region_most() } else { self.layout.region_most() }
+    }
 }
 
 /// What image-space lines need of a scene seen by a camera.
@@ -82,8 +92,33 @@ pub struct ImagePlan {
     pub face_region: Vec<u32>,
     /// Per material where its inner lines come from.
     pub line_kinds: Vec<LineKind>,
+    /// The objects' lines, and those of shadows where they are drawn by the same pass.
+    pub lines: ImageLines,
+    /// The lines of shadows where they are drawn apart, under the others.
+    pub shadow_lines: Option<ImageLines>,
+}
+
+/// What one pass of lines does.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ImageLines {
+    /// What is a line.
+    pub filter: FusedFilter,
+    /// Thickens them.
+    pub brush: Option<Disc>,
     /// The passes that thicken, where they are asked for.
-    pub flood: Option<FloodPlan>,
+    flood: Option<FloodPlan>,
+    /// How they come over the picture.
+    pub composite: Composite,
+}
+
+impl ImageLines {
+    fn new(filter: FusedFilter, brush: Option<Disc>, composite: Composite) -> Result<Self, ImageSpaceError> {
+        if let Some(disc) = brush {
+            // Validates the radius.
+            flood(&[], UVec2::ZERO, &disc, &FloodPlan { passes: Vec::new() })?;
+        }
+        Ok(Self { filter, brush, flood: brush.map(|disc| disc_plan(&disc)), composite })
+    }
 }
 
 impl ImagePlan {
@@ -91,11 +126,19 @@ impl ImagePlan {
     /// What is wrong with the thresholds or the brush.
     pub fn new(scene: &Scene, ink: &ImageInk, crease_angle_rad: f32, camera: &Camera) -> Result<Self, ImageSpaceError> {
         let code = depth_code(scene, camera, ink.layout)?;
-        FilterUniform::new(&ink.filter, ink.layout, &code)?;
-        if let Some(disc) = ink.brush {
-            // Validates the radius.
-            flood(&[], UVec2::ZERO, &disc, &FloodPlan { passes: Vec::new() })?;
-        }
+        let test = match ink.shadows {
+            ShadowLines::None | ShadowLines::Negated => ShadowTest::Absent,
+            ShadowLines::Lines => ShadowTest::Lines,
+            ShadowLines::Apart { .. } => ShadowTest::Ignored,
+        };
+        let lines = ImageLines::new(FusedFilter { shadows: test, ..ink.filter }, ink.brush, ink.composite)?;
+        FilterUniform::new(&lines.filter, ink.layout, &code)?;
+        let shadow_lines = match ink.shadows {
+            ShadowLines::Apart { composite, brush } => {
+                Some(ImageLines::new(FusedFilter { shadows: ShadowTest::Alone, ..ink.filter }, brush, composite)?)
+            }
+            _ => None,
+        };
         let materials = scene.model.materials.len();
         let line_kinds = if ink.artist { scene.line_kinds.clone() } else { vec![LineKind::Normals; materials] };
         Ok(Self {
@@ -103,10 +146,11 @@ impl ImagePlan {
             code,
             face_region: face_regions(scene, ink.regions, &line_kinds, crease_angle_rad)?
                 .into_iter()
-                .map(|region| ink_fold_region(region, ink.layout.region_most()))
+                .map(|region| ink_fold_region(region, ink.region_most()))
                 .collect(),
             line_kinds,
-            flood: ink.brush.map(|disc| disc_plan(&disc)),
+            lines,
+            shadow_lines,
         })
     }
 
@@ -118,15 +162,26 @@ impl ImagePlan {
         }
     }
 
+    /// The passes of lines, in the order in which they are laid.
+    pub fn passes(&self) -> impl Iterator<Item = &ImageLines> {
+        self.shadow_lines.iter().chain(std::iter::once(&self.lines))
+    }
+
+    /// Whether any lines are thickened.
+    pub fn has_brush(&self) -> bool {
+        self.passes().any(|lines| lines.brush.is_some())
+    }
+
     /// Ink of a picture of texels, the reference: found, and thickened.
     ///
+    /// - `lines`: [`ImagePlan::lines`] or [`ImagePlan::shadow_lines`];
     /// - `texels`: of [`ImageInk::layout`]; in one word the second is not looked at.
     ///
     /// # Panics
     /// If there is not one for each pixel.
-    pub fn ink(&self, texels: &[[u32; 2]], size: (u32, u32)) -> Vec<u8> {
+    pub fn ink(&self, lines: &ImageLines, texels: &[[u32; 2]], size: (u32, u32)) -> Vec<u8> {
         let size_px = UVec2::from(size);
-        let filter = &self.ink.filter;
+        let filter = &lines.filter;
         let uniform = FilterUniform::new(filter, self.ink.layout, &self.code).expect("it was checked");
         let tap = |words: [u32; 2]| match self.ink.layout {
             TexelLayout::Narrow => ink_narrow_tap(words[0]),
@@ -136,7 +191,7 @@ impl ImagePlan {
             ink_fused(&uniform, &tap(centre), &taps.map(tap)) as f32
         })
         .expect("a texel for each pixel");
-        match (&self.ink.brush, &self.flood) {
+        match (&lines.brush, &lines.flood) {
             (Some(disc), Some(plan)) => flood(&found, size_px, disc, plan).expect("the disc was checked"),
             _ => found,
         }

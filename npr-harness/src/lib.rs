@@ -22,5 +22,6 @@ pub mod normal_use;
 pub mod plan;
 pub mod rays;
 pub mod scene;
+pub mod shadow;
 pub mod style;
 pub mod texture;

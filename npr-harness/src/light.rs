@@ -2,8 +2,9 @@
 
 use crate::camera::Camera;
 use crate::scene::Scene;
+use crate::shadow::homogeneous;
 use crate::style::{Shade, Style};
-use glam::Vec3;
+use glam::{DVec4, Vec3};
 use npr_toon::source::{Light, LightPlace, aggregate};
 
 /// What a light's direction or position is measured in.
@@ -58,6 +59,12 @@ pub fn lights_in_world(style: &Style, scene: &Scene, camera: &Camera) -> Vec<Lig
         }];
     }
     lights
+}
+
+/// The light that casts shadows, the style's first: a point with w = 1, or the unit direction to it with w = 0, in the space
+/// of the scene's positions.
+pub fn casting_light(style: &Style, scene: &Scene, camera: &Camera) -> DVec4 {
+    style.lights.first().map_or(DVec4::ZERO, |light| homogeneous(in_world(light, scene, camera).place))
 }
 
 fn in_world(StyleLight { light, frame }: &StyleLight, scene: &Scene, camera: &Camera) -> Light {

@@ -3,8 +3,9 @@
 use crate::camera::Camera;
 use crate::error::HarnessError;
 use crate::hatch::HatchPlan;
-use crate::image_ink::{ImagePlan, InkScale};
+use crate::image_ink::{ImageInk, ImagePlan, InkScale};
 use crate::scene::Scene;
+use crate::shadow::{ShadowLines, ShadowMethod, ShadowPlan};
 use crate::style::{HatchMapping, Lines, Shade, Style};
 use glam::DVec4;
 use npr_imagespace::artist::LineKind as InnerLines;
@@ -63,6 +64,8 @@ pub struct Plan {
     pub image: Option<ImagePlan>,
     /// What strokes need, where surfaces are hatched.
     pub hatch: Option<HatchPlan>,
+    /// What shadows need, where something is seen of them.
+    pub shadow: Option<ShadowPlan>,
     /// Passes, in order.
     pub passes: Vec<Reason>,
     /// What was left out.
@@ -73,7 +76,8 @@ impl Plan {
     /// Decides what a style needs for a scene seen by a camera.
     ///
     /// # Errors
-    /// What is wrong with the style, [`Style::validate`], with its lines, or with its map; [`HarnessError::ClippedEdges`].
+    /// What is wrong with the style, [`Style::validate`], with its lines, or with its map; [`HarnessError::ClippedEdges`],
+    /// [`HarnessError::ShadowMapLight`].
     pub fn new(scene: &Scene, style: &Style, camera: &Camera) -> Result<Self, HarnessError> {
         style.validate()?;
         let model = &scene.model;
@@ -85,19 +89,36 @@ impl Plan {
         let each = matches!(style.shade, Shade::Painter(_));
         // Several lights taken together are a direction.
         let hatch = if let Shade::Hatch(shade) = &style.shade { Some(HatchPlan::new(scene, shade)?) } else { None };
-        let lit = painted && (hatch.is_some() || style.normals != NormalUse::PerPixel || placed && (each || !two));
+        let shows_light = painted && style.shade != Shade::Normals;
+        let lit = shows_light && (hatch.is_some() || style.normals != NormalUse::PerPixel || placed && (each || !two));
         let cut_out = used(&|m| matches!(m.alpha_mode, AlphaMode::Mask { .. }));
         let blended = painted && scene.has_blend();
         let cull_back = scene.closed && scene.clip.is_none() && !sees_the_inside(scene, camera);
         if scene.clip.is_some() && matches!(style.lines, Some(Lines::Fins(_) | Lines::Printed { .. })) {
             return Err(HarnessError::ClippedEdges { style: style.name.clone() });
         }
+        let drawn = matches!(&style.lines, Some(Lines::Image(ink)) if ink.shadows != ShadowLines::None);
+        let shadow = match &style.shadow {
+            Some(shadow) if painted || drawn => Some(ShadowPlan::new(scene, style, shadow, camera)?),
+            _ => None,
+        };
         let mut passes = Vec::new();
         let mut left_out = Vec::new();
         let mut add = |there: bool, pass, why: &str, why_not: &str| {
             let (list, why) = if there { (&mut passes, why) } else { (&mut left_out, why_not) };
             list.push(Reason { pass, why: why.to_owned() });
         };
+        let volumes = shadow.as_ref().is_some_and(|shadow| shadow.style.method == ShadowMethod::Volumes);
+        let no_shadow = if style.shadow.is_some() { "the style shows nothing of it" } else { "no light casts shadows" };
+        let no_volumes = if shadow.is_some() { "the style asks for a map" } else { no_shadow };
+        add(volumes, "geometry: depth, before all", "shadows fall on what is seen", no_volumes);
+        add(volumes, "shadow volumes into a stencil", "a light casts shadows", no_volumes);
+        add(
+            shadow.is_some() && !volumes,
+            "shadow map",
+            "a light casts shadows, and the style asks for a map",
+            if volumes { "volumes are exact" } else { no_shadow },
+        );
         let outlined = style.lines.is_some();
         add(painted, "geometry: colour and depth", "surfaces are painted", "the style paints no surface");
         let image = if let Some(Lines::Image(ink)) = &style.lines { Some(ink) } else { None };
@@ -139,11 +160,18 @@ impl Plan {
             "the ink has another size than the picture",
             if image.is_some() { "the ink has the picture's size" } else { "no line is found in the image" },
         );
-        let thick = image.is_some_and(|ink| ink.brush.is_some());
+        let apart_brush = |ink: &ImageInk| matches!(ink.shadows, ShadowLines::Apart { brush: Some(_), .. });
+        let thick = image.is_some_and(|ink| ink.brush.is_some() || apart_brush(ink));
         let in_one = one_pass && !thick;
         let apart = image.is_some() && !in_one;
         let none = if image.is_some() { "the ink is needed by itself" } else { "no line is found in the image" };
         add(in_one, "filter and composite in one", "nothing needs the ink in between", none);
+        add(
+            image.is_some_and(|ink| matches!(ink.shadows, ShadowLines::Apart { .. })),
+            "filter for shadows",
+            "their lines look different",
+            if drawn { "the pass of the objects' lines finds them" } else { "shadows have no lines" },
+        );
         add(apart, "filter", "the ink is worked on before it is laid", "it is in the composite, or not there");
         add(thick, "dilation by a disc", "the style has a brush", "lines are as wide as they are found");
         add(another_size, "composite", "the ink has another size", "the pass before lays the ink, or there is none");
@@ -201,6 +229,7 @@ impl Plan {
             printed_fins,
             image,
             hatch,
+            shadow,
             passes,
             left_out,
         })

@@ -9,6 +9,7 @@ use npr_hatch::field::{FieldOptions, LineTensor, direction_field};
 use npr_imagespace::artist::LineKind;
 use npr_mesh::edges::{self, EdgeKind, EdgeOptions, Edges};
 use npr_mesh::{AlphaMode, Model};
+use npr_outline::shadow_volume::{ShadowCasters, shadow_casters};
 use std::sync::OnceLock;
 
 /// A model with everything that is derived from it once.
@@ -35,6 +36,7 @@ pub struct Scene {
     boundary_sides: OnceLock<Vec<u8>>,
     bounds: OnceLock<Option<(Vec3, Vec3)>>,
     directions: OnceLock<Vec<LineTensor>>,
+    casters: OnceLock<ShadowCasters>,
 }
 
 impl Scene {
@@ -66,6 +68,7 @@ impl Scene {
             boundary_sides: OnceLock::new(),
             bounds: OnceLock::new(),
             directions: OnceLock::new(),
+            casters: OnceLock::new(),
         }
     }
 
@@ -131,6 +134,19 @@ impl Scene {
         let seams = &self.edges.representative;
         let found = direction_field(positions, normals, faces, seams, &FieldOptions::default())?;
         Ok(self.directions.get_or_init(|| found))
+    }
+
+    /// What casts shadows, found when it is first asked for.
+    pub fn casters(&self) -> &ShadowCasters {
+        self.casters.get_or_init(|| {
+            let model = &self.model;
+            if model.face_polygon.is_empty() {
+                return shadow_casters(model, &self.edges);
+            }
+            // With the diagonals: a polygon may be warped.
+            let found = edges::find(&model.positions, &model.faces, &[], &[], &EdgeOptions::default());
+            shadow_casters(model, &found)
+        })
     }
 
     /// The corners of all faces.

@@ -13,6 +13,7 @@ pub use presets::{style, styles};
 use crate::error::HarnessError;
 use crate::image_ink::ImageInk;
 use crate::light::StyleLight;
+use crate::shadow::{ShadowLines, ShadowStyle};
 use glam::Vec3;
 use npr_gooch::{Gooch, GoochUniform};
 use npr_outline::line_look::LineLook;
@@ -44,6 +45,8 @@ pub enum Shade {
     Gooch(Gooch),
     /// Strokes.
     Hatch(HatchShade),
+    /// World-space normals as colours, n / 2 + 1/2, negated in shadow: what Card & Mitchell 2002 filter (fig. 10b).
+    Normals,
 }
 
 /// A 1D ramp, and what it is looked up with.
@@ -117,6 +120,8 @@ pub struct Style {
     /// One or two. What knows only one light takes the two together, see [`crate::light::lights_in_world`]. A light's
     /// brightness multiplies its N·L, and its colour the surface's; Gooch's tones take notice of neither.
     pub lights: Vec<StyleLight>,
+    /// Whether the first light casts shadows, and how.
+    pub shadow: Option<ShadowStyle>,
     /// How lines are drawn, if they are.
     pub lines: Option<Lines>,
     /// Edges whose faces meet at more than this angle are lines.
@@ -129,7 +134,7 @@ impl Style {
     ///
     /// # Errors
     /// [`HarnessError::Toon`], [`HarnessError::Gooch`], [`HarnessError::Hatch`], [`HarnessError::SixTones`],
-    /// [`HarnessError::NoThresholds`], [`HarnessError::Range`], [`HarnessError::NoLight`].
+    /// [`HarnessError::NoThresholds`], [`HarnessError::Range`], [`HarnessError::NoLight`], [`HarnessError::NoShadow`].
     pub fn validate(&self) -> Result<(), HarnessError> {
         for component in self.paper.to_array() {
             within("a component of the paper", component, 0.0, 1.0, "0..=1")?;
@@ -141,7 +146,7 @@ impl Style {
         // The most that any shade knows.
         Painter::new(self.lights.iter().map(|light| light.light).collect())?;
         match &self.shade {
-            Shade::Paper => {}
+            Shade::Paper | Shade::Normals => {}
             Shade::Lambert { ambient } => within("ambient light", *ambient, 0.0, 1.0, "0..=1")?,
             Shade::Toon(bands) => {
                 ToonUniform::new(bands)?;
@@ -168,6 +173,11 @@ impl Style {
                 GoochUniform::new(model)?;
             }
             Shade::Hatch(hatch) => hatch.validate()?,
+        }
+        if let Some(shadow) = &self.shadow {
+            shadow.validate()?;
+        } else if matches!(&self.lines, Some(Lines::Image(ink)) if ink.shadows != ShadowLines::None) {
+            return Err(HarnessError::NoShadow { style: self.name.clone() });
         }
         Ok(())
     }

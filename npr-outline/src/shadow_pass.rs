@@ -39,6 +39,27 @@ pub struct CastersOnDevice {
     open: bool,
 }
 
+impl CastersOnDevice {
+    /// Uploads all that can cast, for lights that the device sorts out itself: 64 bytes an edge and a face.
+    ///
+    /// # Errors
+    /// [`OutlineError::TooManyEdges`].
+    pub fn new(device: &wgpu::Device, casters: &ShadowCasters) -> Result<Self, OutlineError> {
+        upload(device, casters, &casters.edges, &casters.faces)
+    }
+
+    /// Uploads what casts for one light, found on the CPU: [`ShadowCasters::scan`]. The way of choice where the device is
+    /// software. Good for as long as the light stays where it is.
+    ///
+    /// # Errors
+    /// [`OutlineError::TooManyEdges`].
+    pub fn scanned(device: &wgpu::Device, casters: &ShadowCasters, light: DVec4) -> Result<Self, OutlineError> {
+        let (mut edges, mut faces) = (Vec::new(), Vec::new());
+        casters.scan(light, &mut edges, &mut faces);
+        upload(device, casters, &edges, &faces)
+    }
+}
+
 /// The pipelines.
 #[derive(Debug)]
 pub struct ShadowPass {
@@ -145,30 +166,6 @@ impl ShadowPass {
             |vertices: u32| pipeline("vs_side", side_buffer.clone(), &[("sweep_vertices", f64::from(vertices))], false);
         let cap = |turn: f64| pipeline("vs_cap", cap_buffer.clone(), &[("cap_turn", turn)], turn < 0.0);
         Self { sides: SWEEP_VERTICES.map(side), caps: [cap(1.0), cap(-1.0)], layout }
-    }
-
-    /// Uploads all that can cast, for lights that the device sorts out itself: 64 bytes an edge and a face.
-    ///
-    /// # Errors
-    /// [`OutlineError::TooManyEdges`].
-    pub fn upload(&self, device: &wgpu::Device, casters: &ShadowCasters) -> Result<CastersOnDevice, OutlineError> {
-        upload(device, casters, &casters.edges, &casters.faces)
-    }
-
-    /// Uploads what casts for one light, found on the CPU: [`ShadowCasters::scan`]. The way of choice where the device is
-    /// software. Good for as long as the light stays where it is.
-    ///
-    /// # Errors
-    /// [`OutlineError::TooManyEdges`].
-    pub fn upload_scanned(
-        &self,
-        device: &wgpu::Device,
-        casters: &ShadowCasters,
-        light: DVec4,
-    ) -> Result<CastersOnDevice, OutlineError> {
-        let (mut edges, mut faces) = (Vec::new(), Vec::new());
-        casters.scan(light, &mut edges, &mut faces);
-        upload(device, casters, &edges, &faces)
     }
 
     /// Records the pass: clears the stencil, and counts the volumes against the depth that is there.

@@ -12,7 +12,8 @@ use npr_hatch::mapping::{
     hatch_turned,
 };
 use npr_hatch::{
-    HatchWeights, Tam, Thresholds, hatch_blend, hatch_color, hatch_level, hatch_linear, hatch_transfer, hatch_weights,
+    HatchWeights, Tam, Thresholds, hatch_blend, hatch_color, hatch_level, hatch_linear, hatch_shadowed, hatch_transfer,
+    hatch_weights,
 };
 use npr_toon::normal::NormalUse;
 
@@ -170,11 +171,21 @@ impl FrameContext<'_> {
     }
 
     /// The display-referred colour of a hit whose own is `base`, under a light of this reach.
-    pub(super) fn hatch(&self, hit: &Hit, base: DVec3, reach: f64, x: u32, y: u32, strokes: &Strokes<'_>) -> DVec3 {
+    #[expect(clippy::too_many_arguments, reason = "each is a thing of its own; a struct would only rename them")]
+    pub(super) fn hatch(
+        &self,
+        hit: &Hit,
+        base: DVec3,
+        reach: f64,
+        in_shadow: bool,
+        x: u32,
+        y: u32,
+        strokes: &Strokes<'_>,
+    ) -> DVec3 {
         let Footprint { along_x, dx, along_y, dy } = self.footprint(hit, x, y);
         let at = self.stroke_place(hit, hit.barycentric, strokes);
-        let tone = strokes.tone(reach);
-        let weights = if strokes.at_vertices && hit.front {
+        let tone = hatch_shadowed(strokes.tone(reach), strokes.tone(0.0), if in_shadow { 0.0 } else { 1.0 });
+        let weights = if strokes.at_vertices && hit.front && !in_shadow {
             let corners = self.lit_corners(hit).map(|reach| strokes.weights(strokes.tone(reach)));
             let mean = |of: fn(&HatchWeights) -> DVec3| -> DVec3 {
                 corners.iter().zip(hit.barycentric).map(|(corner, weight)| of(corner) * weight).sum()

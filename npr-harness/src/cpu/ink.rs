@@ -4,23 +4,32 @@ use super::{CpuFrame, FrameContext};
 use crate::color::encode_rgb;
 use crate::image_ink::ImagePlan;
 use crate::rays::Hit;
+use crate::shadow::ShadowLines;
 use glam::{DMat3, DVec3, UVec2, Vec3};
 use npr_imagespace::artist::{LineKind, ink_artist_direction, ink_artist_index, ink_artist_texel};
 use npr_imagespace::composite::ink_composite;
-use npr_imagespace::format::texel::{BACKGROUND, TexelLayout, ink_narrow_pack, ink_wide_pack};
+use npr_imagespace::format::texel::{BACKGROUND, TexelLayout, ink_fold_region, ink_narrow_pack, ink_wide_pack};
 use npr_imagespace::region::{ink_region_of_color, ink_region_pair};
 use npr_imagespace::resample::resample;
+use npr_imagespace::shadow::{ink_shadow_normal, ink_shadow_region};
 
 impl FrameContext<'_> {
     /// What a geometry pass writes for a pixel.
     pub(super) fn texel(&self, hit: Option<&Hit>, x: u32, y: u32) -> [u32; 2] {
         let (Some(image), Some(hit)) = (&self.plan.image, hit) else { return BACKGROUND };
         let kind = self.line_kind(hit);
-        let normal = self.texel_normal(hit, kind, x, y).as_vec3();
+        let negated = image.ink.shadows == ShadowLines::Negated && kind == LineKind::Normals && self.is_negated(hit);
+        let normal = ink_shadow_normal(self.texel_normal(hit, kind, x, y).as_vec3(), negated);
         let of_face = image.face_region[hit.face as usize];
         let region = match (kind, self.texture_bytes(hit, kind)) {
             (LineKind::Regions, Some(rgb)) => ink_region_pair(of_face, ink_region_of_color(rgb)),
             _ => of_face,
+        };
+        let region = if image.ink.shadows.has_states() {
+            let folded = ink_fold_region(region, image.ink.region_most());
+            ink_shadow_region(folded, self.shadow_state(hit) as u32, image.ink.layout)
+        } else {
+            region
         };
         match image.ink.layout {
             TexelLayout::Narrow => [ink_narrow_pack(normal, region, hit.t as f32, &image.code), 0],
@@ -71,17 +80,19 @@ pub(super) fn blot(texels: &mut [[u32; 2]], size: (u32, u32), pixels: &[usize], 
 /// Draws the frame's lines over it, from texels of the ink's size.
 pub(super) fn draw_ink(image: &ImagePlan, texels: &[[u32; 2]], frame: &mut CpuFrame) {
     let size = image.ink.scale.size((frame.width, frame.height));
-    let ink = image.ink(texels, size);
     let picture = UVec2::new(frame.width, frame.height);
-    let ink = if size == (frame.width, frame.height) {
-        ink
-    } else {
-        resample(&ink, UVec2::from(size), picture).expect("one ink for each of its pixels")
-    };
-    for (color, ink) in frame.color.iter_mut().zip(ink) {
-        if ink > 0 {
-            let inked = ink_composite(color.truncate(), f64::from(ink) / 255.0, &image.ink.composite);
-            *color = inked.extend(color.w);
+    for lines in image.passes() {
+        let ink = image.ink(lines, texels, size);
+        let ink = if size == (frame.width, frame.height) {
+            ink
+        } else {
+            resample(&ink, UVec2::from(size), picture).expect("one ink for each of its pixels")
+        };
+        for (color, ink) in frame.color.iter_mut().zip(ink) {
+            if ink > 0 {
+                let inked = ink_composite(color.truncate(), f64::from(ink) / 255.0, &lines.composite);
+                *color = inked.extend(color.w);
+            }
         }
     }
 }

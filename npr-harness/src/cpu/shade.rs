@@ -6,6 +6,7 @@ use crate::rays::Hit;
 use crate::style::{PainterShade, Ramp2dSource, RampShade, RampSource, Shade};
 use glam::{DVec2, DVec3};
 use npr_gooch::{gooch_highlight, gooch_n_dot_l, gooch_over, gooch_r_dot_e, gooch_tone};
+use npr_imagespace::shadow::ShadowState;
 use npr_toon::border::toon_border_width;
 use npr_toon::half_lambert::toon_half_lambert;
 use npr_toon::normal::NormalUse;
@@ -29,10 +30,13 @@ struct Lit {
 impl FrameContext<'_> {
     /// The display-referred colour of a hit whose own is `base`.
     pub(super) fn shaded(&self, hit: &Hit, base: DVec3, x: u32, y: u32) -> DVec3 {
-        let here = self.light(hit, hit.barycentric);
+        let in_shadow = self.shadow_state(hit) == ShadowState::Cast;
+        let here = self.light(hit, hit.barycentric, in_shadow);
         let widths = || {
             let Footprint { along_x, along_y, .. } = self.footprint(hit, x, y);
-            let (dx, dy) = (self.light(hit, along_x) - here, self.light(hit, along_y) - here);
+            // The whole block of pixels as in shadow, or not: a shadow's border is no border of bands.
+            let at = |weights| self.light(hit, weights, in_shadow) - here;
+            let (dx, dy) = (at(along_x), at(along_y));
             DVec2::new(toon_border_width(dx.x, dy.x), toon_border_width(dx.y, dy.y))
         };
         let tinted = base * self.light_color;
@@ -63,15 +67,17 @@ impl FrameContext<'_> {
             }
             Shade::Hatch(_) => {
                 let strokes = self.strokes.as_ref().expect("a hatched style has strokes");
-                self.hatch(hit, base, here.x, x, y, strokes)
+                self.hatch(hit, base, here.x, in_shadow, x, y, strokes)
             }
+            Shade::Normals => self.normal_color(hit),
         }
     }
 
     /// What a shade is looked up with, before it is: how far the light reaches, or what half-Lambert makes of that, and
-    /// beside it N·H; the reach of two lights; for Gooch N·L and R·E.
-    fn light(&self, hit: &Hit, weights: [f64; 3]) -> DVec2 {
-        let found = match self.style.normals {
+    /// beside it N·H; the reach of two lights; for Gooch N·L and R·E. In a cast shadow as if the surface were turned away
+    /// from the light as far as it is turned towards it.
+    fn light(&self, hit: &Hit, weights: [f64; 3], in_shadow: bool) -> DVec2 {
+        let mut found = match self.style.normals {
             NormalUse::PerPixel => {
                 let surface = self.interpolate(hit, weights);
                 self.light_at(&Lit { normal: surface.normal, at: surface.at, to_eye: surface.to_eye })
@@ -81,6 +87,10 @@ impl FrameContext<'_> {
                 self.corners(hit).iter().zip(weights).map(|(corner, weight)| self.light_at(corner) * weight).sum()
             }
         };
+        if in_shadow {
+            let second = if matches!(self.style.shade, Shade::Painter(_)) { found.y } else { -1.0 };
+            found = DVec2::new(-found.x.abs(), second);
+        }
         match &self.style.shade {
             Shade::Ramp(RampShade { half_lambert: Some(how), .. }) => DVec2::new(toon_half_lambert(how, found.x), 0.0),
             _ => found,

@@ -37,7 +37,10 @@ impl GpuContext {
         adapters.sort_by_key(|adapter| rank(&adapter.get_info()));
         let adapter = adapters.first().ok_or(GpuError::NoAdapter { seen })?;
         let info = adapter.get_info();
-        let wanted = wgpu::Features::TIMESTAMP_QUERY;
+        // The latter two for shadows.
+        let wanted = wgpu::Features::TIMESTAMP_QUERY
+            | wgpu::Features::DEPTH32FLOAT_STENCIL8
+            | wgpu::Features::DEPTH_CLIP_CONTROL;
         let flags = adapter.get_downlevel_capabilities().flags;
         let can_find_lines = flags
             .contains(wgpu::DownlevelFlags::VERTEX_STORAGE | wgpu::DownlevelFlags::INDIRECT_EXECUTION)

@@ -50,6 +50,9 @@ pub enum GpuError {
         /// How much is allowed.
         limit: u64,
     },
+    /// Shadow volumes in a parallel view, whose depth ends, on a device that cuts off what is farther.
+    #[error("this device cannot draw shadow volumes in a parallel view (a shadow map, or the CPU, can)")]
+    ParallelVolumes,
     /// The device reported a fault, or was lost.
     #[error("the graphics device failed: {fault}")]
     Device {

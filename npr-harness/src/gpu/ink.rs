@@ -3,7 +3,7 @@
 use super::targets::{COLOR_FORMAT, InkTargets, Targets};
 use super::{GpuContext, GpuError};
 use crate::camera::Camera;
-use crate::image_ink::ImagePlan;
+use crate::image_ink::{ImageLines, ImagePlan};
 use glam::Vec3;
 use npr_imagespace::format::texel::TexelLayout;
 use npr_imagespace::morphology::Operation;
@@ -48,16 +48,36 @@ impl InkPasses {
         ink: &InkTargets,
         targets: &Targets,
     ) -> Result<(), GpuError> {
+        for lines in image.passes() {
+            self.record_lines(context, encoder, bounds, image, lines, camera, ink, targets)?;
+        }
+        Ok(())
+    }
+
+    /// One pass of lines.
+    #[expect(clippy::too_many_arguments, reason = "each is a thing of its own; a struct would only rename them")]
+    fn record_lines(
+        &self,
+        context: &GpuContext,
+        encoder: &mut wgpu::CommandEncoder,
+        bounds: Option<(Vec3, Vec3)>,
+        image: &ImagePlan,
+        lines: &ImageLines,
+        camera: &Camera,
+        ink: &InkTargets,
+        targets: &Targets,
+    ) -> Result<(), GpuError> {
         let device = &context.device;
         let area = |size, around_px| bounds.map(|bounds| camera.area(bounds, size, around_px));
-        let onto = |view, size, around_px| Onto { view, composite: &image.ink.composite, area: area(size, around_px) };
+        let onto = |view, size, around_px| Onto { view, composite: &lines.composite, area: area(size, around_px) };
         // Beside a surface there is a pixel of line, and then what the brush adds.
-        let brush_px = image.ink.brush.map_or(0, |disc| disc.radius_px.ceil() as u32 + 1);
+        let brush_px = lines.brush.map_or(0, |disc| disc.radius_px.ceil() as u32 + 1);
         let picture_size = (targets.width, targets.height);
 
-        let filter = &image.ink.filter;
-        let found = ink.found.as_ref();
-        if found.is_none() && by_strips(context) && serves(filter, &image.ink.composite) {
+        let filter = &lines.filter;
+        // Without a brush lines are laid as they are found, if they are found at the picture's size.
+        let found = ink.found.as_ref().filter(|_| lines.brush.is_some() || ink.depth.is_some());
+        if found.is_none() && by_strips(context) && serves(filter, &lines.composite) {
             let mut strips = self.strips.borrow_mut();
             let pass = strips
                 .entry((structure(filter), image.ink.layout))
@@ -74,7 +94,7 @@ impl InkPasses {
         pass.record(device, encoder, filter, &image.code, &ink.texels, &onto(view, ink.size, 1))?;
         let Some(mut line) = found else { return Ok(()) };
 
-        if let (Some(disc), Some(scratch)) = (&image.ink.brush, &ink.brush) {
+        if let (Some(disc), Some(scratch)) = (&lines.brush, &ink.brush) {
             let thick = ink.thick.as_ref();
             let target = if thick.is_some() { InkTarget::Ink } else { PICTURE };
             let mut brushes = self.brushes.borrow_mut();

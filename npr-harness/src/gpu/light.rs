@@ -86,6 +86,7 @@ impl LightVariant {
                 }
             }
             Shade::Gooch(_) => variant.shade = 4,
+            Shade::Normals => variant.shade = 5,
         }
         variant
     }
@@ -146,7 +147,7 @@ impl LightOnDevice {
         let mut numbers = ShadeUniform::zeroed();
         let mut light_scale = Painter::LIGHT_SCALE;
         match &style.shade {
-            Shade::Paper | Shade::Hatch(_) => {}
+            Shade::Paper | Shade::Hatch(_) | Shade::Normals => {}
             Shade::Lambert { ambient } => numbers.ambient = *ambient,
             Shade::Toon(of) => bands = Some(uniform(bytemuck::bytes_of(&ToonUniform::new(of)?))),
             Shade::Ramp(RampShade { ramp, half_lambert }) => {

@@ -1,6 +1,7 @@
 //! A scene on the device.
 
 use super::hatch::HatchTextures;
+use super::shadow::ShadowCasting;
 use super::surface::{MaterialUniform, SurfacePass};
 use super::{GpuContext, GpuError};
 use crate::hatch::HatchVertex;
@@ -41,6 +42,8 @@ pub struct GpuScene {
     pub(super) strokes: bool,
     /// Fins for all edges, where the printed form is drawn.
     pub(super) fins: Option<npr_outline::fin_pass::FinsOnDevice>,
+    /// What casts shadows, where volumes are drawn.
+    pub(super) casting: Option<ShadowCasting>,
     /// What tells where strokes lie, per vertex, and their map, where surfaces are hatched.
     pub(super) hatch: Option<(wgpu::Buffer, HatchTextures)>,
 }
@@ -119,6 +122,7 @@ impl GpuScene {
             edges: None,
             strokes: false,
             fins: None,
+            casting: None,
             hatch,
         })
     }

@@ -4,11 +4,13 @@ use super::GpuError;
 use super::hatch::{HatchTextures, HatchUniform, HatchVariant};
 use super::light::{Blank, LightOnDevice, LightVariant, uniform_buffer};
 use super::scene::{Batch, GpuScene, is_looked_up};
-use super::targets::{COLOR_FORMAT, DEPTH_FORMAT};
+use super::shadow::{BlankShadow, ShadowOnDevice};
+use super::targets::COLOR_FORMAT;
 use crate::camera::Camera;
 use crate::image_ink::ImagePlan;
 use crate::plan::Plan;
 use crate::scene::Scene;
+use crate::shadow::ShadowLines;
 use crate::style::{Shade, Style};
 use glam::{DVec2, DVec3, DVec4};
 use npr_imagespace::artist::LineKind;
@@ -118,10 +120,35 @@ struct Variant {
     blended: bool,
     light: LightVariant,
     hatch: Option<HatchVariant>,
+    shadow: ShadowVariant,
+    /// Of the depth buffer.
+    depth: wgpu::TextureFormat,
     /// Whether there is a picture to paint, even if it is left as it is.
     colored: bool,
     clipped: bool,
     inking: Option<Inking>,
+}
+
+/// Where a fragment's shadow comes from, and what lines in the image see of it: the constants of `surface_shadow.wgsl`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+struct ShadowVariant {
+    source: u32,
+    lines: u32,
+}
+
+impl ShadowVariant {
+    fn new(plan: &Plan, shadow: Option<&ShadowOnDevice>) -> Self {
+        let Some(shadow) = shadow else { return Self::default() };
+        let lines = plan.image.as_ref().map_or(ShadowLines::None, |image| image.ink.shadows);
+        Self {
+            source: if shadow.mask.is_some() { 1 } else { 2 },
+            lines: match lines {
+                ShadowLines::None => 0,
+                ShadowLines::Lines | ShadowLines::Apart { .. } => 1,
+                ShadowLines::Negated => 2,
+            },
+        }
+    }
 }
 
 /// The pipelines of the geometry pass.
@@ -132,18 +159,23 @@ pub(super) struct SurfacePass {
     layout: wgpu::PipelineLayout,
     blank: Blank,
     no_strokes: HatchTextures,
+    no_shadow: BlankShadow,
     pipelines: RefCell<HashMap<Variant, wgpu::RenderPipeline>>,
 }
 
 const SURFACE_LIGHT_WGSL: &str = include_str!("surface_light.wgsl");
+const SURFACE_SHADOW_WGSL: &str = include_str!("surface_shadow.wgsl");
 const SURFACE_WGSL: &str = include_str!("surface.wgsl");
 const SURFACE_HATCH_WGSL: &str = include_str!("surface_hatch.wgsl");
 
 /// The whole shader of the geometry pass.
 pub fn wgsl() -> String {
-    let ink = [npr_imagespace::format::FORMAT_WGSL, npr_imagespace::artist::ARTIST_WGSL].concat();
+    let ink =
+        [npr_imagespace::format::FORMAT_WGSL, npr_imagespace::shadow::SHADOW_WGSL, npr_imagespace::artist::ARTIST_WGSL]
+            .concat();
     let hatch = [npr_hatch::WGSL, npr_hatch::LOOKUP_WGSL].concat();
-    [npr_toon::WGSL, npr_gooch::WGSL, &hatch, &ink, SURFACE_LIGHT_WGSL, SURFACE_WGSL, SURFACE_HATCH_WGSL].concat()
+    let surface = [SURFACE_LIGHT_WGSL, SURFACE_SHADOW_WGSL, SURFACE_WGSL, SURFACE_HATCH_WGSL].concat();
+    [npr_toon::WGSL, npr_gooch::WGSL, &hatch, &ink, &surface].concat()
 }
 
 impl SurfacePass {
@@ -175,6 +207,11 @@ impl SurfacePass {
             view_dimension: wgpu::TextureViewDimension::D2,
             multisampled: false,
         };
+        let depth = wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Depth,
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        };
         let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
         let layout = |label, entries: &[_]| {
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
@@ -195,6 +232,9 @@ impl SurfacePass {
                 fragment(10, texture),
                 fragment(11, sampler),
                 fragment(12, words),
+                uniform(13),
+                fragment(14, words),
+                fragment(15, depth),
             ],
         );
         let material_layout = layout("surface material", &[uniform(0), fragment(1, texture), fragment(2, sampler)]);
@@ -212,6 +252,7 @@ impl SurfacePass {
             material_layout,
             blank: Blank::new(device),
             no_strokes: HatchTextures::blank(device),
+            no_shadow: BlankShadow::new(device),
             pipelines: RefCell::default(),
         }
     }
@@ -247,6 +288,7 @@ impl SurfacePass {
         plan: &Plan,
         camera: &Camera,
         light: &LightOnDevice,
+        shadow: Option<&ShadowOnDevice>,
         targets: &SurfaceTargets<'_>,
     ) -> Result<(), GpuError> {
         let ink = plan.image.as_ref().map_or_else(bytemuck::Zeroable::zeroed, |image| InkUniform::new(image, camera));
@@ -279,6 +321,13 @@ impl SurfacePass {
             wgpu::BindingResource::TextureView(&strokes.dark),
             wgpu::BindingResource::Sampler(&strokes.sampler),
             wgpu::BindingResource::TextureView(&strokes.thresholds),
+            shadow.map_or(&self.no_shadow.uniform, |shadow| &shadow.uniform).as_entire_binding(),
+            wgpu::BindingResource::TextureView(
+                shadow.and_then(|shadow| shadow.mask.as_ref()).unwrap_or(&self.no_shadow.mask),
+            ),
+            wgpu::BindingResource::TextureView(
+                shadow.and_then(|shadow| shadow.map.as_ref()).unwrap_or(&self.no_shadow.map),
+            ),
         ];
         let entry = |(binding, resource)| wgpu::BindGroupEntry { binding, resource };
         let entries: Vec<_> = (0..).zip(bound).map(entry).collect();
@@ -321,7 +370,10 @@ impl SurfacePass {
         let attachments = [targets.color.map(|view| attachment(view, clear)), texels];
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("geometry"),
-            color_attachments: &attachments[..if targets.texels.is_some() { 2 } else { 1 }],
+            color_attachments: match (targets.color, targets.texels) {
+                (None, None) => &[],
+                (_, texels) => &attachments[..if texels.is_some() { 2 } else { 1 }],
+            },
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: targets.depth,
                 depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Store }),
@@ -361,6 +413,9 @@ impl SurfacePass {
                 cull_back: plan.cull_back || !double_sided,
                 blended,
                 light: light.variant,
+                // No shadow is known of what is blended: it is not what the stencil was counted against.
+                shadow: if blended { ShadowVariant::default() } else { ShadowVariant::new(plan, shadow) },
+                depth: targets.depth.texture().format(),
                 hatch: hatch.filter(|_| paint == Paint::Hatched).map(|(shade, plan)| HatchVariant::new(shade, plan)),
                 colored: targets.color.is_some(),
                 clipped: scene.clip.is_some(),
@@ -376,7 +431,8 @@ impl SurfacePass {
             }
         };
         // Lines in the image that are found at another size hide nothing behind what the picture itself has.
-        let needed = paint != Paint::Nothing || targets.texels.is_some() || plan.image.is_none();
+        let needed =
+            paint != Paint::Nothing || targets.texels.is_some() || targets.color.is_none() || plan.image.is_none();
         for batch in uploaded.batches.iter().filter(|_| needed) {
             draw(batch, false);
         }
@@ -391,7 +447,7 @@ impl SurfacePass {
     }
 
     fn pipeline(&self, device: &wgpu::Device, variant: Variant) -> wgpu::RenderPipeline {
-        let Variant { paint, looked_up, by_alpha, cull_back, blended, light, hatch, colored, clipped, inking } =
+        let Variant { paint, looked_up, by_alpha, cull_back, blended, light, hatch, colored, clipped, inking, .. } =
             variant;
         // A blended surface is no surface to lines in the image.
         let inked = inking.is_some() && !blended;
@@ -400,7 +456,10 @@ impl SurfacePass {
             (Paint::Nothing, true, false) => ("vs_textured", "fs_cut_out"),
             (Paint::Painted, false, false) => ("vs_plain", "fs_painted"),
             (Paint::Painted, true, false) => ("vs_textured", "fs_painted_textured"),
-            (Paint::Lit, false, false) if light.is_of_vertices() => ("vs_lit_vertex", "fs_lit_vertex"),
+            // A shadow asks for the normal at the pixel.
+            (Paint::Lit, false, false) if light.is_of_vertices() && variant.shadow.source == 0 => {
+                ("vs_lit_vertex", "fs_lit_vertex")
+            }
             (Paint::Lit, false, false) => ("vs_lit_plain", "fs_lit_plain"),
             (Paint::Lit, true, false) => ("vs_lit", "fs_lit"),
             (Paint::Nothing, false, true) => ("vs_plain_inked", "fs_texels"),
@@ -462,6 +521,8 @@ impl SurfacePass {
             .into_iter()
             .chain(HatchVariant::constants(hatch))
             .chain([
+                ("surface_shadow", f64::from(variant.shadow.source)),
+                ("surface_shadow_lines", f64::from(variant.shadow.lines)),
                 ("surface_clipped", flag(clipped)),
                 ("surface_narrow", flag(narrow)),
                 ("surface_line_kind", f64::from(line_kind as u32)),
@@ -470,6 +531,7 @@ impl SurfacePass {
                 ("surface_looked_up", flag(looked_up)),
             ])
             .collect();
+        let targets = [colored.then_some(target), texels];
         // The vertex stage computes light, too.
         let options = || wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() };
         device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
@@ -483,7 +545,7 @@ impl SurfacePass {
             },
             primitive: wgpu::PrimitiveState { cull_mode: cull_back.then_some(wgpu::Face::Back), ..Default::default() },
             depth_stencil: Some(wgpu::DepthStencilState {
-                format: DEPTH_FORMAT,
+                format: variant.depth,
                 depth_write_enabled: Some(!blended),
                 depth_compare: Some(wgpu::CompareFunction::Greater),
                 stencil: Default::default(),
@@ -494,7 +556,10 @@ impl SurfacePass {
                 module: &self.module,
                 entry_point: Some(fragment),
                 compilation_options: options(),
-                targets: &[colored.then_some(target), texels][..if inking.is_some() { 2 } else { 1 }],
+                targets: match (colored, inking.is_some()) {
+                    (false, false) => &[],
+                    (_, inks) => &targets[..if inks { 2 } else { 1 }],
+                },
             }),
             multiview_mask: None,
             cache: None,
@@ -518,6 +583,7 @@ fn back_to_front(scene: &Scene, faces: &[u32], camera: &Camera) -> Vec<u32> {
 #[cfg(test)]
 mod tests {
     use super::super::light::ShadeUniform;
+    use super::super::shadow::ShadowUniform;
     use super::*;
     use naga::TypeInner;
     use std::mem::offset_of;
@@ -583,5 +649,16 @@ mod tests {
             ("padding", offset_of!(HatchUniform, padding)),
         ];
         assert_eq!(layout("SurfaceHatch"), ours(&hatch, size_of::<HatchUniform>()));
+        let shadow = [
+            ("light", offset_of!(ShadowUniform, light)),
+            ("light_px", offset_of!(ShadowUniform, light_px)),
+            ("world_from_px", offset_of!(ShadowUniform, world_from_px)),
+            ("map_from_px", offset_of!(ShadowUniform, map_from_px)),
+            ("terminator", offset_of!(ShadowUniform, terminator)),
+            ("padding0", offset_of!(ShadowUniform, padding0)),
+            ("padding1", offset_of!(ShadowUniform, padding1)),
+            ("padding2", offset_of!(ShadowUniform, padding2)),
+        ];
+        assert_eq!(layout("SurfaceShadow"), ours(&shadow, size_of::<ShadowUniform>()));
     }
 }

@@ -56,12 +56,12 @@ override surface_looked_up: bool = false;
 @group(1) @binding(2) var base_sampler: sampler;
 
 struct Surface {
-    @builtin(position) position: vec4<f32>,
+    @invariant @builtin(position) position: vec4<f32>,
     @location(0) normal: vec3<f32>,
 }
 
 struct TexturedSurface {
-    @builtin(position) position: vec4<f32>,
+    @invariant @builtin(position) position: vec4<f32>,
     @location(0) normal: vec3<f32>,
     @location(1) uv: vec2<f32>,
     @location(2) color: vec4<f32>,
@@ -69,13 +69,13 @@ struct TexturedSurface {
 
 // With the region that lines in the image are drawn around.
 struct InkedSurface {
-    @builtin(position) position: vec4<f32>,
+    @invariant @builtin(position) position: vec4<f32>,
     @location(0) normal: vec3<f32>,
     @location(3) @interpolate(flat) region: u32,
 }
 
 struct InkedTexturedSurface {
-    @builtin(position) position: vec4<f32>,
+    @invariant @builtin(position) position: vec4<f32>,
     @location(0) normal: vec3<f32>,
     @location(1) uv: vec2<f32>,
     @location(2) color: vec4<f32>,
@@ -85,7 +85,7 @@ struct InkedTexturedSurface {
 // With everything, and with what the light needs that is not the same for all of a face: a position, or vectors to the
 // light and the second vector, or light from the vertices.
 struct LitSurface {
-    @builtin(position) position: vec4<f32>,
+    @invariant @builtin(position) position: vec4<f32>,
     @location(0) normal: vec3<f32>,
     @location(1) uv: vec2<f32>,
     @location(2) color: vec4<f32>,
@@ -97,14 +97,14 @@ struct LitSurface {
 // The same of plain surfaces without lines in the image, and where the vertices' light is all that is needed: on a
 // software rasteriser each number that is interpolated costs as much as some arithmetic at a pixel.
 struct PlainLitSurface {
-    @builtin(position) position: vec4<f32>,
+    @invariant @builtin(position) position: vec4<f32>,
     @location(0) normal: vec3<f32>,
     @location(4) first: vec3<f32>,
     @location(5) second: vec3<f32>,
 }
 
 struct VertexLitSurface {
-    @builtin(position) position: vec4<f32>,
+    @invariant @builtin(position) position: vec4<f32>,
     @location(0) light: vec2<f32>,
 }
 
@@ -123,7 +123,7 @@ fn to_eye(position_px: vec2<f32>) -> vec3<f32> {
 }
 
 @vertex
-fn vs_depth(@location(0) position: vec3<f32>) -> @builtin(position) vec4<f32> {
+fn vs_depth(@location(0) position: vec3<f32>) -> @invariant @builtin(position) vec4<f32> {
     return view.clip_from_world * vec4<f32>(position, 1.0);
 }
 
@@ -221,8 +221,12 @@ fn base_color(texel: vec4<f32>, color: vec4<f32>) -> vec4<f32> {
 }
 
 // Per-pixel light from directions that are the same everywhere. In uniform control flow.
-fn painted(base: vec3<f32>, normal: vec3<f32>, position_px: vec2<f32>) -> vec3<f32> {
-    return shaded(base, light_at(toon_unit(normal), vec3<f32>(0.0), to_eye(position_px)));
+fn painted(base: vec3<f32>, normal: vec3<f32>, position_px: vec2<f32>, state: u32) -> vec3<f32> {
+    if surface_shade == SHADE_NORMALS {
+        let negated = surface_shadow != 0u && state != INK_LIT;
+        return ink_shadow_normal(toon_unit(normal), negated) * 0.5 + 0.5;
+    }
+    return shaded(base, light_at(toon_unit(normal), vec3<f32>(0.0), to_eye(position_px)), state);
 }
 
 // Cuts off what lies beyond the plane. After all derivatives.
@@ -238,7 +242,9 @@ fn facing(normal: vec3<f32>, front: bool) -> vec3<f32> {
 
 @fragment
 fn fs_painted(in: Surface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
-    let color = painted(material.base_color.rgb, facing(in.normal, front), in.position.xy);
+    let normal = facing(in.normal, front);
+    let state = shadow_state(in.position, normal);
+    let color = painted(material.base_color.rgb, normal, in.position.xy, state);
     clip_off(in.position);
     return vec4<f32>(color, material.base_color.a);
 }
@@ -246,7 +252,9 @@ fn fs_painted(in: Surface, @builtin(front_facing) front: bool) -> @location(0) v
 @fragment
 fn fs_painted_textured(in: TexturedSurface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
     let base = base_color(texture_color(in.uv), in.color);
-    let color = painted(encode_srgb(base.rgb), facing(in.normal, front), in.position.xy);
+    let normal = facing(in.normal, front);
+    let state = shadow_state(in.position, normal);
+    let color = painted(encode_srgb(base.rgb), normal, in.position.xy, state);
     if base.a < material.cutoff {
         discard;
     }
@@ -305,46 +313,61 @@ fn inked_normal(normal: vec3<f32>, texel: vec4<f32>, color: vec4<f32>, position_
     return artist_normal(index, position_px);
 }
 
-fn words(normal: vec3<f32>, region: u32, position: vec4<f32>) -> vec2<u32> {
+// The largest number of a region beside a state of shadow.
+fn shadowed_most() -> u32 {
+    return select(INK_WIDE_SHADOWED_MOST, INK_NARROW_SHADOWED_MOST, surface_narrow);
+}
+
+fn words(normal: vec3<f32>, region: u32, position: vec4<f32>, state: u32) -> vec2<u32> {
     let depth = ink_depth_code_of(position.z, ink.code);
+    let number = shadow_region(region, state, shadowed_most());
     if surface_narrow {
-        return vec2<u32>(ink_narrow_word(normal, region, depth), 0u);
+        return vec2<u32>(ink_narrow_word(normal, number, depth), 0u);
     }
-    return ink_wide_words(normal, region, depth);
+    return ink_wide_words(normal, number, depth);
 }
 
-fn plain_words(in: InkedSurface, front: bool) -> vec2<u32> {
-    return words(inked_normal(facing(in.normal, front), vec4<f32>(1.0), vec4<f32>(1.0), in.position.xy), in.region, in.position);
+fn plain_words(in: InkedSurface, front: bool, state: u32) -> vec2<u32> {
+    let own = shadow_normal(facing(in.normal, front), state);
+    let normal = inked_normal(own, vec4<f32>(1.0), vec4<f32>(1.0), in.position.xy);
+    return words(normal, in.region, in.position, state);
 }
 
-fn textured_words(in: InkedTexturedSurface, front: bool, texel: vec4<f32>) -> vec2<u32> {
+fn textured_words(in: InkedTexturedSurface, front: bool, texel: vec4<f32>, state: u32) -> vec2<u32> {
     var region = in.region;
     if surface_region_of_texture {
         region = ink_region_pair(in.region, texture_region(in.uv));
-        if surface_narrow {
+        if surface_shadow_lines == 1u {
+            region = ink_fold_region(region, shadowed_most());
+        } else if surface_narrow {
             region = ink_fold_region(region, INK_NARROW_REGION_MOST);
         }
     }
-    return words(inked_normal(facing(in.normal, front), texel, in.color, in.position.xy), region, in.position);
+    let own = shadow_normal(facing(in.normal, front), state);
+    return words(inked_normal(own, texel, in.color, in.position.xy), region, in.position, state);
 }
 
 @fragment
 fn fs_painted_inked(in: InkedSurface, @builtin(front_facing) front: bool) -> Inked {
-    let color = painted(material.base_color.rgb, facing(in.normal, front), in.position.xy);
+    let normal = facing(in.normal, front);
+    let state = shadow_state(in.position, normal);
+    let color = painted(material.base_color.rgb, normal, in.position.xy, state);
     clip_off(in.position);
-    return Inked(vec4<f32>(color, material.base_color.a), plain_words(in, front));
+    return Inked(vec4<f32>(color, material.base_color.a), plain_words(in, front, state));
 }
 
 @fragment
 fn fs_painted_textured_inked(in: InkedTexturedSurface, @builtin(front_facing) front: bool) -> Inked {
     let texel = texture_color(in.uv);
     let base = base_color(texel, in.color);
-    let color = painted(encode_srgb(base.rgb), facing(in.normal, front), in.position.xy);
+    let normal = facing(in.normal, front);
+    let state = shadow_state(in.position, normal);
+    let color = painted(encode_srgb(base.rgb), normal, in.position.xy, state);
     if base.a < material.cutoff {
         discard;
     }
     clip_off(in.position);
-    return Inked(vec4<f32>(color, base.a), textured_words(in, front, texel));
+    return Inked(vec4<f32>(color, base.a), textured_words(in, front, texel, state));
 }
 
 // What the light is at a pixel, wherever it is computed.
@@ -379,17 +402,18 @@ fn lit_texel(in: LitSurface) -> vec4<f32> {
     return vec4<f32>(1.0);
 }
 
-fn lit_words(in: LitSurface, texel: vec4<f32>, front: bool) -> vec2<u32> {
+fn lit_words(in: LitSurface, texel: vec4<f32>, front: bool, state: u32) -> vec2<u32> {
     if surface_looked_up {
-        return textured_words(InkedTexturedSurface(in.position, in.normal, in.uv, in.color, in.region), front, texel);
+        return textured_words(InkedTexturedSurface(in.position, in.normal, in.uv, in.color, in.region), front, texel, state);
     }
-    return plain_words(InkedSurface(in.position, in.normal, in.region), front);
+    return plain_words(InkedSurface(in.position, in.normal, in.region), front, state);
 }
 
 @fragment
 fn fs_lit(in: LitSurface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
     let base = lit_base(in, lit_texel(in));
-    let color = shaded(base.rgb, light_of(without_lookups(in), front));
+    let state = shadow_state(in.position, facing(in.normal, front));
+    let color = shaded(base.rgb, light_of(without_lookups(in), front), state);
     if surface_looked_up && base.a < material.cutoff {
         discard;
     }
@@ -399,14 +423,15 @@ fn fs_lit(in: LitSurface, @builtin(front_facing) front: bool) -> @location(0) ve
 
 @fragment
 fn fs_lit_plain(in: PlainLitSurface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
-    let color = shaded(material.base_color.rgb, light_of(in, front));
+    let state = shadow_state(in.position, facing(in.normal, front));
+    let color = shaded(material.base_color.rgb, light_of(in, front), state);
     clip_off(in.position);
     return vec4<f32>(color, material.base_color.a);
 }
 
 @fragment
 fn fs_lit_vertex(in: VertexLitSurface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
-    let color = shaded(material.base_color.rgb, select(light_of_back(in.light), in.light, front));
+    let color = shaded(material.base_color.rgb, select(light_of_back(in.light), in.light, front), INK_TURNED);
     clip_off(in.position);
     return vec4<f32>(color, material.base_color.a);
 }
@@ -415,28 +440,31 @@ fn fs_lit_vertex(in: VertexLitSurface, @builtin(front_facing) front: bool) -> @l
 fn fs_lit_inked(in: LitSurface, @builtin(front_facing) front: bool) -> Inked {
     let texel = lit_texel(in);
     let base = lit_base(in, texel);
-    let color = shaded(base.rgb, light_of(without_lookups(in), front));
+    let state = shadow_state(in.position, facing(in.normal, front));
+    let color = shaded(base.rgb, light_of(without_lookups(in), front), state);
     if surface_looked_up && base.a < material.cutoff {
         discard;
     }
     clip_off(in.position);
-    return Inked(vec4<f32>(color, base.a), lit_words(in, texel, front));
+    return Inked(vec4<f32>(color, base.a), lit_words(in, texel, front, state));
 }
 
 @fragment
 fn fs_texels(in: InkedSurface, @builtin(front_facing) front: bool) -> Texel {
+    let state = shadow_state(in.position, facing(in.normal, front));
     clip_off(in.position);
-    return Texel(plain_words(in, front));
+    return Texel(plain_words(in, front, state));
 }
 
 @fragment
 fn fs_texels_textured(in: InkedTexturedSurface, @builtin(front_facing) front: bool) -> Texel {
     let texel = texture_color(in.uv);
+    let state = shadow_state(in.position, facing(in.normal, front));
     if base_color(texel, in.color).a < material.cutoff {
         discard;
     }
     clip_off(in.position);
-    return Texel(textured_words(in, front, texel));
+    return Texel(textured_words(in, front, texel, state));
 }
 
 @fragment

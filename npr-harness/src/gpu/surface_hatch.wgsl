@@ -38,7 +38,7 @@ struct SurfaceHatch {
 @group(0) @binding(12) var hatch_map: texture_2d<u32>;
 
 struct HatchedSurface {
-    @builtin(position) position: vec4<f32>,
+    @invariant @builtin(position) position: vec4<f32>,
     @location(0) normal: vec3<f32>,
     @location(1) uv: vec2<f32>,
     @location(2) color: vec4<f32>,
@@ -194,14 +194,19 @@ fn hatched(asked: Hatching) -> f32 {
 }
 
 // In uniform control flow.
-fn hatched_color(in: HatchedSurface, base: vec3<f32>, front: bool) -> vec3<f32> {
+fn hatched_color(in: HatchedSurface, base: vec3<f32>, front: bool, state: u32) -> vec3<f32> {
     let at_dx = dpdxFine(in.at);
     let at_dy = dpdyFine(in.at);
     let light = light_of(PlainLitSurface(in.position, in.normal, in.first, in.second), front);
-    let tone = hatched_tone(light.x);
+    var tone = hatched_tone(light.x);
+    var in_shadow = false;
+    if surface_shadow != 0u {
+        in_shadow = state == INK_CAST;
+        tone = hatch_shadowed(tone, hatched_tone(0.0), select(1.0, 0.0, in_shadow));
+    }
     var weights = HatchWeights(in.light_weights, in.dark_weights);
-    if hatched_at_vertices() && !front {
-        // The back's light is known, its weights are not.
+    if hatched_at_vertices() && (!front || in_shadow) {
+        // The tone is known, its weights are not.
         weights = hatched_weights(tone);
     }
     let normal = toon_unit(in.normal);
@@ -221,7 +226,8 @@ fn hatched_lit(in: HatchedSurface) -> LitSurface {
 fn fs_hatched(in: HatchedSurface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
     let lit = hatched_lit(in);
     let base = lit_base(lit, lit_texel(lit));
-    let color = hatched_color(in, base.rgb, front);
+    let state = shadow_state(in.position, facing(in.normal, front));
+    let color = hatched_color(in, base.rgb, front, state);
     if surface_looked_up && base.a < material.cutoff {
         discard;
     }
@@ -234,10 +240,11 @@ fn fs_hatched_inked(in: HatchedSurface, @builtin(front_facing) front: bool) -> I
     let lit = hatched_lit(in);
     let texel = lit_texel(lit);
     let base = lit_base(lit, texel);
-    let color = hatched_color(in, base.rgb, front);
+    let state = shadow_state(in.position, facing(in.normal, front));
+    let color = hatched_color(in, base.rgb, front, state);
     if surface_looked_up && base.a < material.cutoff {
         discard;
     }
     clip_off(in.position);
-    return Inked(vec4<f32>(color, base.a), lit_words(lit, texel, front));
+    return Inked(vec4<f32>(color, base.a), lit_words(lit, texel, front, state));
 }

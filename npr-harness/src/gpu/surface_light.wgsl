@@ -6,6 +6,7 @@ const SHADE_TOON: u32 = 1u;
 const SHADE_RAMP: u32 = 2u;
 const SHADE_PAINTER: u32 = 3u;
 const SHADE_GOOCH: u32 = 4u;
+const SHADE_NORMALS: u32 = 5u;
 
 // What of the shades there is, known when the pipeline is made: a software rasteriser runs through what it branches
 // around.
@@ -147,12 +148,14 @@ fn lambert(base: vec3<f32>, reach: f32) -> vec3<f32> {
 }
 
 // `toon_shade`, with the highlight left out when the pipeline is made.
-fn banded(base: vec3<f32>, light: vec2<f32>) -> vec3<f32> {
+fn banded(base: vec3<f32>, light_there: vec2<f32>, state: u32) -> vec3<f32> {
+    let light = shadow_light(light_there, state);
     var widths = vec2<f32>(0.0);
     if toon.antialias != 0u {
-        widths.x = toon_pixel_border_width(light.x);
+        // As wide in a shadow: the light there is this one's, negated.
+        widths.x = toon_pixel_border_width(light_there.x);
         if surface_highlight {
-            widths.y = toon_pixel_border_width(light.y);
+            widths.y = toon_pixel_border_width(light_there.y);
         }
     }
     let color = base * toon_band(toon, light.x, widths.x);
@@ -165,10 +168,11 @@ fn banded(base: vec3<f32>, light: vec2<f32>) -> vec3<f32> {
     return mix(color, toon.highlight.rgb, opacity);
 }
 
-// A surface's own colour under the light. In uniform control flow.
-fn shaded(base: vec3<f32>, light: vec2<f32>) -> vec3<f32> {
+// A surface's own colour under the light, in one of the states of shadow. In uniform control flow.
+fn shaded(base: vec3<f32>, light_there: vec2<f32>, state: u32) -> vec3<f32> {
+    let light = shadow_light(light_there, state);
     if surface_shade == SHADE_PAINTER {
-        let widths = vec2<f32>(toon_pixel_border_width(light.x), toon_pixel_border_width(light.y));
+        let widths = vec2<f32>(toon_pixel_border_width(light_there.x), toon_pixel_border_width(light_there.y));
         return toon_paint(lights, shade_of_table(light, widths), vec4<f32>(base, 1.0)).rgb;
     }
     if surface_shade == SHADE_GOOCH {
@@ -179,14 +183,17 @@ fn shaded(base: vec3<f32>, light: vec2<f32>) -> vec3<f32> {
         tinted *= lights.light_color.rgb;
     }
     if surface_shade == SHADE_TOON {
-        return banded(tinted, light);
+        return banded(tinted, light_there, state);
     }
     if surface_shade == SHADE_RAMP {
-        var x = light.x;
+        var x = light_there.x;
+        var dark = -abs(x);
         if surface_half_lambert {
             x = toon_half_lambert(shade.half_scale, shade.half_bias, shade.half_squared, x);
+            dark = toon_half_lambert(shade.half_scale, shade.half_bias, shade.half_squared, dark);
         }
-        return tinted * shade_of_ramp(x, toon_pixel_border_width(x));
+        let width = shadow_border_width(x, dark, state);
+        return tinted * shade_of_ramp(select(x, dark, surface_shadow != 0u && state == INK_CAST), width);
     }
     return lambert(tinted, light.x);
 }

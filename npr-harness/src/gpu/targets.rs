@@ -1,8 +1,9 @@
 //! What a frame is drawn into.
 
+use super::shadow::StencilTarget;
 use super::{GpuContext, GpuError};
 use crate::compare::Image;
-use crate::image_ink::{ImageInk, InkScale};
+use crate::image_ink::{ImageInk, ImagePlan, InkScale};
 use npr_imagespace::format::texel::TexelLayout;
 use npr_imagespace::pass::INK_FORMAT;
 use npr_imagespace::pass::disc::DiscScratch;
@@ -33,6 +34,8 @@ pub struct Targets {
     stroke_buffers: OnceCell<Option<StrokeBuffers>>,
     /// Made when first needed, and anew for a style that needs others.
     ink: RefCell<Option<InkTargets>>,
+    /// Where shadow volumes are counted.
+    pub(super) stencil: StencilTarget,
     /// Which of the two the last frame ended in.
     is_inked: Cell<bool>,
 }
@@ -45,6 +48,8 @@ pub(super) struct InkTargets {
     pub(super) texels: wgpu::TextureView,
     /// Where the ink has another size than the picture.
     pub(super) depth: Option<wgpu::TextureView>,
+    /// Where shadow volumes are counted if the ink has another size.
+    pub(super) stencil: StencilTarget,
     /// Ink as it is found, where it is not laid at once.
     pub(super) found: Option<wgpu::TextureView>,
     /// Where there is a brush.
@@ -54,17 +59,18 @@ pub(super) struct InkTargets {
 }
 
 impl InkTargets {
-    fn new(context: &GpuContext, ink: &ImageInk, picture: (u32, u32)) -> Result<Self, GpuError> {
+    fn new(context: &GpuContext, ink: &ImageInk, brushed: bool, picture: (u32, u32)) -> Result<Self, GpuError> {
         let size = ink.scale.size(picture);
         check_size(context, size)?;
         let view = |label, format, usage| texture(context, label, format, usage, size).create_view(&Default::default());
         let read = wgpu::TextureUsages::TEXTURE_BINDING;
-        let (scaled, brushed) = (ink.scale != InkScale::One, ink.brush.is_some());
+        let scaled = ink.scale != InkScale::One;
         Ok(Self {
             kind: (ink.layout, ink.scale, brushed),
             size,
             texels: view("normal, region and depth", texel_format(ink.layout), read | wgpu::TextureUsages::COPY_SRC),
             depth: scaled.then(|| view("depth of the ink", DEPTH_FORMAT, wgpu::TextureUsages::empty())),
+            stencil: StencilTarget::default(),
             found: (scaled || brushed).then(|| view("ink", INK_FORMAT, read)),
             brush: brushed.then(|| DiscScratch::new(&context.device, size.into())),
             thick: (scaled && brushed).then(|| view("thick ink", INK_FORMAT, read)),
@@ -121,6 +127,7 @@ impl Targets {
             winner_view: view(&texture("greatest coverage", WINNER_FORMAT, wgpu::TextureUsages::empty())),
             stroke_buffers: OnceCell::new(),
             ink: RefCell::default(),
+            stencil: StencilTarget::default(),
             is_inked: Cell::new(false),
         })
     }
@@ -129,11 +136,12 @@ impl Targets {
     ///
     /// # Errors
     /// [`GpuError::TooLarge`].
-    pub(super) fn ink(&self, context: &GpuContext, ink: &ImageInk) -> Result<Ref<'_, InkTargets>, GpuError> {
-        let kind = (ink.layout, ink.scale, ink.brush.is_some());
+    pub(super) fn ink(&self, context: &GpuContext, image: &ImagePlan) -> Result<Ref<'_, InkTargets>, GpuError> {
+        let (ink, brushed) = (&image.ink, image.has_brush());
+        let kind = (ink.layout, ink.scale, brushed);
         let is_for = |targets: &InkTargets| targets.kind == kind;
         if !self.ink.borrow().as_ref().is_some_and(is_for) {
-            *self.ink.borrow_mut() = Some(InkTargets::new(context, ink, (self.width, self.height))?);
+            *self.ink.borrow_mut() = Some(InkTargets::new(context, ink, brushed, (self.width, self.height))?);
         }
         Ok(Ref::map(self.ink.borrow(), |targets| targets.as_ref().expect("it was just made")))
     }

@@ -3,6 +3,7 @@
 mod hatch;
 mod lines;
 mod shade;
+mod shadow;
 
 use super::file::StyleFileError;
 use super::{Shade, Style};
@@ -15,6 +16,7 @@ use npr_toon::normal::NormalUse;
 use npr_toon::source::{Light, LightPlace};
 use serde::{Deserialize, Serialize};
 use shade::ShadeForm;
+use shadow::ShadowForm;
 use std::path::{Path, PathBuf};
 
 /// Red, green and blue; read from `"#rrggbb"`, too.
@@ -64,6 +66,8 @@ pub(super) struct StyleForm {
     light: Vec<LightForm>,
     shade: ShadeForm,
     #[serde(skip_serializing_if = "Option::is_none")]
+    shadow: Option<ShadowForm>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     lines: Option<LinesForm>,
 }
 
@@ -77,6 +81,7 @@ impl Default for StyleForm {
             normals: NormalsForm::PerPixel,
             light: vec![LightForm::new(&StyleLight::KEY)],
             shade: ShadeForm::new(&Shade::Toon(Bands::default())),
+            shadow: None,
             lines: None,
         }
     }
@@ -139,6 +144,7 @@ impl StyleForm {
             },
             light: style.lights.iter().map(LightForm::new).collect(),
             shade: ShadeForm::new(&style.shade),
+            shadow: style.shadow.as_ref().map(ShadowForm::new),
             lines: style.lines.as_ref().map(LinesForm::new),
         }
     }
@@ -160,6 +166,7 @@ impl StyleForm {
                 NormalsForm::PerVertex => NormalUse::PerVertex,
             },
             lights: lights.collect::<Result<_, _>>()?,
+            shadow: self.shadow.map(ShadowForm::shadow).transpose().map_err(|what| at.wrong(what))?,
             lines: self.lines.map(LinesForm::lines),
             crease_angle_rad: self.crease_angle_deg.to_radians(),
         })

@@ -6,6 +6,7 @@ use super::{
 };
 use crate::image_ink::{ImageInk, InkScale};
 use crate::light::{LightFrame, StyleLight};
+use crate::shadow::{ShadowLines, ShadowStyle};
 use glam::Vec3;
 use npr_gooch::Gooch;
 use npr_hatch::TamParameters;
@@ -113,10 +114,14 @@ pub fn styles() -> Vec<Style> {
         shade,
         normals: NormalUse::PerPixel,
         lights: vec![StyleLight::KEY],
+        shadow: None,
         lines,
         crease_angle_rad: 45f32.to_radians(),
     };
     let hard = Bands { antialias: false, ..Bands::hard_shading() };
+    let shadow = Some(ShadowStyle::default());
+    // Low enough for shadows that are seen, and high enough for them to end on the ground.
+    let from_the_left = vec![StyleLight { light: Light::directional(Vec3::new(-0.75, 0.95, 0.35)), ..StyleLight::KEY }];
     // Nearly at a right angle to the view: all of the way from cool to warm is seen.
     let from_the_side = vec![StyleLight { light: Light::directional(Vec3::new(-0.7, 0.6, 0.3)), ..StyleLight::KEY }];
     vec![
@@ -173,6 +178,62 @@ pub fn styles() -> Vec<Style> {
             Shade::Toon(Bands::default()),
             image_lines(ImageInk { artist: true, ..ImageInk::default() }),
         ),
+        Style {
+            shadow,
+            lights: from_the_left.clone(),
+            ..style(
+                "toon-shadow",
+                "banded light and cast shadows, both outlined by one pass over the image",
+                Shade::Toon(Bands::default()),
+                image_lines(ImageInk { shadows: ShadowLines::Lines, ..ImageInk::default() }),
+            )
+        },
+        Style {
+            shadow,
+            lights: from_the_left.clone(),
+            ..style(
+                "hatch-shadow",
+                "strokes that follow the form, densest in cast shadows, outlined",
+                Shade::Hatch(hatching()),
+                image_lines(ImageInk { shadows: ShadowLines::Lines, ..ImageInk::default() }),
+            )
+        },
+        Style {
+            shadow,
+            lights: from_the_left.clone(),
+            ..style(
+                "shadow-lines",
+                "ink on paper, and in blue where shadows end",
+                Shade::Paper,
+                image_lines(ImageInk {
+                    shadows: ShadowLines::Apart {
+                        composite: Composite::Over { color: Vec3::new(0.20, 0.36, 0.72), opacity: 1.0 },
+                        brush: Some(Disc { radius_px: 1.0, antialias: true }),
+                    },
+                    ..ImageInk::default()
+                }),
+            )
+        },
+        Style {
+            shadow,
+            lights: from_the_left.clone(),
+            ..style(
+                "normals",
+                "world-space normals, negated in shadow: what the 2002 chapter filters",
+                Shade::Normals,
+                None,
+            )
+        },
+        Style {
+            shadow: Some(ShadowStyle { terminator: 0.0, ..ShadowStyle::default() }),
+            lights: from_the_left,
+            ..style(
+                "printed-shadow",
+                "shadow outlines by negated normals, as the 2002 chapter has them",
+                Shade::Toon(hard.clone()),
+                image_lines(ImageInk { shadows: ShadowLines::Negated, ..ImageInk::default() }),
+            )
+        },
         Style {
             normals: NormalUse::PerVertex,
             ..style(

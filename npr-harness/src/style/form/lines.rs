@@ -2,10 +2,11 @@
 
 use super::{Color, one, yes};
 use crate::image_ink::{ImageInk, InkScale, Regions};
+use crate::shadow::ShadowLines;
 use crate::style::Lines;
 use glam::Vec3;
 use npr_imagespace::composite::{AlphaTest, Composite};
-use npr_imagespace::filter::fused::{DepthTest, FusedFilter};
+use npr_imagespace::filter::fused::{DepthTest, FusedFilter, ShadowTest};
 use npr_imagespace::format::texel::TexelLayout;
 use npr_imagespace::morphology::disc::Disc;
 use npr_imagespace::picture::Taps;
@@ -56,6 +57,7 @@ pub(super) struct ImageForm {
     layout: LayoutForm,
     artist: bool,
     scale: ScaleForm,
+    shadows: ShadowsForm,
     #[serde(skip_serializing_if = "Option::is_none")]
     brush: Option<BrushForm>,
     composite: CompositeForm,
@@ -101,6 +103,24 @@ enum ScaleForm {
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
+enum ShadowsForm {
+    None,
+    Negated,
+    Lines,
+    Apart(ApartForm),
+}
+
+/// Lines of shadows that look different.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct ApartForm {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    brush: Option<BrushForm>,
+    composite: CompositeForm,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct BrushForm {
     radius_px: f32,
     #[serde(default = "yes")]
@@ -128,6 +148,34 @@ struct OverForm {
     color: Color,
     #[serde(default = "one")]
     opacity: f32,
+}
+
+impl BrushForm {
+    fn new(Disc { radius_px, antialias }: Disc) -> Self {
+        Self { radius_px, antialias }
+    }
+
+    fn disc(self) -> Disc {
+        Disc { radius_px: self.radius_px, antialias: self.antialias }
+    }
+}
+
+impl CompositeForm {
+    fn new(composite: Composite) -> Self {
+        match composite {
+            Composite::Multiply => Self::Multiply,
+            Composite::AlphaTested(AlphaTest { less, reference }) => Self::AlphaTested(AlphaForm { less, reference }),
+            Composite::Over { color, opacity } => Self::Over(OverForm { color: Color(color), opacity }),
+        }
+    }
+
+    fn composite(self) -> Composite {
+        match self {
+            Self::Multiply => Composite::Multiply,
+            Self::AlphaTested(AlphaForm { less, reference }) => Composite::AlphaTested(AlphaTest { less, reference }),
+            Self::Over(OverForm { color, opacity }) => Composite::Over { color: color.0, opacity },
+        }
+    }
 }
 
 impl LinesForm {
@@ -164,7 +212,7 @@ impl LinesForm {
 
 impl ImageForm {
     fn new(ink: &ImageInk) -> Self {
-        let FusedFilter { normal_cos, depth, regions, taps, softness } = ink.filter;
+        let FusedFilter { normal_cos, depth, regions, taps, softness, .. } = ink.filter;
         let fallback = FusedFilter::default();
         let test = depth.or(fallback.depth).unwrap_or_default();
         Self {
@@ -195,14 +243,17 @@ impl ImageForm {
                 InkScale::One => ScaleForm::One,
                 InkScale::Double => ScaleForm::Double,
             },
-            brush: ink.brush.map(|Disc { radius_px, antialias }| BrushForm { radius_px, antialias }),
-            composite: match ink.composite {
-                Composite::Multiply => CompositeForm::Multiply,
-                Composite::AlphaTested(AlphaTest { less, reference }) => {
-                    CompositeForm::AlphaTested(AlphaForm { less, reference })
-                }
-                Composite::Over { color, opacity } => CompositeForm::Over(OverForm { color: Color(color), opacity }),
+            shadows: match ink.shadows {
+                ShadowLines::None => ShadowsForm::None,
+                ShadowLines::Negated => ShadowsForm::Negated,
+                ShadowLines::Lines => ShadowsForm::Lines,
+                ShadowLines::Apart { composite, brush } => ShadowsForm::Apart(ApartForm {
+                    brush: brush.map(BrushForm::new),
+                    composite: CompositeForm::new(composite),
+                }),
             },
+            brush: ink.brush.map(BrushForm::new),
+            composite: CompositeForm::new(ink.composite),
         }
     }
 
@@ -212,6 +263,8 @@ impl ImageForm {
                 normal_cos: self.normals.then_some(self.normal_cos),
                 depth: self.depth.then_some(DepthTest { step: self.depth_step, plain: self.depth_plain }),
                 regions: !matches!(self.regions, RegionsForm::None),
+                // The plan says.
+                shadows: ShadowTest::Absent,
                 taps: match self.taps {
                     TapsForm::Diagonal => Taps::Diagonal,
                     TapsForm::Cross => Taps::Cross,
@@ -229,19 +282,21 @@ impl ImageForm {
                 RegionsForm::None | RegionsForm::Patch => Regions::Patch,
             },
             artist: self.artist,
-            brush: self.brush.map(|BrushForm { radius_px, antialias }| Disc { radius_px, antialias }),
+            shadows: match self.shadows {
+                ShadowsForm::None => ShadowLines::None,
+                ShadowsForm::Negated => ShadowLines::Negated,
+                ShadowsForm::Lines => ShadowLines::Lines,
+                ShadowsForm::Apart(ApartForm { brush, composite }) => {
+                    ShadowLines::Apart { composite: composite.composite(), brush: brush.map(BrushForm::disc) }
+                }
+            },
+            brush: self.brush.map(BrushForm::disc),
             scale: match self.scale {
                 ScaleForm::Half => InkScale::Half,
                 ScaleForm::One => InkScale::One,
                 ScaleForm::Double => InkScale::Double,
             },
-            composite: match self.composite {
-                CompositeForm::Multiply => Composite::Multiply,
-                CompositeForm::AlphaTested(AlphaForm { less, reference }) => {
-                    Composite::AlphaTested(AlphaTest { less, reference })
-                }
-                CompositeForm::Over(OverForm { color, opacity }) => Composite::Over { color: color.0, opacity },
-            },
+            composite: self.composite.composite(),
         }
     }
 }

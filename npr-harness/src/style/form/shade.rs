@@ -19,6 +19,7 @@ use std::path::PathBuf;
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) enum ShadeForm {
     Paper,
+    Normals,
     Lambert(LambertForm),
     Toon(BandsForm),
     Ramp(RampShadeForm),
@@ -225,6 +226,7 @@ impl ShadeForm {
     pub(super) fn new(shade: &Shade) -> Self {
         match shade {
             Shade::Paper => Self::Paper,
+            Shade::Normals => Self::Normals,
             Shade::Lambert { ambient } => Self::Lambert(LambertForm { ambient: *ambient }),
             Shade::Toon(bands) => Self::Toon(BandsForm::new(bands)),
             Shade::Ramp(ramp) => Self::Ramp(RampShadeForm::new(ramp)),
@@ -237,6 +239,7 @@ impl ShadeForm {
     pub(super) fn shade(self, at: &At<'_>) -> Result<Shade, StyleFileError> {
         Ok(match self {
             Self::Paper => Shade::Paper,
+            Self::Normals => Shade::Normals,
             Self::Lambert(LambertForm { ambient }) => Shade::Lambert { ambient },
             Self::Toon(bands) => Shade::Toon(bands.bands()),
             Self::Ramp(ramp) => Shade::Ramp(ramp.ramp(at)?),
