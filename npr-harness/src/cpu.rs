@@ -24,6 +24,7 @@ use crate::style::{Lines, Shade, Style};
 use crate::texture::MipMapped;
 use glam::{DVec2, DVec3, DVec4};
 use hatch::Strokes;
+use npr_imagespace::shadow::ShadowState;
 use npr_toon::source::{Light, combined_color};
 use shadow::Casting;
 
@@ -155,6 +156,35 @@ pub fn render_unsure(
         frame.texels = texels;
     }
     frame
+}
+
+/// What is seen through each pixel: its state of shadow, its face, and where it is. `None` for background.
+pub(crate) fn seen_states(
+    scene: &Scene,
+    style: &Style,
+    plan: &Plan,
+    camera: &Camera,
+    (width, height): (u32, u32),
+) -> Vec<Option<(ShadowState, u32, DVec3)>> {
+    let textures = textures(scene, plan);
+    let context = FrameContext::new(scene, style, plan, camera, (width, height), &CpuOptions::default(), &textures);
+    let seen = |y: u32| {
+        (0..width)
+            .map(|x| {
+                let hit = context.first_solid(x, y)?;
+                Some((context.shadow_at(&hit).state, hit.face, context.interpolate(&hit, hit.barycentric).at))
+            })
+            .collect::<Vec<_>>()
+    };
+    // Both halves at once, and as many more as there are threads.
+    scene.rays();
+    let threads = std::thread::available_parallelism().map_or(1, usize::from) as u32;
+    let rows = height.div_ceil(threads);
+    std::thread::scope(|scope| {
+        let part = |thread: u32| (thread * rows..((thread + 1) * rows).min(height)).flat_map(seen).collect::<Vec<_>>();
+        let parts: Vec<_> = (0..threads).map(|thread| scope.spawn(move || part(thread))).collect();
+        parts.into_iter().flat_map(|part| part.join().expect("no thread panics")).collect()
+    })
 }
 
 /// The scene's textures as a frame looks them up; none if it does not.

@@ -23,5 +23,6 @@ pub mod plan;
 pub mod rays;
 pub mod scene;
 pub mod shadow;
+pub mod shadow_truth;
 pub mod style;
 pub mod texture;

@@ -1,10 +1,12 @@
 //! Shadows that a style's first light casts: what a style says of them, and what a scene then needs.
 //!
-//! A point of a surface is *turned* away from the light, where its face is, or where N·L of its shading normal is not
-//! above the style's terminator; *lit*; or in a *cast* shadow, turned towards the light with something between. Only
-//! between the last two is there a border: [`npr_imagespace::shadow`].
+//! A point of a surface is *turned* away from the light, where its face is; *lit*; or in a *cast* shadow, turned towards the
+//! light with something between. Only between the last two is there a border: [`npr_imagespace::shadow`]. For lines what
+//! is nearly turned away counts as such: N·L of the shading normal is not above the style's terminator. So no line is
+//! drawn where a surface turns away from the light by itself, nor around the shadows that the small faces of a coarse
+//! model cast on each other there.
 //!
-//! In a cast shadow a surface is lit as if its normal were negated, which is what Card & Mitchell 2002 do to it for lines:
+//! In a cast shadow, where N·L is above 0, a surface is lit as if its normal were negated, which is what Card & Mitchell 2002 do to it for lines:
 //! N·L becomes −|N·L|, and no highlight is seen. Bands get their darkest tone, Gooch's tones turn cool, strokes are as
 //! dense as where no light falls, and at the terminator nothing jumps.
 //!
@@ -42,14 +44,13 @@ pub enum ShadowMethod {
 pub struct ShadowStyle {
     /// How a device finds them; the CPU follows rays.
     pub method: ShadowMethod,
-    /// Where N·L is not above this, 0..1, a surface counts as turned away from the light by itself. Above 0 the small
-    /// faces of a coarse model do not draw their own shadows along its terminator.
+    /// Where N·L is not above this, 0..1, shadows have no lines.
     pub terminator: f32,
 }
 
 impl Default for ShadowStyle {
     fn default() -> Self {
-        Self { method: ShadowMethod::Volumes, terminator: 0.05 }
+        Self { method: ShadowMethod::Volumes, terminator: 0.15 }
     }
 }
 

@@ -1,5 +1,6 @@
 //! Lines in the image on the CPU: the texels that a geometry pass would write, and the ink over the picture.
 
+use super::shadow::ShadowAt;
 use super::{CpuFrame, FrameContext};
 use crate::color::encode_rgb;
 use crate::image_ink::ImagePlan;
@@ -18,7 +19,8 @@ impl FrameContext<'_> {
     pub(super) fn texel(&self, hit: Option<&Hit>, x: u32, y: u32) -> [u32; 2] {
         let (Some(image), Some(hit)) = (&self.plan.image, hit) else { return BACKGROUND };
         let kind = self.line_kind(hit);
-        let negated = image.ink.shadows == ShadowLines::Negated && kind == LineKind::Normals && self.is_negated(hit);
+        let shadow = if image.ink.shadows == ShadowLines::None { ShadowAt::default() } else { self.shadow_at(hit) };
+        let negated = image.ink.shadows == ShadowLines::Negated && kind == LineKind::Normals && shadow.negated;
         let normal = ink_shadow_normal(self.texel_normal(hit, kind, x, y).as_vec3(), negated);
         let of_face = image.face_region[hit.face as usize];
         let region = match (kind, self.texture_bytes(hit, kind)) {
@@ -27,7 +29,7 @@ impl FrameContext<'_> {
         };
         let region = if image.ink.shadows.has_states() {
             let folded = ink_fold_region(region, image.ink.region_most());
-            ink_shadow_region(folded, self.shadow_state(hit) as u32, image.ink.layout)
+            ink_shadow_region(folded, shadow.state as u32, image.ink.layout)
         } else {
             region
         };

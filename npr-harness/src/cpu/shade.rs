@@ -6,7 +6,6 @@ use crate::rays::Hit;
 use crate::style::{PainterShade, Ramp2dSource, RampShade, RampSource, Shade};
 use glam::{DVec2, DVec3};
 use npr_gooch::{gooch_highlight, gooch_n_dot_l, gooch_over, gooch_r_dot_e, gooch_tone};
-use npr_imagespace::shadow::ShadowState;
 use npr_toon::border::toon_border_width;
 use npr_toon::half_lambert::toon_half_lambert;
 use npr_toon::normal::NormalUse;
@@ -30,7 +29,7 @@ struct Lit {
 impl FrameContext<'_> {
     /// The display-referred colour of a hit whose own is `base`.
     pub(super) fn shaded(&self, hit: &Hit, base: DVec3, x: u32, y: u32) -> DVec3 {
-        let in_shadow = self.shadow_state(hit) == ShadowState::Cast;
+        let in_shadow = self.shadow_at(hit).dark;
         let here = self.light(hit, hit.barycentric, in_shadow);
         let widths = || {
             let Footprint { along_x, along_y, .. } = self.footprint(hit, x, y);

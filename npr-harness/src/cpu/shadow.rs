@@ -30,35 +30,46 @@ impl Casting {
     }
 }
 
+/// What shadows make of a hit. As it stands in no light that casts by [`Default`].
+#[derive(Clone, Copy, Default)]
+pub(crate) struct ShadowAt {
+    /// For its light: in a cast shadow.
+    pub(crate) dark: bool,
+    /// For printed normals: in any shadow, its own included.
+    pub(crate) negated: bool,
+    /// For lines.
+    pub(crate) state: ShadowState,
+}
+
 impl FrameContext<'_> {
-    /// Whether light falls on a hit; [`ShadowState::Turned`] where nothing casts.
-    pub(super) fn shadow_state(&self, hit: &Hit) -> ShadowState {
-        let Some(casting) = &self.casting else { return ShadowState::Turned };
-        if self.is_blended(hit) {
-            return ShadowState::Turned;
-        }
+    /// What shadows make of a hit.
+    pub(super) fn shadow_at(&self, hit: &Hit) -> ShadowAt {
+        let Some(casting) = self.casting.as_ref().filter(|_| !self.is_blended(hit)) else {
+            return ShadowAt::default();
+        };
         let surface = self.interpolate(hit, hit.barycentric);
         let way = casting.light.truncate() - surface.at * casting.light.w;
         let [a, b, c] =
             self.scene.model.faces[hit.face as usize].map(|v| self.scene.model.positions[v as usize].as_dvec3());
         let of_face = (b - a).cross(c - a) * if hit.front { 1.0 } else { -1.0 };
-        let n_dot_l = surface.normal.normalize_or_zero().dot(way.normalize_or_zero());
-        if of_face.dot(way) <= 0.0 || n_dot_l <= casting.terminator {
-            return ShadowState::Turned;
+        if of_face.dot(way) <= 0.0 {
+            return ShadowAt { negated: true, ..ShadowAt::default() };
         }
         let range = (casting.nearest / way.length(), if casting.light.w == 0.0 { f64::INFINITY } else { 1.0 });
         let is_caster = |other: &Hit| other.face != hit.face && casts(self.scene, other.face);
-        if self.scene.rays().any(surface.at, way, range, is_caster) { ShadowState::Cast } else { ShadowState::Lit }
-    }
-
-    /// Whether the normals that Card & Mitchell 2002 filter are negated at a hit: in shadow, whosever it is.
-    pub(super) fn is_negated(&self, hit: &Hit) -> bool {
-        self.casting.is_some() && !self.is_blended(hit) && self.shadow_state(hit) != ShadowState::Lit
+        let falls = self.scene.rays().any(surface.at, way, range, is_caster);
+        let n_dot_l = surface.normal.normalize_or_zero().dot(way.normalize_or_zero());
+        let state = match falls {
+            _ if n_dot_l <= casting.terminator => ShadowState::Turned,
+            true => ShadowState::Cast,
+            false => ShadowState::Lit,
+        };
+        ShadowAt { dark: falls && n_dot_l > 0.0, negated: falls, state }
     }
 
     /// The normal as a colour.
     pub(super) fn normal_color(&self, hit: &Hit) -> DVec3 {
         let normal = self.interpolate(hit, hit.barycentric).normal.normalize_or_zero();
-        (if self.is_negated(hit) { -normal } else { normal }) * 0.5 + 0.5
+        (if self.shadow_at(hit).negated { -normal } else { normal }) * 0.5 + 0.5
     }
 }

@@ -221,12 +221,12 @@ fn base_color(texel: vec4<f32>, color: vec4<f32>) -> vec4<f32> {
 }
 
 // Per-pixel light from directions that are the same everywhere. In uniform control flow.
-fn painted(base: vec3<f32>, normal: vec3<f32>, position_px: vec2<f32>, state: u32) -> vec3<f32> {
+fn painted(base: vec3<f32>, normal: vec3<f32>, position_px: vec2<f32>, at: ShadowAt) -> vec3<f32> {
     if surface_shade == SHADE_NORMALS {
-        let negated = surface_shadow != 0u && state != INK_LIT;
+        let negated = surface_shadow != 0u && at.negated;
         return ink_shadow_normal(toon_unit(normal), negated) * 0.5 + 0.5;
     }
-    return shaded(base, light_at(toon_unit(normal), vec3<f32>(0.0), to_eye(position_px)), state);
+    return shaded(base, light_at(toon_unit(normal), vec3<f32>(0.0), to_eye(position_px)), at);
 }
 
 // Cuts off what lies beyond the plane. After all derivatives.
@@ -243,8 +243,8 @@ fn facing(normal: vec3<f32>, front: bool) -> vec3<f32> {
 @fragment
 fn fs_painted(in: Surface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
     let normal = facing(in.normal, front);
-    let state = shadow_state(in.position, normal);
-    let color = painted(material.base_color.rgb, normal, in.position.xy, state);
+    let at = shadow_at(in.position, normal);
+    let color = painted(material.base_color.rgb, normal, in.position.xy, at);
     clip_off(in.position);
     return vec4<f32>(color, material.base_color.a);
 }
@@ -253,8 +253,8 @@ fn fs_painted(in: Surface, @builtin(front_facing) front: bool) -> @location(0) v
 fn fs_painted_textured(in: TexturedSurface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
     let base = base_color(texture_color(in.uv), in.color);
     let normal = facing(in.normal, front);
-    let state = shadow_state(in.position, normal);
-    let color = painted(encode_srgb(base.rgb), normal, in.position.xy, state);
+    let at = shadow_at(in.position, normal);
+    let color = painted(encode_srgb(base.rgb), normal, in.position.xy, at);
     if base.a < material.cutoff {
         discard;
     }
@@ -318,22 +318,22 @@ fn shadowed_most() -> u32 {
     return select(INK_WIDE_SHADOWED_MOST, INK_NARROW_SHADOWED_MOST, surface_narrow);
 }
 
-fn words(normal: vec3<f32>, region: u32, position: vec4<f32>, state: u32) -> vec2<u32> {
+fn words(normal: vec3<f32>, region: u32, position: vec4<f32>, at: ShadowAt) -> vec2<u32> {
     let depth = ink_depth_code_of(position.z, ink.code);
-    let number = shadow_region(region, state, shadowed_most());
+    let number = shadow_region(region, at, shadowed_most());
     if surface_narrow {
         return vec2<u32>(ink_narrow_word(normal, number, depth), 0u);
     }
     return ink_wide_words(normal, number, depth);
 }
 
-fn plain_words(in: InkedSurface, front: bool, state: u32) -> vec2<u32> {
-    let own = shadow_normal(facing(in.normal, front), state);
+fn plain_words(in: InkedSurface, front: bool, at: ShadowAt) -> vec2<u32> {
+    let own = shadow_normal(facing(in.normal, front), at);
     let normal = inked_normal(own, vec4<f32>(1.0), vec4<f32>(1.0), in.position.xy);
-    return words(normal, in.region, in.position, state);
+    return words(normal, in.region, in.position, at);
 }
 
-fn textured_words(in: InkedTexturedSurface, front: bool, texel: vec4<f32>, state: u32) -> vec2<u32> {
+fn textured_words(in: InkedTexturedSurface, front: bool, texel: vec4<f32>, at: ShadowAt) -> vec2<u32> {
     var region = in.region;
     if surface_region_of_texture {
         region = ink_region_pair(in.region, texture_region(in.uv));
@@ -343,17 +343,17 @@ fn textured_words(in: InkedTexturedSurface, front: bool, texel: vec4<f32>, state
             region = ink_fold_region(region, INK_NARROW_REGION_MOST);
         }
     }
-    let own = shadow_normal(facing(in.normal, front), state);
-    return words(inked_normal(own, texel, in.color, in.position.xy), region, in.position, state);
+    let own = shadow_normal(facing(in.normal, front), at);
+    return words(inked_normal(own, texel, in.color, in.position.xy), region, in.position, at);
 }
 
 @fragment
 fn fs_painted_inked(in: InkedSurface, @builtin(front_facing) front: bool) -> Inked {
     let normal = facing(in.normal, front);
-    let state = shadow_state(in.position, normal);
-    let color = painted(material.base_color.rgb, normal, in.position.xy, state);
+    let at = shadow_at(in.position, normal);
+    let color = painted(material.base_color.rgb, normal, in.position.xy, at);
     clip_off(in.position);
-    return Inked(vec4<f32>(color, material.base_color.a), plain_words(in, front, state));
+    return Inked(vec4<f32>(color, material.base_color.a), plain_words(in, front, at));
 }
 
 @fragment
@@ -361,13 +361,13 @@ fn fs_painted_textured_inked(in: InkedTexturedSurface, @builtin(front_facing) fr
     let texel = texture_color(in.uv);
     let base = base_color(texel, in.color);
     let normal = facing(in.normal, front);
-    let state = shadow_state(in.position, normal);
-    let color = painted(encode_srgb(base.rgb), normal, in.position.xy, state);
+    let at = shadow_at(in.position, normal);
+    let color = painted(encode_srgb(base.rgb), normal, in.position.xy, at);
     if base.a < material.cutoff {
         discard;
     }
     clip_off(in.position);
-    return Inked(vec4<f32>(color, base.a), textured_words(in, front, texel, state));
+    return Inked(vec4<f32>(color, base.a), textured_words(in, front, texel, at));
 }
 
 // What the light is at a pixel, wherever it is computed.
@@ -402,18 +402,18 @@ fn lit_texel(in: LitSurface) -> vec4<f32> {
     return vec4<f32>(1.0);
 }
 
-fn lit_words(in: LitSurface, texel: vec4<f32>, front: bool, state: u32) -> vec2<u32> {
+fn lit_words(in: LitSurface, texel: vec4<f32>, front: bool, at: ShadowAt) -> vec2<u32> {
     if surface_looked_up {
-        return textured_words(InkedTexturedSurface(in.position, in.normal, in.uv, in.color, in.region), front, texel, state);
+        return textured_words(InkedTexturedSurface(in.position, in.normal, in.uv, in.color, in.region), front, texel, at);
     }
-    return plain_words(InkedSurface(in.position, in.normal, in.region), front, state);
+    return plain_words(InkedSurface(in.position, in.normal, in.region), front, at);
 }
 
 @fragment
 fn fs_lit(in: LitSurface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
     let base = lit_base(in, lit_texel(in));
-    let state = shadow_state(in.position, facing(in.normal, front));
-    let color = shaded(base.rgb, light_of(without_lookups(in), front), state);
+    let at = shadow_at(in.position, facing(in.normal, front));
+    let color = shaded(base.rgb, light_of(without_lookups(in), front), at);
     if surface_looked_up && base.a < material.cutoff {
         discard;
     }
@@ -423,15 +423,15 @@ fn fs_lit(in: LitSurface, @builtin(front_facing) front: bool) -> @location(0) ve
 
 @fragment
 fn fs_lit_plain(in: PlainLitSurface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
-    let state = shadow_state(in.position, facing(in.normal, front));
-    let color = shaded(material.base_color.rgb, light_of(in, front), state);
+    let at = shadow_at(in.position, facing(in.normal, front));
+    let color = shaded(material.base_color.rgb, light_of(in, front), at);
     clip_off(in.position);
     return vec4<f32>(color, material.base_color.a);
 }
 
 @fragment
 fn fs_lit_vertex(in: VertexLitSurface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
-    let color = shaded(material.base_color.rgb, select(light_of_back(in.light), in.light, front), INK_TURNED);
+    let color = shaded(material.base_color.rgb, select(light_of_back(in.light), in.light, front), NO_SHADOW);
     clip_off(in.position);
     return vec4<f32>(color, material.base_color.a);
 }
@@ -440,31 +440,31 @@ fn fs_lit_vertex(in: VertexLitSurface, @builtin(front_facing) front: bool) -> @l
 fn fs_lit_inked(in: LitSurface, @builtin(front_facing) front: bool) -> Inked {
     let texel = lit_texel(in);
     let base = lit_base(in, texel);
-    let state = shadow_state(in.position, facing(in.normal, front));
-    let color = shaded(base.rgb, light_of(without_lookups(in), front), state);
+    let at = shadow_at(in.position, facing(in.normal, front));
+    let color = shaded(base.rgb, light_of(without_lookups(in), front), at);
     if surface_looked_up && base.a < material.cutoff {
         discard;
     }
     clip_off(in.position);
-    return Inked(vec4<f32>(color, base.a), lit_words(in, texel, front, state));
+    return Inked(vec4<f32>(color, base.a), lit_words(in, texel, front, at));
 }
 
 @fragment
 fn fs_texels(in: InkedSurface, @builtin(front_facing) front: bool) -> Texel {
-    let state = shadow_state(in.position, facing(in.normal, front));
+    let at = shadow_at(in.position, facing(in.normal, front));
     clip_off(in.position);
-    return Texel(plain_words(in, front, state));
+    return Texel(plain_words(in, front, at));
 }
 
 @fragment
 fn fs_texels_textured(in: InkedTexturedSurface, @builtin(front_facing) front: bool) -> Texel {
     let texel = texture_color(in.uv);
-    let state = shadow_state(in.position, facing(in.normal, front));
+    let at = shadow_at(in.position, facing(in.normal, front));
     if base_color(texel, in.color).a < material.cutoff {
         discard;
     }
     clip_off(in.position);
-    return Texel(textured_words(in, front, texel, state));
+    return Texel(textured_words(in, front, texel, at));
 }
 
 @fragment

@@ -194,14 +194,14 @@ fn hatched(asked: Hatching) -> f32 {
 }
 
 // In uniform control flow.
-fn hatched_color(in: HatchedSurface, base: vec3<f32>, front: bool, state: u32) -> vec3<f32> {
+fn hatched_color(in: HatchedSurface, base: vec3<f32>, front: bool, at: ShadowAt) -> vec3<f32> {
     let at_dx = dpdxFine(in.at);
     let at_dy = dpdyFine(in.at);
     let light = light_of(PlainLitSurface(in.position, in.normal, in.first, in.second), front);
     var tone = hatched_tone(light.x);
     var in_shadow = false;
     if surface_shadow != 0u {
-        in_shadow = state == INK_CAST;
+        in_shadow = at.dark;
         tone = hatch_shadowed(tone, hatched_tone(0.0), select(1.0, 0.0, in_shadow));
     }
     var weights = HatchWeights(in.light_weights, in.dark_weights);
@@ -226,8 +226,8 @@ fn hatched_lit(in: HatchedSurface) -> LitSurface {
 fn fs_hatched(in: HatchedSurface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
     let lit = hatched_lit(in);
     let base = lit_base(lit, lit_texel(lit));
-    let state = shadow_state(in.position, facing(in.normal, front));
-    let color = hatched_color(in, base.rgb, front, state);
+    let at = shadow_at(in.position, facing(in.normal, front));
+    let color = hatched_color(in, base.rgb, front, at);
     if surface_looked_up && base.a < material.cutoff {
         discard;
     }
@@ -240,11 +240,11 @@ fn fs_hatched_inked(in: HatchedSurface, @builtin(front_facing) front: bool) -> I
     let lit = hatched_lit(in);
     let texel = lit_texel(lit);
     let base = lit_base(lit, texel);
-    let state = shadow_state(in.position, facing(in.normal, front));
-    let color = hatched_color(in, base.rgb, front, state);
+    let at = shadow_at(in.position, facing(in.normal, front));
+    let color = hatched_color(in, base.rgb, front, at);
     if surface_looked_up && base.a < material.cutoff {
         discard;
     }
     clip_off(in.position);
-    return Inked(vec4<f32>(color, base.a), lit_words(lit, texel, front, state));
+    return Inked(vec4<f32>(color, base.a), lit_words(lit, texel, front, at));
 }

@@ -148,8 +148,8 @@ fn lambert(base: vec3<f32>, reach: f32) -> vec3<f32> {
 }
 
 // `toon_shade`, with the highlight left out when the pipeline is made.
-fn banded(base: vec3<f32>, light_there: vec2<f32>, state: u32) -> vec3<f32> {
-    let light = shadow_light(light_there, state);
+fn banded(base: vec3<f32>, light_there: vec2<f32>, at: ShadowAt) -> vec3<f32> {
+    let light = shadow_light(light_there, at);
     var widths = vec2<f32>(0.0);
     if toon.antialias != 0u {
         // As wide in a shadow: the light there is this one's, negated.
@@ -168,9 +168,9 @@ fn banded(base: vec3<f32>, light_there: vec2<f32>, state: u32) -> vec3<f32> {
     return mix(color, toon.highlight.rgb, opacity);
 }
 
-// A surface's own colour under the light, in one of the states of shadow. In uniform control flow.
-fn shaded(base: vec3<f32>, light_there: vec2<f32>, state: u32) -> vec3<f32> {
-    let light = shadow_light(light_there, state);
+// A surface's own colour under the light, under the shadow that falls on it. In uniform control flow.
+fn shaded(base: vec3<f32>, light_there: vec2<f32>, at: ShadowAt) -> vec3<f32> {
+    let light = shadow_light(light_there, at);
     if surface_shade == SHADE_PAINTER {
         let widths = vec2<f32>(toon_pixel_border_width(light_there.x), toon_pixel_border_width(light_there.y));
         return toon_paint(lights, shade_of_table(light, widths), vec4<f32>(base, 1.0)).rgb;
@@ -183,7 +183,7 @@ fn shaded(base: vec3<f32>, light_there: vec2<f32>, state: u32) -> vec3<f32> {
         tinted *= lights.light_color.rgb;
     }
     if surface_shade == SHADE_TOON {
-        return banded(tinted, light_there, state);
+        return banded(tinted, light_there, at);
     }
     if surface_shade == SHADE_RAMP {
         var x = light_there.x;
@@ -192,8 +192,8 @@ fn shaded(base: vec3<f32>, light_there: vec2<f32>, state: u32) -> vec3<f32> {
             x = toon_half_lambert(shade.half_scale, shade.half_bias, shade.half_squared, x);
             dark = toon_half_lambert(shade.half_scale, shade.half_bias, shade.half_squared, dark);
         }
-        let width = shadow_border_width(x, dark, state);
-        return tinted * shade_of_ramp(select(x, dark, surface_shadow != 0u && state == INK_CAST), width);
+        let width = shadow_border_width(x, dark, at);
+        return tinted * shade_of_ramp(select(x, dark, surface_shadow != 0u && at.dark), width);
     }
     return lambert(tinted, light.x);
 }

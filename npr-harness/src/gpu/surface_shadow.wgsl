@@ -14,7 +14,7 @@ struct SurfaceShadow {
     // Positions, and places in the map in texels with their depth there, both times w, of (x px, y px, depth, 1).
     world_from_px: mat4x4<f32>,
     map_from_px: mat4x4<f32>,
-    // N.L of a surface that is turned towards the light is above this.
+    // For lines a surface is turned towards the light where N.L is above this.
     terminator: f32,
     padding0: f32,
     padding1: f32,
@@ -57,24 +57,34 @@ fn shadow_falls(position: vec4<f32>) -> bool {
     return textureLoad(shadow_map, texel, 0) > place.z / place.w;
 }
 
-// Of the INK_ states; INK_TURNED where nothing casts. The normal is of any length, on the side that is seen. In uniform
-// control flow.
-fn shadow_state(position: vec4<f32>, normal: vec3<f32>) -> u32 {
+// What shadows make of a fragment.
+struct ShadowAt {
+    // For its light: in a cast shadow.
+    dark: bool,
+    // For printed normals: in any shadow, its own included.
+    negated: bool,
+    // For lines: of the INK_ states.
+    state: u32,
+}
+
+const NO_SHADOW: ShadowAt = ShadowAt(false, false, INK_TURNED);
+
+// The normal is of any length, on the side that is seen. In uniform control flow.
+fn shadow_at(position: vec4<f32>, normal: vec3<f32>) -> ShadowAt {
     if surface_shadow == 0u {
-        return INK_TURNED;
+        return NO_SHADOW;
     }
     let faces = shadow_faces_light(position);
     let falls = shadow_falls(position);
-    if !faces || dot(toon_unit(normal), shadow_to_light(position)) <= shadow.terminator {
-        return INK_TURNED;
-    }
-    return select(INK_LIT, INK_CAST, falls);
+    let n_dot_l = dot(toon_unit(normal), shadow_to_light(position));
+    let state = select(INK_TURNED, select(INK_LIT, INK_CAST, falls), faces && n_dot_l > shadow.terminator);
+    return ShadowAt(faces && falls && n_dot_l > 0.0, !faces || falls, state);
 }
 
-// What light there is in a state: in a cast shadow as if the surface were turned away from the light as far as it is
-// turned towards it.
-fn shadow_light(light: vec2<f32>, state: u32) -> vec2<f32> {
-    if surface_shadow == 0u || state != INK_CAST {
+// What light there is: in a cast shadow as if the surface were turned away from the light as far as it is turned towards
+// it.
+fn shadow_light(light: vec2<f32>, at: ShadowAt) -> vec2<f32> {
+    if surface_shadow == 0u || !at.dark {
         return light;
     }
     return vec2<f32>(-abs(light.x), select(-1.0, light.y, surface_shade == SHADE_PAINTER));
@@ -82,23 +92,23 @@ fn shadow_light(light: vec2<f32>, state: u32) -> vec2<f32> {
 
 // The width of a border at a shade's input x, of which `dark` is what it is in a cast shadow. Both are continuous where a
 // shadow ends, so that its border is no border of bands. In uniform control flow.
-fn shadow_border_width(x: f32, dark: f32, state: u32) -> f32 {
+fn shadow_border_width(x: f32, dark: f32, at: ShadowAt) -> f32 {
     let width = toon_pixel_border_width(x);
     if surface_shadow == 0u {
         return width;
     }
-    return select(width, toon_pixel_border_width(dark), state == INK_CAST);
+    return select(width, toon_pixel_border_width(dark), at.dark);
 }
 
 // A region, folded, as lines in the image see it.
-fn shadow_region(region: u32, state: u32, most: u32) -> u32 {
+fn shadow_region(region: u32, at: ShadowAt, most: u32) -> u32 {
     if surface_shadow_lines == 1u {
-        return ink_shadow_region(region, state, most);
+        return ink_shadow_region(region, at.state, most);
     }
     return region;
 }
 
 // A normal as lines in the image see it.
-fn shadow_normal(normal: vec3<f32>, state: u32) -> vec3<f32> {
-    return ink_shadow_normal(normal, surface_shadow_lines == 2u && state != INK_LIT);
+fn shadow_normal(normal: vec3<f32>, at: ShadowAt) -> vec3<f32> {
+    return ink_shadow_normal(normal, surface_shadow_lines == 2u && at.negated);
 }

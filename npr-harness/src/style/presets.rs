@@ -225,7 +225,7 @@ pub fn styles() -> Vec<Style> {
             )
         },
         Style {
-            shadow: Some(ShadowStyle { terminator: 0.0, ..ShadowStyle::default() }),
+            shadow,
             lights: from_the_left,
             ..style(
                 "printed-shadow",

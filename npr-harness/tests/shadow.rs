@@ -1,0 +1,244 @@
+//! Shadows on the device against shadow rays, and their outlines against the borders of shadows.
+#![cfg(feature = "gpu")]
+#![allow(clippy::print_stdout)]
+
+mod common;
+
+use common::{device, shared_models};
+use glam::DVec2;
+use npr_harness::check;
+use npr_harness::cpu::{self, CpuOptions};
+use npr_harness::executor::Executor;
+use npr_harness::gpu::GpuRenderer;
+use npr_harness::plan::{LineMethod, Plan};
+use npr_harness::scene::Scene;
+use npr_harness::shadow::ShadowMethod;
+use npr_harness::shadow_truth::{ShadowShot, States, eye_is_in_shadow, line_accuracy, shots, true_borders};
+use npr_imagespace::shadow::ShadowState;
+use npr_mesh::{Model, embedded};
+
+const SIZE: (u32, u32) = (320, 180);
+/// Px; of the tables.
+const TABLE_SIZE: (u32, u32) = npr_harness::check::SIZE;
+const WITHIN_PX: f64 = 1.5;
+
+fn aspect() -> f64 {
+    f64::from(SIZE.0) / f64::from(SIZE.1)
+}
+
+fn on_device(
+    executor: &Executor,
+    scene: &Scene,
+    shot: &ShadowShot,
+    method: ShadowMethod,
+    lines: LineMethod,
+    size: (u32, u32),
+) -> States {
+    let Executor::Gpu(context) = executor else { panic!("a device") };
+    let style = shot.style(method);
+    let plan = Plan::new(scene, &style, &shot.camera).expect("a plan");
+    let renderer = GpuRenderer::new(context);
+    let targets = renderer.targets(size.0, size.1).expect("targets");
+    let uploaded = renderer.upload(scene, &plan, lines).expect("the scene fits");
+    renderer.draw(scene, &uploaded, &style, &plan, &shot.camera, &targets).expect("a frame");
+    let texels = renderer.read_texels(&targets).expect("texels").expect("lines in the image");
+    States::of_texels(&texels, size)
+}
+
+/// How far from an edge the pixels that differ lie, those aside through whose centre an edge runs: which move when the
+/// reference's sample moves by a 32nd of a px. A device may show there what lies beside.
+fn farthest_px(scene: &Scene, shot: &ShadowShot, actual: &States, reference: &States) -> f64 {
+    let moved = |direction: u8| {
+        let shift_px = check::SHIFT_PX * DVec2::from_angle(f64::from(direction) / 8.0 * std::f64::consts::TAU);
+        States::by_rays(scene, shot, reference.size, shift_px).expect("a picture")
+    };
+    let moved: Vec<_> = (0..8).map(moved).collect();
+    // Taken out of the picture under test: the reference keeps its edges.
+    let stable = reference.clone().without_changes(&moved);
+    let mut kept = actual.clone();
+    for (state, stable) in kept.states.iter_mut().zip(&stable.states) {
+        *state = state.filter(|_| stable.is_some());
+    }
+    kept.difference(reference).farthest_px
+}
+
+/// All shots of a model: states by volumes against rays, and what of it all is in which state.
+fn assert_masks(executor: &Executor, name: &str, model: Model) {
+    let scene = Scene::new(model);
+    let mut cast = 0;
+    for shot in shots(&scene, aspect()) {
+        let reference = States::by_rays(&scene, &shot, SIZE, DVec2::ZERO).expect("a picture");
+        let actual = on_device(executor, &scene, &shot, ShadowMethod::Volumes, LineMethod::Auto, SIZE);
+        let mut found = actual.difference(&reference);
+        if found.farthest_px > 2.0 {
+            found.farthest_px = farthest_px(&scene, &shot, &actual, &reference);
+        }
+        let inside = eye_is_in_shadow(&scene, &shot);
+        println!(
+            "{name:20} {:16} {:.5} % differ, farthest {:.1} px{}",
+            shot.name,
+            found.share * 100.0,
+            found.farthest_px,
+            if inside { ", the eye in shadow" } else { "" }
+        );
+        assert!(found.share <= 1e-3 && found.farthest_px <= 2.0, "{name} {}: {found:?}", shot.name);
+        cast += reference.states.iter().filter(|&&state| state == Some(ShadowState::Cast)).count();
+    }
+    assert!(cast > 100, "{name}: {cast} pixels in a cast shadow say nothing");
+}
+
+#[test]
+fn volumes_darken_what_rays_find_dark() {
+    let Some(executor) = device() else { return };
+    assert_masks(&executor, "built-in scene", embedded::scene());
+}
+
+#[test]
+fn the_eye_stands_in_the_shadow_where_it_is_to() {
+    let scene = Scene::new(embedded::scene());
+    let shots = shots(&scene, aspect());
+    assert_eq!(shots.len(), 8);
+    let inside = shots.iter().filter(|shot| eye_is_in_shadow(&scene, shot));
+    assert!(inside.count() >= 2);
+}
+
+#[test]
+fn the_device_sorts_out_what_casts_as_the_scan_does() {
+    let Some(executor) = device() else { return };
+    let scene = Scene::new(embedded::scene());
+    for shot in shots(&scene, aspect()).iter().take(5) {
+        let [there, here] = [LineMethod::OnDevice, LineMethod::Rectangles]
+            .map(|lines| on_device(&executor, &scene, shot, ShadowMethod::Volumes, lines, SIZE));
+        assert!(there == here, "{}", shot.name);
+    }
+}
+
+/// For the table in the README.
+#[test]
+#[ignore = "a table: minutes"]
+fn table_of_masks_and_lines() {
+    let Some(executor) = device() else { return };
+    let wanted =
+        ["stanford-bunny.obj", "teapot.obj", "fandisk.obj", "CesiumMilkTruck.glb", "suzanne.obj", "beetle-alt.obj"];
+    let mut models = vec![("built-in scene".to_owned(), embedded::scene())];
+    if let Some(folder) = shared_models() {
+        let load = |name: &str| npr_mesh::load(&folder.join(name), &Default::default()).expect("it loads").model;
+        models.extend(wanted.map(|name| (name.to_owned(), load(name))));
+    }
+    for (name, model) in models {
+        let scene = Scene::new(model);
+        for shot in shots(&scene, aspect()) {
+            let reference = States::by_rays(&scene, &shot, TABLE_SIZE, DVec2::ZERO).expect("a picture");
+            let volumes = on_device(&executor, &scene, &shot, ShadowMethod::Volumes, LineMethod::Auto, TABLE_SIZE)
+                .difference(&reference);
+            let style = shot.style(ShadowMethod::Volumes);
+            let plan = Plan::new(&scene, &style, &shot.camera).expect("a plan");
+            let picture =
+                executor.render(&scene, &style, &plan, &shot.camera, TABLE_SIZE, 1, &|_| {}).expect("a picture");
+            let borders = true_borders(&scene, &shot, &style, TABLE_SIZE, 4).expect("borders");
+            let lines = line_accuracy(&picture, &borders, WITHIN_PX);
+            println!(
+                "{name:22} {:16} volumes {:.4} %, {:.1} px{}; lines P {:.3} R {:.3} of {:?}",
+                shot.name,
+                volumes.share * 100.0,
+                volumes.farthest_px,
+                if eye_is_in_shadow(&scene, &shot) { ", eye in shadow" } else { "" },
+                lines.precision,
+                lines.recall,
+                lines.counts,
+            );
+        }
+    }
+}
+
+/// A ball in light from the side: half of it is dark by itself, and there is no line on it, nor anything to shadow.
+#[test]
+fn a_terminator_has_no_line() {
+    let scene = Scene::new(embedded::sphere(48, 24));
+    for shot in shots(&scene, aspect()) {
+        let style = shot.style(ShadowMethod::Volumes);
+        let plan = Plan::new(&scene, &style, &shot.camera).expect("a plan");
+        let frame = cpu::render(&scene, &style, &plan, &shot.camera, SIZE, &CpuOptions::default(), &|_| {});
+        let states = States::of_texels(&frame.texels, SIZE);
+        let count = |state| states.states.iter().filter(|&&of| of == Some(state)).count();
+        assert!(count(ShadowState::Lit) + count(ShadowState::Turned) > 5000, "{}", shot.name);
+        assert_eq!(count(ShadowState::Cast), 0, "{}", shot.name);
+        let found = line_accuracy(&frame.image(), &[], WITHIN_PX);
+        assert_eq!(found.counts.0, 0, "{}: lines on a ball", shot.name);
+    }
+}
+
+#[test]
+fn outlines_lie_on_the_borders_of_shadows() {
+    let scene = Scene::new(embedded::scene());
+    for shot in shots(&scene, aspect()).iter().step_by(2).take(3) {
+        let style = shot.style(ShadowMethod::Volumes);
+        let plan = Plan::new(&scene, &style, &shot.camera).expect("a plan");
+        let picture = cpu::render(&scene, &style, &plan, &shot.camera, SIZE, &CpuOptions::default(), &|_| {}).image();
+        let borders = true_borders(&scene, shot, &style, SIZE, 3).expect("borders");
+        let found = line_accuracy(&picture, &borders, WITHIN_PX);
+        println!("{}: {found:?}", shot.name);
+        assert!(found.precision >= 0.95 && found.recall >= 0.95 && found.counts.1 > 500, "{}: {found:?}", shot.name);
+        // And must fail: borders that lie 3 px aside are not those of these lines.
+        let aside: Vec<DVec2> = borders.iter().map(|border| border + DVec2::new(3.0, 3.0)).collect();
+        assert!(line_accuracy(&picture, &aside, WITHIN_PX).precision < 0.5, "{}", shot.name);
+    }
+}
+
+#[test]
+fn states_that_differ_are_told() {
+    let size = (40, 30);
+    let states = |border: u32, dot: Option<(u32, u32)>| {
+        let state = |i: u32| {
+            let lit = (i % size.0 < border) != (dot == Some((i % size.0, i / size.0)));
+            Some(if lit { ShadowState::Lit } else { ShadowState::Cast })
+        };
+        States { size, states: (0..size.0 * size.1).map(state).collect() }
+    };
+    let reference = states(20, None);
+    assert_eq!(reference.difference(&reference).share, 0.0);
+    let moved = states(21, None).difference(&reference);
+    assert!((moved.share - 1.0 / 40.0).abs() < 1e-12 && moved.farthest_px <= 1.0, "{moved:?}");
+    let one = 1.0 / f64::from(size.0 * size.1);
+    let acne = states(20, Some((5, 15))).difference(&reference);
+    assert!((acne.acne - one).abs() < 1e-12 && acne.loose == 0.0 && acne.farthest_px >= 12.0, "{acne:?}");
+    let loose = states(20, Some((35, 15))).difference(&reference);
+    assert!((loose.loose - one).abs() < 1e-12 && loose.acne == 0.0, "{loose:?}");
+}
+
+/// For the table in the README: what a map of so many texels gets wrong, on pictures of 640 × 360 px.
+#[test]
+#[ignore = "a table: a minute"]
+fn table_of_maps() {
+    let Some(executor) = device() else { return };
+    let mut models = vec![("built-in scene", embedded::scene())];
+    if let Some(folder) = shared_models() {
+        let load = |name: &str| npr_mesh::load(&folder.join(name), &Default::default()).expect("it loads").model;
+        models.extend(["stanford-bunny.obj", "teapot.obj", "CesiumMilkTruck.glb"].map(|name| (name, load(name))));
+    }
+    for (name, model) in models {
+        let scene = Scene::new(model);
+        let shots = shots(&scene, aspect());
+        let references: Vec<_> = shots
+            .iter()
+            .map(|shot| States::by_rays(&scene, shot, TABLE_SIZE, DVec2::ZERO).expect("a picture"))
+            .collect();
+        let methods = [512, 1024, 2048, 4096].map(|side| ShadowMethod::Map { side });
+        for method in [ShadowMethod::Volumes].into_iter().chain(methods) {
+            let (mut share, mut acne, mut loose) = (0.0, 0.0, 0.0);
+            for (shot, reference) in shots.iter().zip(&references) {
+                let found =
+                    on_device(&executor, &scene, shot, method, LineMethod::Auto, TABLE_SIZE).difference(reference);
+                share += found.share / shots.len() as f64;
+                acne += found.acne / shots.len() as f64;
+                loose += found.loose / shots.len() as f64;
+            }
+            println!(
+                "{name:22} {method:?}: {:.4} % differ, acne {:.4} %, loose {:.4} %",
+                share * 100.0,
+                acne * 100.0,
+                loose * 100.0
+            );
+        }
+    }
+}
