@@ -6,8 +6,10 @@ mod image_lines;
 mod light;
 mod lines;
 mod reference;
+mod shadow;
 
 pub use reference::{Reference, Shot};
+pub use shadow::{STATES_PX, STATES_SHARE};
 
 use crate::camera::{Camera, Framing};
 use crate::compare::{Comparison, Image, ReportRow, Tolerance, compare, html_report, leave_behind};
@@ -195,6 +197,7 @@ pub fn run(
         if styles.is_empty() {
             checker.borders("scene", "composed", &scene, &camera)?;
             checker.strokes("scene", "composed", &scene, &camera)?;
+            checker.shadows("scene", "composed", &scene, &camera)?;
         }
         let painted = [("composed".into(), painted_camera())];
         checker.model("painted", &painted_scene(), &painted, &|s| progress(0.5 + s / 2.0))?;
@@ -211,6 +214,7 @@ pub fn run(
         if let (true, Some((view, camera))) = (styles.is_empty(), views.first()) {
             checker.borders(&name, view, &scene, camera)?;
             checker.strokes(&name, view, &scene, camera)?;
+            checker.shadows(&name, view, &scene, camera)?;
         }
     }
     checker.finish()

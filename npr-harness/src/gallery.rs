@@ -1,7 +1,9 @@
 //! Every style on the built-in scene, and artists' lines on one that has them.
 
+mod figure_10;
 mod painted;
 
+pub use figure_10::{figure_10, figure_10_styles};
 pub use painted::{painted_camera, painted_scene};
 
 use crate::camera::{Camera, Projection};
@@ -51,13 +53,14 @@ pub fn render(executor: &Executor, dir: &Path, progress: &(dyn Fn(f64) + Sync)) 
     let still_life = (Scene::new(npr_mesh::embedded::scene()), still_life_camera());
     let painted = (painted_scene(), painted_camera());
     let styles = styles();
+    let pictures = (styles.len() + 1) as f64;
     let mut rows = Vec::new();
     for (number, style) in styles.iter().enumerate() {
         let start = Instant::now();
         let asks_artists = matches!(&style.lines, Some(Lines::Image(ink)) if ink.artist);
         let (scene, camera) = if asks_artists { &painted } else { &still_life };
         let plan = Plan::new(scene, style, camera)?;
-        let share_of = |within: f64| progress((number as f64 + within) / styles.len() as f64);
+        let share_of = |within: f64| progress((number as f64 + within) / pictures);
         let image = executor.render(scene, style, &plan, camera, SIZE, 1, &share_of)?;
         let time_ms = start.elapsed().as_secs_f64() * 1e3;
         let path = dir.join(format!("{}.png", style.name));
@@ -65,6 +68,15 @@ pub fn render(executor: &Executor, dir: &Path, progress: &(dyn Fn(f64) + Sync)) 
         let passes = plan.passes.iter().map(|reason| reason.pass).collect();
         rows.push(Row { path, about: style.about.clone(), passes, time_ms });
     }
+    let start = Instant::now();
+    let (scene, camera) = &still_life;
+    let share = |within: f64| progress((styles.len() as f64 + within) / pictures);
+    let image = figure_10(executor, scene, camera, SIZE, &share)?;
+    let time_ms = start.elapsed().as_secs_f64() * 1e3;
+    let path = dir.join("figure-10.png");
+    image.save_png(&path)?;
+    let about = "how shadow outlines come about: hatching, normals negated in shadow, shadows, colours".to_owned();
+    rows.push(Row { path, about, passes: vec!["four pictures"], time_ms });
     Ok(rows)
 }
 

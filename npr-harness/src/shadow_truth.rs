@@ -4,8 +4,12 @@ use crate::camera::{Camera, Framing, Projection};
 use crate::compare::Image;
 use crate::cpu::{self, CpuOptions};
 use crate::error::HarnessError;
+#[cfg(feature = "gpu")]
+use crate::gpu::{GpuContext, GpuRenderer};
 use crate::image_ink::ImageInk;
 use crate::light::{LightFrame, StyleLight, casting_light};
+#[cfg(feature = "gpu")]
+use crate::plan::LineMethod;
 use crate::plan::Plan;
 use crate::scene::Scene;
 use crate::shadow::{ShadowLines, ShadowMethod, ShadowStyle};
@@ -149,20 +153,12 @@ impl States {
         Ok(Self::of_texels(&frame.texels, size))
     }
 
-    /// Takes out the pixels in which other states differ from these, as if they were background: of states that were
-    /// sampled a little aside, those on an edge that runs through the pixel's centre.
-    pub fn without_changes(mut self, others: &[Self]) -> Self {
-        for other in others {
-            for (state, other) in self.states.iter_mut().zip(&other.states) {
-                *state = state.filter(|state| *other == Some(*state));
-            }
-        }
-        self
+    fn is_inside(&self, x: i64, y: i64) -> bool {
+        (0..i64::from(self.size.0)).contains(&x) && (0..i64::from(self.size.1)).contains(&y)
     }
 
     fn at(&self, x: i64, y: i64) -> Option<ShadowState> {
-        let inside = (0..i64::from(self.size.0)).contains(&x) && (0..i64::from(self.size.1)).contains(&y);
-        if inside { self.states[(y * i64::from(self.size.0) + x) as usize] } else { None }
+        self.states[(y * i64::from(self.size.0) + x) as usize]
     }
 
     /// How far the nearest border of states, surface against surface, or the surface's own is from a pixel, px; at most
@@ -171,9 +167,9 @@ impl States {
         let mut nearest = most as f64;
         for dy in -most..=most {
             for dx in -most..=most {
-                let here = self.at(x + dx, y + dy);
-                let differs = [(1, 0), (0, 1)].iter().any(|(i, j)| self.at(x + dx + i, y + dy + j) != here);
-                if differs {
+                let (x, y) = (x + dx, y + dy);
+                let differs = |(i, j)| self.is_inside(x + i, y + j) && self.at(x + i, y + j) != self.at(x, y);
+                if self.is_inside(x, y) && [(1, 0), (0, 1)].into_iter().any(differs) {
                     // Between this pixel and the next.
                     nearest = nearest.min(((dx * dx + dy * dy) as f64).sqrt());
                 }
@@ -211,6 +207,57 @@ impl States {
         }
         found
     }
+}
+
+/// The states that a device finds.
+///
+/// # Errors
+/// [`HarnessError`].
+#[cfg(feature = "gpu")]
+pub fn states_on_device(
+    context: &GpuContext,
+    scene: &Scene,
+    shot: &ShadowShot,
+    method: ShadowMethod,
+    lines: LineMethod,
+    size: (u32, u32),
+) -> Result<States, HarnessError> {
+    let style = shot.style(method);
+    let plan = Plan::new(scene, &style, &shot.camera)?;
+    let renderer = GpuRenderer::new(context);
+    let targets = renderer.targets(size.0, size.1)?;
+    let uploaded = renderer.upload(scene, &plan, lines)?;
+    renderer.draw(scene, &uploaded, &style, &plan, &shot.camera, &targets)?;
+    let texels = renderer.read_texels(&targets)?.expect("the style has lines in the image");
+    Ok(States::of_texels(&texels, size))
+}
+
+/// How far from an edge in the reference the pixels lie that differ, but for those through whose centre an edge runs: which
+/// change when the reference's sample moves by `shift_px`. A device may show there what lies beside.
+///
+/// # Errors
+/// Those of [`Plan::new`].
+pub fn farthest_px(
+    scene: &Scene,
+    shot: &ShadowShot,
+    actual: &States,
+    reference: &States,
+    shift_px: f64,
+) -> Result<f64, HarnessError> {
+    let at_once = actual.difference(reference).farthest_px;
+    // Near an edge anyway.
+    if at_once <= 2.0 {
+        return Ok(at_once);
+    }
+    let mut kept = actual.clone();
+    for direction in 0..8u8 {
+        let shift_px = shift_px * DVec2::from_angle(f64::from(direction) / 8.0 * std::f64::consts::TAU);
+        let moved = States::by_rays(scene, shot, reference.size, shift_px)?;
+        for ((kept, moved), state) in kept.states.iter_mut().zip(&moved.states).zip(&reference.states) {
+            *kept = kept.filter(|_| moved == state);
+        }
+    }
+    Ok(kept.difference(reference).farthest_px)
 }
 
 /// Points on the borders between light and cast shadow, px: exact to half a subsample.

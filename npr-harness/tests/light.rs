@@ -14,11 +14,15 @@ use npr_harness::image_ink::ImageInk;
 use npr_harness::light::{LightFrame, StyleLight, lights_in_world};
 use npr_harness::plan::Plan;
 use npr_harness::scene::Scene;
+use npr_harness::shadow::{ShadowLines, ShadowStyle};
 use npr_harness::style::{
     HatchEncoding, HatchGround, HatchMap, HatchMapping, HatchShade, HatchSource, HatchTransfer, Lines, PainterShade,
     Ramp2dSource, RampShade, RampSource, Shade, Style, style,
 };
 use npr_hatch::TamParameters;
+use npr_imagespace::composite::Composite;
+use npr_imagespace::format::texel::TexelLayout;
+use npr_imagespace::morphology::disc::Disc;
 use npr_mesh::{AlphaMode, Material, Wrap, embedded};
 use npr_toon::Bands;
 use npr_toon::half_lambert::HalfLambert;
@@ -163,15 +167,24 @@ fn of(shade: Shade, lights: Vec<StyleLight>, normals: NormalUse, lines: Option<L
 /// Each model with each use of normals agrees with its reference and with no other case's.
 #[test]
 fn every_light_model_is_the_same_on_both() {
-    the_same_on_both(cases());
+    the_same_on_both(cases(), None);
 }
 
 #[test]
 fn strokes_are_the_same_on_both() {
-    the_same_on_both(hatchings());
+    the_same_on_both(hatchings(), None);
 }
 
-fn the_same_on_both(cases: Vec<(&'static str, Shade, Vec<StyleLight>)>) {
+/// Of all light models some, in light that casts shadows, with lines around them of each kind.
+#[test]
+fn shadows_are_the_same_on_both() {
+    let shadow = Some(ShadowStyle { terminator: 0.1, ..ShadowStyle::default() });
+    let some = cases().into_iter().step_by(3).chain(hatchings().into_iter().step_by(4));
+    let normals = ("normals", Shade::Normals, vec![StyleLight::KEY]);
+    the_same_on_both(some.chain([normals]).collect(), shadow);
+}
+
+fn the_same_on_both(cases: Vec<(&'static str, Shade, Vec<StyleLight>)>, shadow: Option<ShadowStyle>) {
     let Some(executor) = device() else { return };
     let scene = scene();
     for fov_y_rad in [Some(0.7), None] {
@@ -181,8 +194,21 @@ fn the_same_on_both(cases: Vec<(&'static str, Shade, Vec<StyleLight>)>) {
             // In a parallel view one use of normals, of half of the cases.
             let all = [NormalUse::PerPixel, NormalUse::Interpolated, NormalUse::PerVertex];
             for normals in all.into_iter().filter(|&n| fov_y_rad.is_some() || n as usize + 3 == number % 6) {
-                let lines = number.is_multiple_of(4).then(|| Lines::Image(ImageInk::default()));
-                let style = of(shade.clone(), lights.clone(), normals, lines);
+                let red = Composite::Over { color: Vec3::X, opacity: 0.5 };
+                let shadows = match number % 4 {
+                    0 => ShadowLines::Lines,
+                    1 => ShadowLines::Negated,
+                    2 => ShadowLines::Apart { composite: red, brush: Some(Disc { radius_px: 1.5, antialias: true }) },
+                    _ => ShadowLines::None,
+                };
+                let layout = if number % 5 == 2 { TexelLayout::Narrow } else { TexelLayout::Wide };
+                let lines = match shadow {
+                    None => number.is_multiple_of(4).then(|| Lines::Image(ImageInk::default())),
+                    Some(_) => Some(Lines::Image(ImageInk { shadows, layout, ..ImageInk::default() })),
+                };
+                // Normals at pixels are all that this shade knows.
+                let normals = if shade == Shade::Normals { NormalUse::PerPixel } else { normals };
+                let style = Style { shadow, ..of(shade.clone(), lights.clone(), normals, lines) };
                 let plan = Plan::new(&scene, &style, &camera).expect("a plan");
                 let actual = executor.render(&scene, &style, &plan, &camera, SIZE, 1, &|_| {}).expect("a picture");
                 let shot = Shot { scene: &scene, style: &style, plan: &plan, camera: &camera, size: SIZE };
@@ -200,7 +226,8 @@ fn the_same_on_both(cases: Vec<(&'static str, Shade, Vec<StyleLight>)>) {
                 println!("{name}, {normals:?}: {worst} of 255, {:.2} % exempt", share * 100.0);
                 assert!(agrees(&compared, magnitude), "{name}, {normals:?}: {worst}, {share}");
                 // Under a light from far away, N·L of interpolated normals is that of the vertices, interpolated.
-                let other = before.replace(actual).filter(|_| normals != NormalUse::PerVertex);
+                let other =
+                    before.replace(actual).filter(|_| normals != NormalUse::PerVertex && shade != Shade::Normals);
                 if let Some(before) = other {
                     assert!(against(&reference, &before).worst > magnitude, "{name}, {normals:?}: as the one before");
                 }

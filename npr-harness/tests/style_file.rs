@@ -6,11 +6,15 @@ use common::Folder;
 use glam::{UVec2, Vec3};
 use npr_harness::compare::Image;
 use npr_harness::error::HarnessError;
+use npr_harness::image_ink::ImageInk;
 use npr_harness::light::{LightFrame, StyleLight};
+use npr_harness::shadow::{ShadowLines, ShadowMethod, ShadowStyle};
 use npr_harness::style::{
-    PainterShade, Ramp2dSource, RampShade, RampSource, Shade, Style, StyleFileError, style, styles,
+    Lines, PainterShade, Ramp2dSource, RampShade, RampSource, Shade, Style, StyleFileError, style, styles,
 };
 use npr_hatch::{TamParameters, Thresholds, draw, store};
+use npr_imagespace::composite::Composite;
+use npr_imagespace::morphology::disc::Disc;
 use npr_toon::row::{RampRow, TexelFilter};
 use npr_toon::source::Light;
 use npr_toon::table::RampTable;
@@ -48,6 +52,14 @@ fn every_style_survives_being_written_and_read() {
     let mut all = styles();
     all.push(Style { shade: ramp, ..named("wash") });
     all.push(Style { shade: painter, lights: vec![StyleLight::KEY, world], ..named("two-lights") });
+    let brush = Some(Disc { radius_px: 2.0, antialias: false });
+    let apart = ShadowLines::Apart { composite: Composite::Multiply, brush };
+    let map = Some(ShadowStyle { method: ShadowMethod::Map { side: 512 }, terminator: 0.0 });
+    all.push(Style {
+        shadow: map,
+        lines: Some(Lines::Image(ImageInk { shadows: apart, ..ImageInk::default() })),
+        ..named("normals")
+    });
     for style in all {
         let text = style.to_toml().expect("every style has a form");
         assert_eq!(parse(&text).unwrap_or_else(|e| panic!("{e}\n{text}")), style, "{text}");
@@ -87,7 +99,9 @@ fn an_unknown_key_is_named() {
         "[shade.hatch.map]\n",
         "[lines.fins]\nsilhouette-px = 1\nboundary-px = 1\ncrease-px = 1\nink = [0, 0, 0]\n",
         "[lines.printed]\nwidth-px = 1\nink = [0, 0, 0]\n",
+        "[shadow]\n",
         "[lines.image]\n",
+        "[lines.image.shadows.apart]\ncomposite = \"multiply\"\n",
         "[lines.image.brush]\nradius-px = 1\n",
         "[lines.image.composite.over]\ncolor = [0, 0, 0]\n",
         "[lines.image.composite.alpha-tested]\nless = true\nreference = 1\n",
@@ -100,7 +114,13 @@ fn an_unknown_key_is_named() {
         assert_eq!(said.lines().count(), 1, "{said}");
     }
     // And an unknown kind.
-    for text in ["[shade.tune]\n", "[lines.finns]\n", "normals = \"per-pixl\"\n"] {
+    for text in [
+        "[shade.tune]\n",
+        "[shadow]\nmethod = \"rays\"\n",
+        "[lines.image]\nshadows = \"all\"\n",
+        "[lines.finns]\n",
+        "normals = \"per-pixl\"\n",
+    ] {
         assert!(message(text).contains("unknown variant"), "{}", message(text));
     }
 }
@@ -144,6 +164,10 @@ fn what_is_wrong_is_said() {
         ("[shade.hatch.map]\nfile = \"none.tam\"\nseed = 3", "either a file or what a map is to be like"),
         ("[shade.hatch.map]\nstroke = \"none.png\"", "none.png"),
         ("[shade.hatch]\nencoding = \"six-tones\"\n[shade.hatch.map]\ntones = [0.5]", "a map of 1 tones"),
+        ("[shadow]\nside = 512", "only a shadow map has a side"),
+        ("[shadow]\nmethod = \"map\"\nside = 8", "the side of a shadow map of 8"),
+        ("[shadow]\nterminator = 1", "a shadow's terminator of 1"),
+        ("[lines.image]\nshadows = \"lines\"", "draws lines around shadows, and has none"),
         ("= 3", "mine.toml:1:1"),
     ];
     for (text, said) in cases {

@@ -1,0 +1,53 @@
+//! Shadows: pictures of the styles that have them, and states of pixels against shadow rays.
+
+use super::{Checker, Limit, SHIFT_PX};
+use crate::camera::Camera;
+use crate::error::HarnessError;
+use crate::scene::Scene;
+use crate::style::style;
+
+/// At most this share of the pixels may be in another state of shadow than rays find.
+pub const STATES_SHARE: f64 = 1e-3;
+/// No such pixel may be farther from an edge of a shadow, px.
+pub const STATES_PX: f64 = 2.0;
+
+impl Checker<'_> {
+    /// The pictures of the styles with shadows.
+    pub(super) fn shadows(
+        &mut self,
+        model: &str,
+        view: &str,
+        scene: &Scene,
+        camera: &Camera,
+    ) -> Result<(), HarnessError> {
+        for name in ["toon-shadow", "hatch-shadow", "shadow-lines", "normals", "printed-shadow"] {
+            self.picture(model, view, scene, camera, &style(name).expect("a style of this crate"))?;
+        }
+        #[cfg(feature = "gpu")]
+        self.shadow_states(model, scene)?;
+        Ok(())
+    }
+
+    /// Eight lights and views, two of them with the eye in the shadow.
+    #[cfg(feature = "gpu")]
+    fn shadow_states(&mut self, model: &str, scene: &Scene) -> Result<(), HarnessError> {
+        use crate::executor::Executor;
+        use crate::plan::LineMethod;
+        use crate::shadow::ShadowMethod;
+        use crate::shadow_truth::{States, eye_is_in_shadow, farthest_px, shots, states_on_device};
+        use glam::DVec2;
+        let Executor::Gpu(context) = self.executor else { return Ok(()) };
+        let aspect = f64::from(super::SIZE.0) / f64::from(super::SIZE.1);
+        for shot in shots(scene, aspect) {
+            let reference = States::by_rays(scene, &shot, super::SIZE, DVec2::ZERO)?;
+            let actual = states_on_device(context, scene, &shot, ShadowMethod::Volumes, LineMethod::Auto, super::SIZE)?;
+            let found = actual.difference(&reference);
+            let farthest = farthest_px(scene, &shot, &actual, &reference, SHIFT_PX)?;
+            let inside = if eye_is_in_shadow(scene, &shot) { "shadow, eye in" } else { "shadow" };
+            let limit = |most| Some(Limit::AtMost(most));
+            self.add(model, shot.name, inside, "share of pixels in another state", found.share, limit(STATES_SHARE));
+            self.add(model, shot.name, inside, "farthest of them from an edge, px", farthest, limit(STATES_PX));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,67 @@
+//! Figure 10 of Card & Mitchell 2002: how shadow outlines come about, in four panels.
+
+use crate::camera::Camera;
+use crate::compare::Image;
+use crate::error::HarnessError;
+use crate::executor::Executor;
+use crate::image_ink::ImageInk;
+use crate::plan::Plan;
+use crate::scene::Scene;
+use crate::shadow::ShadowLines;
+use crate::style::{HatchEncoding, HatchGround, HatchShade, HatchTransfer, Lines, Shade, Style, style};
+use npr_toon::normal::NormalUse;
+
+/// The panels, from the upper left: hatching with objects' outlines alone; the world-space normals that are filtered,
+/// negated in shadow; hatching with shadows, objects' and shadows' outlines; the same over the surfaces' own colours,
+/// weights at pixels.
+///
+/// Two things are not as printed: shadows' outlines come from states, not from the negated normals, and strokes follow the
+/// form.
+pub fn figure_10_styles() -> [Style; 4] {
+    let shadowed = style("hatch-shadow").expect("a style of this crate");
+    let Shade::Hatch(hatching) = &shadowed.shade else { panic!("`hatch-shadow` hatches") };
+    let six = |transfer, ground| {
+        Shade::Hatch(HatchShade { encoding: HatchEncoding::SixTones, transfer, ground, ..hatching.clone() })
+    };
+    let printed = || six(HatchTransfer::Listing4 { brightness: 7.0 }, HatchGround::Paper);
+    let objects = Lines::Image(ImageInk {
+        shadows: ShadowLines::None,
+        ..match shadowed.lines {
+            Some(Lines::Image(ink)) => ink,
+            _ => ImageInk::default(),
+        }
+    });
+    let at_vertices = NormalUse::PerVertex;
+    [
+        Style { shade: printed(), normals: at_vertices, shadow: None, lines: Some(objects), ..shadowed.clone() },
+        style("normals").expect("a style of this crate"),
+        Style { shade: printed(), normals: at_vertices, ..shadowed.clone() },
+        Style { shade: six(HatchTransfer::Linear { ambient: 0.2 }, HatchGround::Surface), ..shadowed },
+    ]
+}
+
+/// The four panels in one picture, each of half its width and height.
+///
+/// # Errors
+/// [`HarnessError`].
+pub fn figure_10(
+    executor: &Executor,
+    scene: &Scene,
+    camera: &Camera,
+    (width, height): (u32, u32),
+    progress: &(dyn Fn(f64) + Sync),
+) -> Result<Image, HarnessError> {
+    let (columns, rows) = (width / 2, height / 2);
+    let mut rgba8 = vec![255; width as usize * height as usize * 4];
+    for (number, style) in (0u32..).zip(figure_10_styles()) {
+        let plan = Plan::new(scene, &style, camera)?;
+        let share = |share: f64| progress((f64::from(number) + share) / 4.0);
+        let panel = executor.render(scene, &style, &plan, camera, (columns, rows), 1, &share)?;
+        let (left, top) = (number % 2 * columns, number / 2 * rows);
+        for (row, bytes) in (top..).zip(panel.rgba8.chunks_exact(columns as usize * 4)) {
+            let start = (row as usize * width as usize + left as usize) * 4;
+            rgba8[start..start + bytes.len()].copy_from_slice(bytes);
+        }
+    }
+    Ok(Image::new(width, height, rgba8)?)
+}
