@@ -1,6 +1,7 @@
 //! How exact shadows and their outlines are: states of pixels against shadow rays, lines against the borders of shadows.
 
 use crate::camera::{Camera, Framing, Projection};
+use crate::check::{ROUNDED_PX, SHIFT_PX};
 use crate::compare::Image;
 use crate::cpu::{self, CpuOptions};
 use crate::error::HarnessError;
@@ -18,6 +19,7 @@ use glam::{DVec2, DVec3, UVec2, Vec3};
 use npr_imagespace::composite::Composite;
 use npr_imagespace::format::texel::{TexelLayout, ink_wide_tap};
 use npr_imagespace::shadow::{ShadowState, ink_shadow_state};
+use npr_outline::segment::MAX_SLOPE;
 use npr_toon::source::{Light, LightPlace};
 
 /// A light, and a view under it.
@@ -232,29 +234,40 @@ pub fn states_on_device(
     Ok(States::of_texels(&texels, size))
 }
 
-/// How far from an edge in the reference the pixels lie that differ, but for those through whose centre an edge runs: which
-/// change when the reference's sample moves by `shift_px`. A device may show there what lies beside.
+/// How far from an edge in the reference the pixels lie that differ, but for those in which an edge runs through the
+/// centre: which change their state, or show another surface (a depth that no slope below [`MAX_SLOPE`] explains), when
+/// the reference's sample moves by [`SHIFT_PX`], or by the [`ROUNDED_PX`] to which devices round corners. A device may show
+/// there what lies beside.
 ///
 /// # Errors
 /// Those of [`Plan::new`].
-pub fn farthest_px(
-    scene: &Scene,
-    shot: &ShadowShot,
-    actual: &States,
-    reference: &States,
-    shift_px: f64,
-) -> Result<f64, HarnessError> {
+pub fn farthest_px(scene: &Scene, shot: &ShadowShot, actual: &States, reference: &States) -> Result<f64, HarnessError> {
     let at_once = actual.difference(reference).farthest_px;
     // Near an edge anyway.
     if at_once <= 2.0 {
         return Ok(at_once);
     }
+    let style = shot.style(ShadowMethod::Volumes);
+    let plan = Plan::new(scene, &style, &shot.camera)?;
+    let (width, height) = reference.size;
+    let render = |shift_px| {
+        let options = CpuOptions { shift_px, ..CpuOptions::default() };
+        cpu::render(scene, &style, &plan, &shot.camera, reference.size, &options, &|_| {})
+    };
+    let here = render(DVec2::ZERO).depth;
+    let view = shot.camera.line_view(DVec2::new(width.into(), height.into()));
     let mut kept = actual.clone();
-    for direction in 0..8u8 {
-        let shift_px = shift_px * DVec2::from_angle(f64::from(direction) / 8.0 * std::f64::consts::TAU);
-        let moved = States::by_rays(scene, shot, reference.size, shift_px)?;
-        for ((kept, moved), state) in kept.states.iter_mut().zip(&moved.states).zip(&reference.states) {
-            *kept = kept.filter(|_| moved == state);
+    for (by_px, directions) in [(SHIFT_PX, 8u8), (ROUNDED_PX, 16)] {
+        for direction in 0..directions {
+            let angle = f64::from(direction) / f64::from(directions) * std::f64::consts::TAU;
+            let moved = render(by_px * DVec2::from_angle(angle));
+            let states = States::of_texels(&moved.texels, reference.size).states;
+            for (pixel, kept) in kept.states.iter_mut().enumerate() {
+                let (a, b) = (here[pixel], moved.depth[pixel]);
+                let per_px = a.max(b) * view.depth_per_px.x + view.depth_per_px.y;
+                let another = (a - b).abs() > MAX_SLOPE * by_px * per_px;
+                *kept = kept.filter(|_| !another && states[pixel] == reference.states[pixel]);
+            }
         }
     }
     Ok(kept.difference(reference).farthest_px)

@@ -6,7 +6,7 @@ mod common;
 
 use common::{device, shared_models};
 use glam::DVec2;
-use npr_harness::check;
+use npr_harness::check::SIZE as SIZE_OF_CHECK;
 use npr_harness::cpu::{self, CpuOptions};
 use npr_harness::executor::Executor;
 use npr_harness::plan::{LineMethod, Plan};
@@ -20,7 +20,7 @@ use npr_mesh::{Model, embedded};
 
 const SIZE: (u32, u32) = (320, 180);
 /// Px; of the tables.
-const TABLE_SIZE: (u32, u32) = check::SIZE;
+const TABLE_SIZE: (u32, u32) = SIZE_OF_CHECK;
 const WITHIN_PX: f64 = 1.5;
 
 fn aspect() -> f64 {
@@ -47,7 +47,7 @@ fn assert_masks(executor: &Executor, name: &str, model: Model) {
         let reference = States::by_rays(&scene, &shot, SIZE, DVec2::ZERO).expect("a picture");
         let actual = on_device(executor, &scene, &shot, ShadowMethod::Volumes, LineMethod::Auto, SIZE);
         let mut found = actual.difference(&reference);
-        found.farthest_px = farthest_px(&scene, &shot, &actual, &reference, check::SHIFT_PX).expect("pictures");
+        found.farthest_px = farthest_px(&scene, &shot, &actual, &reference).expect("pictures");
         let inside = eye_is_in_shadow(&scene, &shot);
         println!(
             "{name:20} {:16} {:.5} % differ, farthest {:.1} px{}",

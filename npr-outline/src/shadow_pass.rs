@@ -1,14 +1,15 @@
 //! Shadow volumes into a stencil buffer on wgpu.
 //!
-//! Counted behind the surface (depth fail), so that the eye may stand inside a volume: where the stencil is not 0 after
-//! the pass, what the depth buffer holds is in shadow, or turned away from the light. Volumes end at infinity, so the
+//! Counted behind the surface (depth fail), so that the eye may stand inside a volume: where
+//! [`crate::shadow_volume::outline_in_shadow`] says so of the stencil after the pass, what the depth buffer holds is in
+//! shadow, or turned away from the light. Volumes end at infinity, so the
 //! matrix must have no far plane, or the pass be made without depth clipping.
 //!
 //! The depth buffer must hold the same faces, placed by the same product of matrix and position with an `@invariant`
 //! result: a cap lies exactly on its face, equal depth counts as behind, and so a lit face does not shadow itself. No
 //! bias is needed, and none is there.
 //!
-//! A pixel under 256 layers of faces between it and the light, or a multiple, is taken for lit: 8 bits.
+//! 8 bits: a pixel under 128 to 256 layers of faces between it and the light is taken for lit.
 
 use crate::OutlineError;
 use crate::shadow_volume::{ShadowCasters, VolumeEdge, VolumeFace};

@@ -242,6 +242,15 @@ pub fn outline_sweeps(edge: &VolumeEdge, light: Vec4) -> i32 {
     sweeps
 }
 
+/// Whether a stencil's count of 8 bits says shadow: that of 1 to 127 volumes.
+///
+/// What is above are the negative numbers. No point lies in fewer than no volumes, but where an edge runs through a pixel's
+/// centre a side that was clipped, and so rounded, may miss a pixel that its cap has.
+#[inline]
+pub fn outline_in_shadow(count: u8) -> bool {
+    (1..128).contains(&count)
+}
+
 /// Where what lies at a point ends up, swept away from the light to infinity: a direction, w = 0.
 ///
 /// `light`: world space, a point with w = 1 or the direction to the light with w = 0.

@@ -27,6 +27,11 @@ fn outline_sweeps(flags: u32, plane0: vec4<f32>, plane1: vec4<f32>, light: vec4<
     return sweeps;
 }
 
+// Whether a stencil's count says shadow.
+fn outline_in_shadow(count: u32) -> bool {
+    return count != 0u && count < 128u;
+}
+
 // Swept away from the light to infinity: a direction, w = 0.
 fn outline_swept(point: vec3<f32>, light: vec4<f32>) -> vec4<f32> {
     return vec4<f32>(point * light.w - light.xyz, 0.0);

@@ -1,6 +1,6 @@
 //! Shadows: pictures of the styles that have them, and states of pixels against shadow rays.
 
-use super::{Checker, Limit, SHIFT_PX};
+use super::{Checker, Limit};
 use crate::camera::Camera;
 use crate::error::HarnessError;
 use crate::scene::Scene;
@@ -42,7 +42,7 @@ impl Checker<'_> {
             let reference = States::by_rays(scene, &shot, super::SIZE, DVec2::ZERO)?;
             let actual = states_on_device(context, scene, &shot, ShadowMethod::Volumes, LineMethod::Auto, super::SIZE)?;
             let found = actual.difference(&reference);
-            let farthest = farthest_px(scene, &shot, &actual, &reference, SHIFT_PX)?;
+            let farthest = farthest_px(scene, &shot, &actual, &reference)?;
             let inside = if eye_is_in_shadow(scene, &shot) { "shadow, eye in" } else { "shadow" };
             let limit = |most| Some(Limit::AtMost(most));
             self.add(model, shot.name, inside, "share of pixels in another state", found.share, limit(STATES_SHARE));

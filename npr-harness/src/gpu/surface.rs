@@ -170,9 +170,13 @@ const SURFACE_HATCH_WGSL: &str = include_str!("surface_hatch.wgsl");
 
 /// The whole shader of the geometry pass.
 pub fn wgsl() -> String {
-    let ink =
-        [npr_imagespace::format::FORMAT_WGSL, npr_imagespace::shadow::SHADOW_WGSL, npr_imagespace::artist::ARTIST_WGSL]
-            .concat();
+    let ink = [
+        npr_imagespace::format::FORMAT_WGSL,
+        npr_imagespace::shadow::SHADOW_WGSL,
+        npr_imagespace::artist::ARTIST_WGSL,
+        npr_outline::shadow_pass::SHADOW_WGSL,
+    ]
+    .concat();
     let hatch = [npr_hatch::WGSL, npr_hatch::LOOKUP_WGSL].concat();
     let surface = [SURFACE_LIGHT_WGSL, SURFACE_SHADOW_WGSL, SURFACE_WGSL, SURFACE_HATCH_WGSL].concat();
     [npr_toon::WGSL, npr_gooch::WGSL, &hatch, &ink, &surface].concat()

@@ -45,7 +45,7 @@ fn shadow_to_light(position: vec4<f32>) -> vec3<f32> {
 // Whether something is between what the depth buffer has at a fragment and the light.
 fn shadow_falls(position: vec4<f32>) -> bool {
     if surface_shadow == 1u {
-        return textureLoad(shadow_mask, vec2<i32>(position.xy), 0).x != 0u;
+        return outline_in_shadow(textureLoad(shadow_mask, vec2<i32>(position.xy), 0).x);
     }
     let place = shadow.map_from_px * vec4<f32>(position.xyz, 1.0);
     let texel = vec2<i32>(floor(place.xy / place.w));
