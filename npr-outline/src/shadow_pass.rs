@@ -29,15 +29,19 @@ struct ShadowUniform {
     local_light: [f32; 4],
 }
 
-/// Edges and faces on the device: all of a model, from which the device takes its own, or those of one light.
+/// What casts, on the device.
 #[derive(Debug)]
 pub struct CastersOnDevice {
-    edges: Option<wgpu::Buffer>,
-    edge_count: u32,
-    faces: Option<wgpu::Buffer>,
-    face_count: u32,
     origin: glam::Vec3,
-    open: bool,
+    source: Source,
+}
+
+#[derive(Debug)]
+enum Source {
+    /// All of a model, of which the device takes its own.
+    All { edges: Option<wgpu::Buffer>, edge_count: u32, faces: Option<wgpu::Buffer>, face_count: u32, open: bool },
+    /// The triangles of one light's volumes: those of sides and of caps towards the light, then the other caps.
+    Triangles { vertices: Option<wgpu::Buffer>, towards: u32, away: u32 },
 }
 
 impl CastersOnDevice {
@@ -46,18 +50,31 @@ impl CastersOnDevice {
     /// # Errors
     /// [`OutlineError::TooManyEdges`].
     pub fn new(device: &wgpu::Device, casters: &ShadowCasters) -> Result<Self, OutlineError> {
-        upload(device, casters, &casters.edges, &casters.faces)
+        let source = Source::All {
+            edges: upload(device, "volume edges", bytemuck::cast_slice(&casters.edges))?,
+            edge_count: casters.edges.len() as u32,
+            faces: upload(device, "volume faces", bytemuck::cast_slice(&casters.faces))?,
+            face_count: casters.faces.len() as u32,
+            open: casters.open,
+        };
+        Ok(Self { origin: casters.origin, source })
     }
 
-    /// Uploads what casts for one light, found on the CPU: [`ShadowCasters::scan`]. The way of choice where the device is
-    /// software. Good for as long as the light stays where it is.
+    /// Uploads the volumes of one light, found on the CPU: [`ShadowCasters::triangles`]. The way of choice where the
+    /// device is software, which is slow at many small instances. Good for as long as the light stays where it is.
     ///
     /// # Errors
     /// [`OutlineError::TooManyEdges`].
     pub fn scanned(device: &wgpu::Device, casters: &ShadowCasters, light: DVec4) -> Result<Self, OutlineError> {
-        let (mut edges, mut faces) = (Vec::new(), Vec::new());
-        casters.scan(light, &mut edges, &mut faces);
-        upload(device, casters, &edges, &faces)
+        let (mut triangles, away) = casters.triangles(light);
+        let towards = triangles.len() as u32;
+        triangles.extend_from_slice(&away);
+        let source = Source::Triangles {
+            vertices: upload(device, "volumes", bytemuck::cast_slice(&triangles))?,
+            towards,
+            away: away.len() as u32,
+        };
+        Ok(Self { origin: casters.origin, source })
     }
 }
 
@@ -69,6 +86,8 @@ pub struct ShadowPass {
     sides: [wgpu::RenderPipeline; 2],
     /// Turned towards the light, and away from it.
     caps: [wgpu::RenderPipeline; 2],
+    /// The same of triangles that are there already.
+    placed: [wgpu::RenderPipeline; 2],
 }
 
 /// Vertices of one sweep of an edge, and of the caps of a face, for a light far away and for one near.
@@ -166,13 +185,22 @@ impl ShadowPass {
         let side =
             |vertices: u32| pipeline("vs_side", side_buffer.clone(), &[("sweep_vertices", f64::from(vertices))], false);
         let cap = |turn: f64| pipeline("vs_cap", cap_buffer.clone(), &[("cap_turn", turn)], turn < 0.0);
-        Self { sides: SWEEP_VERTICES.map(side), caps: [cap(1.0), cap(-1.0)], layout }
+        let placed_buffer = wgpu::VertexBufferLayout {
+            array_stride: 16,
+            step_mode: wgpu::VertexStepMode::Vertex,
+            attributes: &wgpu::vertex_attr_array![0 => Float32x4],
+        };
+        let placed = [false, true].map(|turned| pipeline("vs_placed", placed_buffer.clone(), &[], turned));
+        Self { sides: SWEEP_VERTICES.map(side), caps: [cap(1.0), cap(-1.0)], placed, layout }
     }
 
     /// Records the pass: clears the stencil, and counts the volumes against the depth that is there.
     ///
     /// - `light`: world space, a point with w = 1 or the direction to the light with w = 0;
-    /// - `clip_from_world`: of the depth buffer, reversed, rounded to f32 as the scene's own was.
+    /// - `clip_from_world`: of the depth buffer, reversed, rounded to f32 as the scene's own was;
+    /// - `area`: left, top, width and height, px, in which there are surfaces: volumes reach to infinity, and what is
+    ///   counted before nothing is of no use. All of it without.
+    #[expect(clippy::too_many_arguments, reason = "each is a thing of its own; a struct would only rename them")]
     pub fn record(
         &self,
         device: &wgpu::Device,
@@ -181,6 +209,7 @@ impl ShadowPass {
         light: DVec4,
         clip_from_world: DMat4,
         depth_stencil: &wgpu::TextureView,
+        area: Option<[u32; 4]>,
     ) {
         let local = light - casters.origin.as_dvec3().extend(0.0) * light.w;
         let uniform = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
@@ -208,19 +237,39 @@ impl ShadowPass {
             ..Default::default()
         });
         pass.set_bind_group(0, &group, &[]);
-        let near = usize::from(light.w != 0.0);
-        if let Some(edges) = &casters.edges {
-            let sweeps = if casters.open { 2 } else { 1 };
-            pass.set_pipeline(&self.sides[near]);
-            pass.set_vertex_buffer(0, edges.slice(..));
-            pass.draw(0..sweeps * SWEEP_VERTICES[near], 0..casters.edge_count);
+        if let Some([x, y, width, height]) = area {
+            if width == 0 || height == 0 {
+                return;
+            }
+            pass.set_scissor_rect(x, y, width, height);
         }
-        if let Some(faces) = &casters.faces {
-            pass.set_vertex_buffer(0, faces.slice(..));
-            // Of a closed model none casts that is turned away.
-            for pipeline in &self.caps[..if casters.open { 2 } else { 1 }] {
-                pass.set_pipeline(pipeline);
-                pass.draw(0..CAP_VERTICES[near], 0..casters.face_count);
+        let near = usize::from(light.w != 0.0);
+        match &casters.source {
+            Source::All { edges, edge_count, faces, face_count, open } => {
+                // Of a closed model no edge sweeps twice, and no face casts that is turned away.
+                let times = if *open { 2 } else { 1 };
+                if let Some(edges) = edges {
+                    pass.set_pipeline(&self.sides[near]);
+                    pass.set_vertex_buffer(0, edges.slice(..));
+                    pass.draw(0..times * SWEEP_VERTICES[near], 0..*edge_count);
+                }
+                if let Some(faces) = faces {
+                    pass.set_vertex_buffer(0, faces.slice(..));
+                    for pipeline in &self.caps[..times as usize] {
+                        pass.set_pipeline(pipeline);
+                        pass.draw(0..CAP_VERTICES[near], 0..*face_count);
+                    }
+                }
+            }
+            Source::Triangles { vertices, towards, away } => {
+                let Some(vertices) = vertices else { return };
+                pass.set_vertex_buffer(0, vertices.slice(..));
+                for (pipeline, range) in self.placed.iter().zip([0..*towards, *towards..towards + away]) {
+                    if !range.is_empty() {
+                        pass.set_pipeline(pipeline);
+                        pass.draw(range, 0..1);
+                    }
+                }
             }
         }
     }
@@ -235,27 +284,12 @@ const fn attribute(shader_location: u32, offset: u64, format: wgpu::VertexFormat
     wgpu::VertexAttribute { format, offset, shader_location }
 }
 
-fn upload(
-    device: &wgpu::Device,
-    casters: &ShadowCasters,
-    edges: &[VolumeEdge],
-    faces: &[VolumeFace],
-) -> Result<CastersOnDevice, OutlineError> {
-    let buffer = |label, contents: &[u8]| {
-        let (bytes, limit) = (contents.len() as u64, device.limits().max_buffer_size);
-        if bytes > limit {
-            return Err(OutlineError::TooManyEdges { bytes, limit });
-        }
-        let usage = wgpu::BufferUsages::VERTEX;
-        let descriptor = wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage };
-        Ok((!contents.is_empty()).then(|| device.create_buffer_init(&descriptor)))
-    };
-    Ok(CastersOnDevice {
-        edges: buffer("volume edges", bytemuck::cast_slice(edges))?,
-        edge_count: edges.len() as u32,
-        faces: buffer("volume faces", bytemuck::cast_slice(faces))?,
-        face_count: faces.len() as u32,
-        origin: casters.origin,
-        open: casters.open,
-    })
+fn upload(device: &wgpu::Device, label: &'static str, contents: &[u8]) -> Result<Option<wgpu::Buffer>, OutlineError> {
+    let (bytes, limit) = (contents.len() as u64, device.limits().max_buffer_size);
+    if bytes > limit {
+        return Err(OutlineError::TooManyEdges { bytes, limit });
+    }
+    let usage = wgpu::BufferUsages::VERTEX;
+    let descriptor = wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage };
+    Ok((!contents.is_empty()).then(|| device.create_buffer_init(&descriptor)))
 }

@@ -64,3 +64,12 @@ fn vs_cap(
     // As the scene's faces are placed, to the last bit: a cap lies exactly on its face.
     return Placed(view.clip_from_world * vec4<f32>(corner, 1.0));
 }
+
+// A corner of a triangle that was made on the CPU: where it is with w = 1, or with w = 0 what is swept from there.
+@vertex
+fn vs_placed(@location(0) corner: vec4<f32>) -> Placed {
+    if corner.w == 0.0 {
+        return Placed(view.clip_from_world * outline_swept(corner.xyz, view.light));
+    }
+    return Placed(view.clip_from_world * vec4<f32>(corner.xyz, 1.0));
+}

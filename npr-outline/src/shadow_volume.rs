@@ -265,8 +265,7 @@ impl ShadowCasters {
         (light - self.origin.as_dvec3().extend(0.0) * light.w).as_vec4()
     }
 
-    /// Gathers the edges that sweep and the faces that cap for a light: what is worth sending where the device is
-    /// software. `edges` and `faces` are emptied first; at most as many as there are.
+    /// Gathers the edges that sweep and the faces that cap for a light. `edges` and `faces` are emptied first; at most as many as there are.
     ///
     /// `light`: world space, a point with w = 1 or the direction to the light with w = 0.
     pub fn scan(&self, light: DVec4, edges: &mut Vec<VolumeEdge>, faces: &mut Vec<VolumeFace>) {
@@ -277,6 +276,41 @@ impl ShadowCasters {
         faces.extend(
             self.faces.iter().filter(|face| outline_casting(face.plane, face.flags & VOLUME_OPEN != 0, light) != 0),
         );
+    }
+
+    /// The triangles of a light's volumes, three corners each: first those of sides and of caps towards the light, counted
+    /// where they are seen from outside as what they are; then the caps of faces turned away from the light, as these are
+    /// wound, counted the other way round. A corner is a place with w = 1, or with w = 0 what is swept from there to
+    /// infinity ([`outline_swept`]).
+    ///
+    /// At most 12 corners a side of a face and 6 a face. `light`: as for [`ShadowCasters::scan`].
+    pub fn triangles(&self, light: DVec4) -> (Vec<[f32; 4]>, Vec<[f32; 4]>) {
+        let local = self.local_light(light);
+        let (mut towards, mut away) = (Vec::new(), Vec::new());
+        let near = |[x, y, z]: [f32; 3]| [x, y, z, 1.0];
+        let far = |[x, y, z]: [f32; 3]| [x, y, z, 0.0];
+        for edge in &self.edges {
+            let sweeps = outline_sweeps(edge, local);
+            let (from, to) = if sweeps > 0 { (edge.from, edge.to) } else { (edge.to, edge.from) };
+            for _ in 0..sweeps.abs() {
+                towards.extend([near(to), near(from), far(from)]);
+                if light.w != 0.0 {
+                    towards.extend([near(to), far(from), far(to)]);
+                }
+            }
+        }
+        for VolumeFace { a, b, c, flags, plane, .. } in self.faces.iter().copied() {
+            let casting = outline_casting(plane, flags & VOLUME_OPEN != 0, local);
+            if casting == 0 {
+                continue;
+            }
+            let of = if casting > 0 { &mut towards } else { &mut away };
+            of.extend([a, b, c].map(near));
+            if light.w != 0.0 {
+                of.extend([a, c, b].map(far));
+            }
+        }
+        (towards, away)
     }
 
     /// In how many volumes a point lies, by the signed crossings of a ray from it to `beyond`, a point that lies in none:

@@ -35,7 +35,7 @@ fn modules_validate_as_the_passes_use_them() {
     assert_eq!(entry_points(&[LINE, LINE_INK, LINE_STROKES]), ["stroke", "mix_ink", "lay_ink"]);
     assert_eq!(entry_points(&[LINE, COMPACTION]), ["compact"]);
     assert_eq!(entry_points(&[NORMAL_FORMAT, FIN_PRINTED, FIN_PASS]), ["vs_fin", "vs_fin_oct", "fs_fin"]);
-    assert_eq!(entry_points(&[SHADOW_VOLUME, SHADOW_PASS]), ["vs_side", "vs_cap"]);
+    assert_eq!(entry_points(&[SHADOW_VOLUME, SHADOW_PASS]), ["vs_side", "vs_cap", "vs_placed"]);
 }
 
 #[test]

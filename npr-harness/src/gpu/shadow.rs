@@ -186,6 +186,7 @@ impl ShadowPasses {
     }
 
     /// Volumes counted against the depth that `draw_depth` draws into the view that it is given; or the map.
+    #[expect(clippy::too_many_arguments, reason = "each is a thing of its own; a struct would only rename them")]
     pub(super) fn record(
         &self,
         context: &GpuContext,
@@ -213,8 +214,9 @@ impl ShadowPasses {
         let aspect = f64::from(frame.size.0) / f64::from(frame.size.1);
         let clip_from_world = frame.camera.clip_from_world(aspect);
         let casting = uploaded.casting.as_ref().expect("what a plan with volumes uploads");
+        let area = scene.bounds().map(|bounds| frame.camera.area(bounds, frame.size, 1));
         let mut draw = |casters: &CastersOnDevice| {
-            pass.record(device, encoder, casters, frame.light, clip_from_world, depth_stencil);
+            pass.record(device, encoder, casters, frame.light, clip_from_world, depth_stencil, area);
         };
         match casting {
             ShadowCasting::OnDevice(casters) => draw(casters),
