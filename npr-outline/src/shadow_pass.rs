@@ -198,6 +198,7 @@ impl ShadowPass {
     ///
     /// - `light`: world space, a point with w = 1 or the direction to the light with w = 0;
     /// - `clip_from_world`: of the depth buffer, reversed, rounded to f32 as the scene's own was;
+    /// - `endless`: of a parallel view what [`ShadowCasters::endless`] says of its direction, else 0;
     /// - `area`: left, top, width and height, px, in which there are surfaces: volumes reach to infinity, and what is
     ///   counted before nothing is of no use. All of it without.
     #[expect(clippy::too_many_arguments, reason = "each is a thing of its own; a struct would only rename them")]
@@ -209,6 +210,7 @@ impl ShadowPass {
         light: DVec4,
         clip_from_world: DMat4,
         depth_stencil: &wgpu::TextureView,
+        endless: u32,
         area: Option<[u32; 4]>,
     ) {
         let local = light - casters.origin.as_dvec3().extend(0.0) * light.w;
@@ -232,7 +234,10 @@ impl ShadowPass {
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: depth_stencil,
                 depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store }),
-                stencil_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0), store: wgpu::StoreOp::Store }),
+                stencil_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(endless & 0xff),
+                    store: wgpu::StoreOp::Store,
+                }),
             }),
             ..Default::default()
         });

@@ -313,6 +313,27 @@ impl ShadowCasters {
         (towards, away)
     }
 
+    /// In how many volumes a way that goes on for ever ends: through how many casting faces the ray from the light in its
+    /// direction goes.
+    ///
+    /// The lines of sight of a parallel view all go one way, and there caps at infinity are seen edge-on: this is what they
+    /// would count, for every pixel. 0 under a light far away, whose volumes end in a point. A sum over all faces; `light`:
+    /// as for [`ShadowCasters::scan`].
+    pub fn endless(&self, light: DVec4, direction: DVec3) -> u32 {
+        if light.w == 0.0 {
+            return 0;
+        }
+        let local = self.local_light(light);
+        let is_hit = |face: &&VolumeFace| {
+            let [a, b, c] = [face.a, face.b, face.c].map(|corner| Vec3::from(corner).as_dvec3() - light.truncate());
+            let sides = [(a, b), (b, c), (c, a)].map(|(p, q)| p.cross(q).dot(direction));
+            let towards = (a.cross(b) + b.cross(c) + c.cross(a)).dot(a) * sides[0];
+            (sides.iter().all(|&side| side > 0.0) || sides.iter().all(|&side| side < 0.0)) && towards > 0.0
+        };
+        let casting = |face: &&VolumeFace| outline_casting(face.plane, face.flags & VOLUME_OPEN != 0, local) != 0;
+        self.faces.iter().filter(casting).filter(is_hit).count() as u32
+    }
+
     /// In how many volumes a point lies, by the signed crossings of a ray from it to `beyond`, a point that lies in none:
     /// the definition, for tests, in f64. Sides are taken as they are swept, caps as they are turned.
     pub fn count_at(&self, point: DVec3, beyond: DVec3, light: DVec4) -> i32 {

@@ -214,9 +214,10 @@ impl ShadowPasses {
         let aspect = f64::from(frame.size.0) / f64::from(frame.size.1);
         let clip_from_world = frame.camera.clip_from_world(aspect);
         let casting = uploaded.casting.as_ref().expect("what a plan with volumes uploads");
+        let endless = if parallel { frame.plan.casters.endless(frame.light, -frame.camera.axes()[2]) } else { 0 };
         let area = scene.bounds().map(|bounds| frame.camera.area(bounds, frame.size, 1));
         let mut draw = |casters: &CastersOnDevice| {
-            pass.record(device, encoder, casters, frame.light, clip_from_world, depth_stencil, area);
+            pass.record(device, encoder, casters, frame.light, clip_from_world, depth_stencil, endless, area);
         };
         match casting {
             ShadowCasting::OnDevice(casters) => draw(casters),

@@ -128,6 +128,19 @@ fn the_teapot_on_the_ground_is_counted_as_its_faces_are() {
     }
 }
 
+#[test]
+fn a_way_without_end_ends_in_the_volumes_that_its_direction_meets() {
+    let positions = vec![Vec3::ZERO, Vec3::X, Vec3::new(1.0, 0.0, 1.0), Vec3::Z];
+    let casters = casters_of(&soup(positions, vec![[0, 1, 2], [0, 3, 2]]));
+    let light = near(DVec3::new(0.6, 0.5, 0.3));
+    for direction in [DVec3::NEG_Y, DVec3::Y, DVec3::X, DVec3::new(0.2, -1.0, 0.3), DVec3::new(2.0, -1.0, 0.0)] {
+        let far_off = light.truncate() + DVec3::splat(0.01) + direction * 1e4;
+        assert_eq!(casters.endless(light, direction) as i32, layers(&casters, far_off, light), "{direction}");
+    }
+    assert_eq!(casters.endless(light, DVec3::NEG_Y), 1);
+    assert_eq!(casters.endless(far(DVec3::Y), DVec3::NEG_Y), 0);
+}
+
 /// Corners of a lattice, so that faces share edges and corners, fold, coincide and lose their area.
 fn lattice() -> impl Strategy<Value = (Vec<Vec3>, Vec<[u32; 3]>)> {
     let corner = prop::array::uniform3(0..3i8).prop_map(|c| Vec3::from(c.map(f32::from)));
