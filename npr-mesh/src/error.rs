@@ -20,6 +20,15 @@ pub enum LoadError {
         /// What the system said.
         source: std::io::Error,
     },
+    /// A file that the model names is neither in the model's own folder nor in
+    /// [`asset_root`](crate::LoadOptions::asset_root).
+    #[error("{}: \"{name}\" leads out of the model's folder", path.display())]
+    Outside {
+        /// The model.
+        path: PathBuf,
+        /// The name in it.
+        name: String,
+    },
     /// The bytes are not what the format prescribes.
     #[error("{}: {fault}", path.display())]
     Malformed {

@@ -30,19 +30,12 @@ impl Builder<'_> {
         LoadError::Malformed { path: self.path.to_owned(), fault }
     }
 
-    /// Adds a mesh as tobj gives it without `single_index`: positions, and one index into each array per corner.
+    /// Adds a mesh as tobj gives it without `single_index`: positions, known to be finite, and one index into each array
+    /// per corner.
     pub fn add(&mut self, mesh: &tobj::Mesh, material: u32) -> Result<(), LoadError> {
         let base = self.model.positions.len();
         let positions = mesh.positions.as_chunks::<3>().0;
         let corners = mesh.indices.len();
-        for (which, &[x, y, z]) in positions.iter().enumerate() {
-            if !(x.is_finite() && y.is_finite() && z.is_finite()) {
-                let (first, of) = (which + 1, positions.len());
-                return Err(
-                    self.malformed(format!("vertex ({x}, {y}, {z}), number {first} of {of} in use, is not finite"))
-                );
-            }
-        }
         if mesh.indices.iter().any(|&i| i as usize >= positions.len()) {
             return Err(self.malformed("a face uses a vertex that is not there".to_owned()));
         }

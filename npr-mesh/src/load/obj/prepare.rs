@@ -23,6 +23,8 @@ pub(super) struct Prepared {
     /// Corners without texture coordinate, and without normal, numbered through all faces that tobj is given.
     pub absent: [Runs; 2],
     pub materials_used: BTreeSet<String>,
+    /// What the `mtllib` lines name.
+    pub material_files: Vec<String>,
     /// The corners with which an object or a group begins, numbered likewise, ascending.
     pub objects: Vec<u64>,
     pub warnings: Vec<String>,
@@ -60,9 +62,41 @@ pub(super) fn runs_within(runs: &Runs, range: &Range<u64>) -> impl Iterator<Item
         .map(move |run| run.start.max(start)..run.end.min(end))
 }
 
+/// Keywords whose lines say nothing about the faces and their materials.
+const PASSED_OVER: [&[u8]; 28] = [
+    b"s",
+    b"mg",
+    b"vp",
+    b"vw",
+    b"cstype",
+    b"deg",
+    b"bmat",
+    b"step",
+    b"parm",
+    b"trim",
+    b"hole",
+    b"scrv",
+    b"sp",
+    b"end",
+    b"con",
+    b"bevel",
+    b"c_interp",
+    b"d_interp",
+    b"lod",
+    b"maplib",
+    b"usemap",
+    b"shadow_obj",
+    b"trace_obj",
+    b"ctech",
+    b"stech",
+    b"bsp",
+    b"bzp",
+    b"cdc",
+];
+
 const ARRAYS: [&str; 3] = ["vertex", "texture coordinate", "normal"];
 
-/// The `v`, `vt`, `vn`, `f`, `usemtl` and `mtllib` lines in a form that tobj reads as it is meant, everything
+/// The `v`, `vt`, `vn`, `f` and `usemtl` lines, each in its place, in a form that tobj reads as it is meant, everything
 /// checked that it would not check.
 pub(super) fn prepare(mut bytes: Vec<u8>, path: &Path, limits: &Limits) -> Result<Prepared, LoadError> {
     let malformed = |line: u64, fault: String| LoadError::Malformed {
@@ -72,19 +106,25 @@ pub(super) fn prepare(mut bytes: Vec<u8>, path: &Path, limits: &Limits) -> Resul
     if bytes.contains(&0) {
         return Err(malformed(0, "not a text file".to_owned()));
     }
+    let mut repaired = Repaired::default();
     if bytes.starts_with(b"\xef\xbb\xbf") {
         bytes[..3].fill(b' ');
+        repaired.marks = 1;
     }
-    // Lines ended so before 2001.
-    if !bytes.contains(&b'\n') {
-        bytes.iter_mut().filter(|b| **b == b'\r').for_each(|b| *b = b'\n');
+    // Lines ended so before 2001, and do here and there in files put together since.
+    let end = if bytes.contains(&b'\r') { bytes.len() } else { 0 };
+    for at in 0..end {
+        if bytes[at] == b'\r' && bytes.get(at + 1) != Some(&b'\n') {
+            bytes[at] = b'\n';
+        }
     }
 
     let mut counts = Counts::default();
     let mut absent = [Runs::new(), Runs::new()];
     let mut materials_used = BTreeSet::new();
+    let mut material_files = Vec::new();
+    let mut material_files_known = BTreeSet::new();
     let mut objects = Vec::new();
-    let mut repaired = Repaired::default();
     // Per array the highest number that a face names, and that face's line.
     let mut highest = [(0u64, 0u64); 3];
     let mut edit = Edit { bytes: &bytes, out: Vec::new(), copied: 0 };
@@ -135,6 +175,10 @@ pub(super) fn prepare(mut bytes: Vec<u8>, path: &Path, limits: &Limits) -> Resul
             joined.extend_from_slice(line);
             line = trim_end(&joined);
             rewritten = true;
+            repaired.continued += 1;
+        }
+        if !line.is_ascii() && std::str::from_utf8(line).is_err() {
+            repaired.not_utf8 += 1;
         }
         let bad = |fault: String| malformed(first_line_number, fault);
         let trimmed = line.trim_ascii_start();
@@ -229,14 +273,23 @@ pub(super) fn prepare(mut bytes: Vec<u8>, path: &Path, limits: &Limits) -> Resul
                     rewritten = true;
                 }
             }
-            b"usemtl" | b"mtllib" => {
+            b"mtllib" => {
+                let names = String::from_utf8_lossy(rest.trim_ascii());
+                if !names.is_empty() && material_files_known.insert(names.to_string()) {
+                    material_files.push(names.into_owned());
+                }
+                edit.replace(begin, at, b"");
+                continue;
+            }
+            b"usemtl" => {
                 // Names can have any bytes; tobj takes UTF-8 only, and a single space before them.
                 let name = String::from_utf8_lossy(rest.trim_ascii());
                 if name.is_empty() {
+                    repaired.nameless += 1;
                     edit.replace(begin, at, b"");
                     continue;
                 }
-                if keyword == b"usemtl" && !materials_used.contains(name.as_ref()) {
+                if !materials_used.contains(name.as_ref()) {
                     materials_used.insert(name.to_string());
                 }
                 if rewritten || matches!(name, Cow::Owned(_)) || rest[0] != b' ' {
@@ -256,6 +309,13 @@ pub(super) fn prepare(mut bytes: Vec<u8>, path: &Path, limits: &Limits) -> Resul
             [] => continue,
             [b'#', ..] if line.is_ascii() => continue,
             _ => {
+                match keyword {
+                    b"l" | b"p" => repaired.points_and_lines += 1,
+                    b"curv" | b"curv2" | b"surf" => repaired.free_forms += 1,
+                    b"call" | b"csh" => repaired.calls += 1,
+                    _ if keyword[0] == b'#' || PASSED_OVER.contains(&keyword) => {}
+                    _ => repaired.unknown += 1,
+                }
                 edit.replace(begin, at, b"");
                 continue;
             }
@@ -285,7 +345,7 @@ pub(super) fn prepare(mut bytes: Vec<u8>, path: &Path, limits: &Limits) -> Resul
         text = color_all(&text);
         repaired.uncolored = counts.arrays[0] - counts.colored;
     }
-    Ok(Prepared { text, counts, absent, materials_used, objects, warnings: repaired.warnings() })
+    Ok(Prepared { text, counts, absent, materials_used, material_files, objects, warnings: repaired.warnings() })
 }
 
 /// The length, with its end, of a line of `v`, a space and three numbers.
@@ -378,17 +438,33 @@ fn plain_face(bytes: &[u8]) -> Option<PlainFace> {
 
 #[derive(Default)]
 struct Repaired {
+    marks: u64,
+    continued: u64,
+    not_utf8: u64,
     short_faces: u64,
     vertex_words: u64,
     uncolored: u64,
+    nameless: u64,
+    points_and_lines: u64,
+    free_forms: u64,
+    calls: u64,
+    unknown: u64,
 }
 
 impl Repaired {
     fn warnings(&self) -> Vec<String> {
         [
+            (self.marks, "byte-order mark at the beginning is passed over"),
+            (self.continued, "lines go on behind a backslash: they are joined"),
+            (self.not_utf8, "lines are not UTF-8: what is not is passed over"),
             (self.short_faces, "faces with fewer than 3 corners are left out"),
             (self.vertex_words, "vertices have 5 numbers or more than 6: what is too much is passed over"),
             (self.uncolored, "vertices have no colour where others have one: they are white"),
+            (self.nameless, "usemtl lines without a name are passed over"),
+            (self.points_and_lines, "points and lines are left out"),
+            (self.free_forms, "curves and surfaces are left out"),
+            (self.calls, "calls of other files are not followed"),
+            (self.unknown, "lines begin with none of the format's keywords: they are passed over"),
         ]
         .iter()
         .filter(|(count, _)| *count > 0)
@@ -406,11 +482,13 @@ struct Edit<'a> {
 }
 
 impl Edit<'_> {
-    /// The lines from `begin` up to `end`, with their line ends, become one line.
+    /// The lines from `begin` up to `end`, with their line ends, become one line; empty ones behind it keep the numbers
+    /// of those that follow.
     fn replace(&mut self, begin: usize, end: usize, line: &[u8]) {
         self.out.extend_from_slice(&self.bytes[self.copied..begin]);
         self.out.extend_from_slice(line);
-        self.out.push(b'\n');
+        let lines = self.bytes[begin..end].iter().filter(|b| **b == b'\n').count();
+        self.out.resize(self.out.len() + lines.max(1), b'\n');
         self.copied = end;
     }
 
@@ -446,7 +524,7 @@ fn count_words(line: &[u8]) -> (usize, usize) {
     (words, line.len())
 }
 
-fn words_of(line: &[u8]) -> impl Iterator<Item = &[u8]> {
+pub(super) fn words_of(line: &[u8]) -> impl Iterator<Item = &[u8]> {
     line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty())
 }
 
