@@ -298,7 +298,10 @@ fn strided_and_quantised_positions() {
     let loaded = doc.mesh(r#""attributes":{"POSITION":0}"#, "", rest).unwrap();
     assert_corners(&loaded.model, &[[[0.; 3], [1., 0., 0.], [0., -1., 0.]]]);
     assert_eq!(loaded.warnings, ["no normals: they are made from the faces"]);
-    assert_fault(doc.mesh(r#""attributes":{"POSITION":0}"#, "", ""), "signed 16-bit integers, normalised, and the file");
+    assert_fault(
+        doc.mesh(r#""attributes":{"POSITION":0}"#, "", ""),
+        "signed 16-bit integers, normalised, and the file",
+    );
 }
 
 #[test]

@@ -75,9 +75,9 @@ impl<'a> External<'a> {
                 }
             }
         }
-        let name = names.first().map_or(Path::new(""), PathBuf::as_path);
+        let name = shortened(&names.first().map_or(Path::new(""), PathBuf::as_path).to_string_lossy());
         Err(if outside {
-            LoadError::Outside { path: self.model.to_owned(), name: shortened(&name.to_string_lossy()) }
+            LoadError::Outside { path: self.model.to_owned(), name }
         } else {
             LoadError::Read { path: roots[0].0.join(name), source: io::ErrorKind::NotFound.into() }
         })

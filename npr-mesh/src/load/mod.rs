@@ -61,8 +61,8 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, LoadError> {
     if loaded.model.faces.is_empty() {
         return Err(LoadError::Empty { path: path.to_owned() });
     }
-    report(&loaded.model, &mut loaded.warnings);
     shorten(&mut loaded.warnings);
+    report(&loaded.model, &mut loaded.warnings);
     normals::fill_missing(&mut loaded.model, options.normal_crease_angle_rad);
     Ok(loaded)
 }

@@ -107,9 +107,10 @@ pub(super) fn prepare(mut bytes: Vec<u8>, path: &Path, limits: &Limits) -> Resul
         return Err(malformed(0, "not a text file".to_owned()));
     }
     let mut repaired = Repaired::default();
-    if bytes.starts_with(b"\xef\xbb\xbf") {
-        bytes[..3].fill(b' ');
-        repaired.marks = 1;
+    // More than one where files were put together.
+    while bytes[3 * repaired.marks as usize..].starts_with(b"\xef\xbb\xbf") {
+        bytes[3 * repaired.marks as usize..][..3].fill(b' ');
+        repaired.marks += 1;
     }
     // Lines ended so before 2001, and do here and there in files put together since.
     let end = if bytes.contains(&b'\r') { bytes.len() } else { 0 };
@@ -454,7 +455,7 @@ struct Repaired {
 impl Repaired {
     fn warnings(&self) -> Vec<String> {
         [
-            (self.marks, "byte-order mark at the beginning is passed over"),
+            (self.marks, "byte-order marks at the beginning are passed over"),
             (self.continued, "lines go on behind a backslash: they are joined"),
             (self.not_utf8, "lines are not UTF-8: what is not is passed over"),
             (self.short_faces, "faces with fewer than 3 corners are left out"),
