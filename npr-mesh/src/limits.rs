@@ -35,13 +35,13 @@ impl Default for Limits {
             file_bytes: 4 << 30,
             vertices: 100_000_000,
             faces: 50_000_000,
-            repeated: 4_000_000,
+            repeated: 2_000_000,
             polygon_corners: 100_000,
             nodes: 1_000_000,
             instances: 1_000_000,
             displacements: 200_000_000,
             texels: 1 << 26,
-            texels_in_all: 1 << 27,
+            texels_in_all: 3 << 25,
         }
     }
 }

@@ -90,6 +90,8 @@ fn a_face_that_is_turned_round_makes_no_crease() {
     }
     assert_eq!(alike.edges.iter().filter(|edge| edge.wound_oppositely()).count(), 0);
     assert_eq!(turned.edges.iter().filter(|edge| edge.wound_oppositely()).count(), 1);
+    assert!(alike.warnings().is_empty());
+    assert_eq!(turned.warnings(), ["1 edges have faces wound oppositely: they make no crease"]);
 }
 
 #[test]
@@ -111,6 +113,7 @@ fn a_duplicate_face_is_counted_but_not_drawn() {
     let drawn = find_drawn(&positions, &faces);
     assert_eq!(count(&drawn, EdgeKind::TwoFace), 18);
     assert_eq!(drawn.skipped.iter().filter(|&&s| s).count(), 2);
+    assert!(matches!(&drawn.warnings()[..], [one] if one.starts_with("2 faces lie on another one")));
     assert!(drawn.skipped[12] && drawn.skipped[13]);
 }
 

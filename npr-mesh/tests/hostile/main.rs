@@ -67,6 +67,69 @@ fn every_file_has_the_outcome_stated() {
     assert!(cases.len() >= 150, "{}", cases.len());
 }
 
+/// The corpus with bytes changed, taken out, put in and repeated. `NPR_MUTATIONS` says how many files; the seed is fixed.
+#[test]
+fn broken_copies_give_a_sound_model_or_an_error() {
+    let wanted = std::env::var("NPR_MUTATIONS").ok().and_then(|n| n.parse().ok()).unwrap_or(3000u32);
+    let folder = Folder::new("mutated");
+    let cases: Vec<Case> = corpus()
+        .into_iter()
+        .filter(|case| case.files[0].1.len() < 20_000 && case.links.is_empty() && case.pipe.is_none())
+        .collect();
+    let mut state = 1u64;
+    let mut random = |below: usize| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        ((state >> 33) as usize) % below.max(1)
+    };
+    let words: [&[u8]; 16] = [
+        b"0",
+        b"-1",
+        b"4294967295",
+        b"1e400",
+        b"nan",
+        b"\\\n",
+        b"\r",
+        b"f 1 2 3\n",
+        b"\"",
+        b"{}",
+        b"null",
+        b"5126",
+        b"[",
+        b"\xff",
+        b"\0\0\x80\x7f",
+        b"\xff\xff\xff\xff",
+    ];
+    for number in 0..wanted {
+        let case = &cases[random(cases.len())];
+        let mut bytes = case.files[0].1.clone();
+        for _ in 0..1 + random(4) {
+            let at = random(bytes.len() + 1);
+            let end = (at + random(12)).min(bytes.len());
+            let word = words[random(words.len())];
+            match random(5) {
+                0 if at < bytes.len() => bytes[at] = random(256) as u8,
+                1 => drop(bytes.splice(at..at, word.iter().copied())),
+                2 => drop(bytes.splice(at..end, word.iter().copied())),
+                3 => drop(bytes.drain(at..end)),
+                _ => {
+                    let again = bytes[at..end].to_vec();
+                    drop(bytes.splice(at..at, again));
+                }
+            }
+        }
+        let ending = case.files[0].0.rsplit('.').next().expect("an ending").to_owned();
+        let path = folder.0.join(format!("m.{ending}"));
+        std::fs::write(&path, &bytes).expect("written");
+        let start = std::time::Instant::now();
+        if let Ok(loaded) = npr_mesh::load(&path, &case.options) {
+            if let Err(fault) = case::sound(&loaded.model) {
+                panic!("copy {number} of {}: {fault}: {}", case.name, bytes.escape_ascii());
+            }
+        }
+        assert!(start.elapsed() < LONGEST, "copy {number} of {}: {}", case.name, bytes.escape_ascii());
+    }
+}
+
 #[test]
 #[ignore = "writes the files into the folder that NPR_CORPUS names"]
 fn write_the_corpus() {

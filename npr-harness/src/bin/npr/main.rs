@@ -277,6 +277,11 @@ fn run_render(options: &Render) -> Result<bool, HarnessError> {
     let segments = checked("segments", f64::from(options.segments), 1.0, 1024.0, "1..=1024")? as u32;
     let model = if segments > 1 { pn_triangles::tessellate(&loaded.model, segments)? } else { loaded.model };
     let mut scene = Scene::new(model);
+    let mut warnings = loaded.warnings;
+    for warning in scene.edges.warnings() {
+        eprintln!("npr: {}: warning: {warning}", options.input.display());
+        warnings.push(warning);
+    }
     // Positions may have been moved to the origin.
     scene.clip = options.clip.map(|plane| plane + DVec4::W * plane.truncate().dot(scene.origin));
     for (material, kind) in &options.inner_lines {
@@ -305,7 +310,7 @@ fn run_render(options: &Render) -> Result<bool, HarnessError> {
                 "faces": scene.model.faces.len(), "edges": scene.edges.edges.len(),
                 "lines": {"silhouette": counts[0], "boundary": counts[1], "crease": counts[2], "material_border": counts[3]},
                 "load_ms": loaded_ms, "prepare_ms": prepared_ms, "render_ms": drawn_ms,
-                "passes": passes, "left_out": left_out, "warnings": loaded.warnings,
+                "passes": passes, "left_out": left_out, "warnings": warnings,
             })
         );
     } else {
