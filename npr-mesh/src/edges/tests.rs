@@ -159,6 +159,20 @@ fn materials_part_where_they_differ() {
 }
 
 #[test]
+fn many_polygons_at_one_edge_take_no_quadratic_time() {
+    let positions = [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0), Vec3::Y];
+    let squares = 100_000u32;
+    let faces: Vec<[u32; 3]> = (0..squares).flat_map(|_| [[0, 1, 2], [0, 2, 3]]).collect();
+    let polygons: Vec<u32> = (0..squares).flat_map(|polygon| [polygon; 2]).collect();
+    let start = std::time::Instant::now();
+    let edges = find(&positions, &faces, &polygons, &[], &EdgeOptions::default());
+    assert!(start.elapsed().as_secs() < 5, "took {:?}", start.elapsed());
+    // Four sides of as many squares; the diagonals pair off within their polygons.
+    assert_eq!((edges.edges.len(), squares as usize), (4, edges.further_faces.len() / 4 + 2));
+    assert_eq!(count(&edges, EdgeKind::NonManifold), 4);
+}
+
+#[test]
 fn a_fan_around_one_vertex_is_found_in_linear_time() {
     // The hub is the lowest-numbered end of half of all edges: with it as their home, the search is quadratic.
     let rim = 300_000u32;

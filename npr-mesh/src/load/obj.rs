@@ -13,6 +13,7 @@ mod prepare;
 
 use super::external::{External, shortened};
 use super::{Loaded, read_file};
+use crate::triangulate::EAR_TESTS_OF_A_FILE;
 use crate::{LoadError, Material, Model};
 use builder::Builder;
 use glam::Vec3;
@@ -94,6 +95,7 @@ pub(super) fn load(external: &External) -> Result<Loaded, LoadError> {
         corners_before: 0,
         absent: &prepared.absent,
         objects: &prepared.objects,
+        ear_tests: EAR_TESTS_OF_A_FILE,
         repaired: 0,
     };
     builder.model.faces.reserve(prepared.counts.triangles as usize);

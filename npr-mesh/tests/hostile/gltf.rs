@@ -741,6 +741,11 @@ fn materials() -> Vec<Case> {
         image("asset-root", json!({"uri": "wood/a.png"}), loads(2, &[]))
             .with("../assets-11/wood/a.png", png.clone())
             .asset_root("../assets-11"),
+        textured(json!({"index": 0}))
+            .set("/textures", json!([{"source": 0}]))
+            .set("/images", json!([{"bufferView": 4}]))
+            .set("/bufferViews/4", json!({"buffer": 0, "byteOffset": 100, "byteLength": 1000}))
+            .case("image-view-beyond-its-buffer", left_out("buffer view 4: 1000 bytes from byte 100 reach beyond")),
         viewed("viewed", &png, loads(2, &[])),
         viewed("cut-off", &png[..30], left_out("image #0")),
         viewed("nothing", &[], left_out("image #0")),

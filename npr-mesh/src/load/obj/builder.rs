@@ -1,7 +1,7 @@
 //! tobj's meshes in one [`Model`].
 
 use super::prepare::{Runs, runs_within};
-use crate::triangulate::triangulate_into;
+use crate::triangulate::triangulate_within;
 use crate::{Limits, LoadError, Model};
 use glam::{Vec2, Vec3, Vec4};
 use std::borrow::Cow;
@@ -21,6 +21,8 @@ pub(super) struct Builder<'a> {
     pub absent: &'a [Runs; 2],
     /// The corners with which an object or a group begins.
     pub objects: &'a [u64],
+    /// What may still be spent on polygons that cross themselves.
+    pub ear_tests: usize,
     /// Texture coordinates and colours that were replaced.
     pub repaired: u64,
 }
@@ -154,7 +156,7 @@ impl Builder<'_> {
                 } else {
                     outline.clear();
                     outline.extend(corners.iter().map(|&v| model.positions[(base + v) as usize]));
-                    triangulate_into(&outline, &mut triangles);
+                    triangulate_within(&outline, &mut triangles, &mut self.ear_tests);
                     model.faces.extend(triangles.iter().map(|t| t.map(|i| base + corners[i as usize])));
                 }
                 if !objects.is_empty() {
