@@ -158,6 +158,21 @@ fn faces() -> Vec<Case> {
             loads(8, &[]),
         ),
         case(
+            "quads-at-one-edge",
+            after(&("v 1 1 0\n".to_owned() + &"f 1 2 4 3\n".repeat(150_000))),
+            loads(300_000, &[]),
+        ),
+        case("polygon-round-and-round", after(&format!("f{}\n", " 1 2 3".repeat(33_000))), loads(98_998, &["no area"])),
+        case("polygon-back-and-forth", after(&format!("f{} 3\n", " 1 2".repeat(49_000))), loads(97_999, &["no area"])),
+        case("same-face-often", after(&"f 1 2 3\n".repeat(500_000)), loads(500_000, &[])),
+        case(
+            "faces-at-one-edge",
+            (0..100_000).map(|i| format!("v 0 {i} {}\n", i % 7)).collect::<String>()
+                + "v 0 0 0\nv 1 0 0\n"
+                + &(1..=100_000).map(|i| format!("f 100001 100002 {i}\n")).collect::<String>(),
+            loads(100_000, &["1 of 100000 faces have no area"]),
+        ),
+        case(
             "many-polygon-tangles",
             {
                 let vertices = tangle(300);
