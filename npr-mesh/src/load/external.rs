@@ -84,6 +84,7 @@ impl<'a> External<'a> {
     }
 
     /// The same names where they are relative to the folder of another file that was found, and as they are.
+    #[cfg(feature = "obj")]
     pub fn beside(&self, file: &Path, names: Vec<PathBuf>) -> Vec<PathBuf> {
         let own = self.roots().ok().and_then(|roots| roots.first());
         match file

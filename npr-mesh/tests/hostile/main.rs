@@ -121,10 +121,10 @@ fn broken_copies_give_a_sound_model_or_an_error() {
         let path = folder.0.join(format!("m.{ending}"));
         std::fs::write(&path, &bytes).expect("written");
         let start = std::time::Instant::now();
-        if let Ok(loaded) = npr_mesh::load(&path, &case.options) {
-            if let Err(fault) = case::sound(&loaded.model) {
-                panic!("copy {number} of {}: {fault}: {}", case.name, bytes.escape_ascii());
-            }
+        if let Ok(loaded) = npr_mesh::load(&path, &case.options)
+            && let Err(fault) = case::sound(&loaded.model)
+        {
+            panic!("copy {number} of {}: {fault}: {}", case.name, bytes.escape_ascii());
         }
         assert!(start.elapsed() < LONGEST, "copy {number} of {}: {}", case.name, bytes.escape_ascii());
     }

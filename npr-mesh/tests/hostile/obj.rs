@@ -37,7 +37,7 @@ fn texts() -> Vec<Case> {
         case("backslashes-only", "\\\n\\\n\\", fails(&["no triangle"])),
         case("html", "<!DOCTYPE html>\n<html><body>404</body></html>\n", fails(&["no triangle"])),
         case("nul", bytes(&[plain.as_bytes(), b"\0"]), fails(&["not a text file"])),
-        case("binary", (0..9999u32).map(|i| (i * i >> 3) as u8).collect::<Vec<u8>>(), fails(&["not a text file"])),
+        case("binary", (0..9999u32).map(|i| ((i * i) >> 3) as u8).collect::<Vec<u8>>(), fails(&["not a text file"])),
         case("utf16-little", utf16(false), fails(&["not a text file"])),
         case("utf16-big", utf16(true), fails(&["not a text file"])),
         case("glb-inside", &b"glTF\x02\0\0\0\x14\0\0\0"[..], fails(&["not a text file"])),

@@ -72,7 +72,7 @@ fn quads_have_the_triangles_and_the_edges_of_the_same_model_in_triangles() {
     let (mut quads, mut triangles) = (String::new(), String::new());
     for y in 0..=side {
         for x in 0..=side {
-            writeln!(vertices, "v {x} {y} {}", if x > 4 { x - 4 } else { 0 }).unwrap();
+            writeln!(vertices, "v {x} {y} {}", x.saturating_sub(4)).unwrap();
         }
     }
     for y in 0..side {
