@@ -21,7 +21,7 @@ pub enum LoadError {
         source: std::io::Error,
     },
     /// A file that the model names is neither in the model's own folder nor in
-    /// [`asset_root`](crate::LoadOptions::asset_root).
+    /// `LoadOptions::asset_root`.
     #[error("{}: \"{name}\" leads out of the model's folder", path.display())]
     Outside {
         /// The model.

@@ -8,8 +8,8 @@ use std::path::Path;
 /// Width, height and `width * height * 4` bytes, rows from the top, of a PNG or JPEG file in memory.
 ///
 /// The kind is told by the first bytes, not by a file ending. The size that the header states is compared with
-/// [`Limits::texels`] and, added to `so_far`, with [`Limits::texels_in_all`] before memory is reserved for it. 16-bit samples are rounded to 8; colour profiles and Exif
-/// orientation are ignored, as glTF 2.0 prescribes (3.8.2).
+/// [`Limits::texels`] and, added to `so_far`, with [`Limits::texels_in_all`] before memory is reserved for it. 16-bit
+/// samples are rounded to 8; colour profiles and Exif orientation are ignored, as glTF 2.0 prescribes (3.8.2).
 ///
 /// # Errors
 /// [`LoadError::TooLarge`] and [`LoadError::Malformed`] with `path`, the second naming the image as `name`.

@@ -8,6 +8,7 @@
 
 mod builder;
 mod faults;
+mod lines;
 mod mtl;
 mod prepare;
 

@@ -1,7 +1,7 @@
 //! Small files that ask for much.
 
 use crate::case::{Case, fails, loads};
-use crate::gltf::{Doc, PRIMITIVE, data_uri};
+use crate::doc::{Doc, PRIMITIVE, data_uri};
 use crate::images::picture;
 use image::ImageFormat;
 use npr_mesh::{Limits, LoadOptions};

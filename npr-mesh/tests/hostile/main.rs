@@ -5,6 +5,7 @@
 #![allow(clippy::print_stdout)]
 
 mod case;
+mod doc;
 mod gltf;
 mod images;
 mod limits;

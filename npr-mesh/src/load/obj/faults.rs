@@ -1,6 +1,6 @@
 //! Which line a fault is in: tobj does not tell.
 
-use super::prepare::words_of;
+use super::lines::{number, words_of};
 
 /// What is wrong with a prepared text that tobj does not take, and where.
 pub(super) fn explain(text: &[u8], fault: tobj::LoadError) -> String {
@@ -51,8 +51,4 @@ pub(super) fn not_finite(text: &[u8], vertex: &[f32; 3]) -> String {
         Some(before) => format!("line {}: {fault}", before + 1),
         None => fault,
     }
-}
-
-fn number(word: &[u8]) -> Option<f32> {
-    std::str::from_utf8(word).ok()?.parse().ok()
 }
