@@ -10,7 +10,7 @@ pub struct Limits {
     pub file_bytes: u64,
     /// Vertices of the flattened scene, all instances counted.
     pub vertices: u64,
-    /// Triangles of the flattened scene, all instances counted.
+    /// Triangles of the flattened scene, all instances counted; never more than [`crate::edges::MOST_FACES`].
     pub faces: u64,
     /// Vertices, and as many triangles, that need no bytes of their own in a file: beyond these there must be 8 bytes
     /// in the file and its buffers for each. Bounds what instances and accessors without data make of a few bytes.

@@ -273,6 +273,17 @@ fn files_that_are_not_there_or_have_nothing_in_them() {
 }
 
 #[test]
+fn an_asset_root_that_is_no_folder_is_an_error() {
+    let folder = Folder::new();
+    let path = folder.write("m.obj", format!("{TRIANGLE}f 1 2 3\n"));
+    for root in [path.clone(), folder.0.join("none")] {
+        let options = LoadOptions { asset_root: Some(root.clone()), ..LoadOptions::default() };
+        let error = load(&path, &options).unwrap_err().to_string();
+        assert!(error.contains(&*root.to_string_lossy()), "{error}");
+    }
+}
+
+#[test]
 fn limits_hold() {
     let folder = Folder::new();
     let path = folder.write("m.obj", format!("{TRIANGLE}v 1 1 0\nf 1 2 4 3\n"));

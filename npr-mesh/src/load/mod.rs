@@ -50,6 +50,13 @@ pub struct Loaded {
 /// # Errors
 /// [`LoadError`], which names the file and the fault.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, LoadError> {
+    // Said here: as a folder in which nothing is found it would be a warning for each file.
+    if let Some(root) = &options.asset_root {
+        let failed = |source| LoadError::Read { path: root.clone(), source };
+        if !fs::metadata(root).map_err(failed)?.is_dir() {
+            return Err(failed(io::ErrorKind::NotADirectory.into()));
+        }
+    }
     let ending = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
     let mut loaded = match ending.as_str() {
         #[cfg(feature = "obj")]

@@ -5,6 +5,7 @@ use super::accessor::{Accessor, Integers, Purpose};
 use super::materials::{Materials, UvSource};
 use super::pose::{self, Influences, Mirrored, Placement};
 use super::scene::Nodes;
+use crate::edges::MOST_FACES;
 use crate::{LoadError, Model};
 use glam::{DMat4, Vec2, Vec3, Vec4};
 use gltf::json::mesh::{Mode, Primitive, Semantic};
@@ -150,7 +151,7 @@ impl Flattener<'_> {
             Mode::Triangles => corners / 3,
             _ => corners.saturating_sub(2),
         };
-        self.fits("faces", self.model.faces.len(), face_count, document.limits.faces)?;
+        self.fits("faces", self.model.faces.len(), face_count, document.limits.faces.min(MOST_FACES as u64))?;
         if corners < 3 || (mode == Mode::Triangles && corners % 3 != 0) {
             self.warn(part, &format!("{corners} corners, which are no whole number of triangles"));
         }

@@ -3,6 +3,7 @@
 use super::lines::{
     Corners, count_words, first_words, line_length, number, plain_face, plain_vertex, trim_end, words_of,
 };
+use crate::edges::MOST_FACES;
 use crate::{Limits, LoadError};
 use std::borrow::Cow;
 use std::collections::BTreeSet;
@@ -330,7 +331,7 @@ pub(super) fn prepare(mut bytes: Vec<u8>, path: &Path, limits: &Limits) -> Resul
 
     for (what, count, limit) in [
         ("vertices", counts.arrays.iter().copied().max().unwrap_or(0), limits.vertices),
-        ("faces", counts.triangles, limits.faces),
+        ("faces", counts.triangles, limits.faces.min(MOST_FACES as u64)),
     ] {
         if count > limit {
             return Err(LoadError::TooLarge { path: path.to_owned(), what, count, limit });
