@@ -38,10 +38,12 @@ pub enum LoadError {
         fault: String,
     },
     /// Well-formed, and nothing in it to draw.
-    #[error("{}: no triangle in it", path.display())]
+    #[error("{}: no triangle in it{}", path.display(), why.as_ref().map(|why| format!(" ({why})")).unwrap_or_default())]
     Empty {
         /// The file.
         path: PathBuf,
+        /// The first of what was left out, if anything was.
+        why: Option<String>,
     },
     /// A required extension, or another feature, that this crate does not have.
     #[error("{}: needs {feature}, which is not supported", path.display())]

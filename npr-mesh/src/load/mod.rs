@@ -65,10 +65,10 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, LoadError> {
         "gltf" | "glb" => gltf::load(&External::new(path, options))?,
         _ => return Err(LoadError::UnknownFormat { path: path.to_owned() }),
     };
-    if loaded.model.faces.is_empty() {
-        return Err(LoadError::Empty { path: path.to_owned() });
-    }
     shorten(&mut loaded.warnings);
+    if loaded.model.faces.is_empty() {
+        return Err(LoadError::Empty { path: path.to_owned(), why: loaded.warnings.into_iter().next() });
+    }
     report(&loaded.model, &mut loaded.warnings);
     normals::fill_missing(&mut loaded.model, options.normal_crease_angle_rad);
     Ok(loaded)

@@ -130,7 +130,13 @@ fn faces() -> Vec<Case> {
         case("one-and-two-corners", after("f 1\nf 1 2\nf 1 2 3\n"), loads(1, &["2 faces with fewer"])),
         case("only-two-corners", after("f 1 2\n"), fails(&none)),
         case("lines-and-points", after("l 1 2 3\np 1\nl 1 2\nf 1 2 3\n"), loads(1, &["3 points and lines"])),
-        case("only-lines", after("l 1 2 3\n"), fails(&none)),
+        case("only-lines", after("l 1 2 3\n"), fails(&["no triangle in it (1 points and lines are left out)"])),
+        case("capitals", "V 0 0 0\nF 1 1 1\n", fails(&["no triangle in it (2 lines begin with none"])),
+        case(
+            "old-keyword",
+            after("fo 1 2 3\nfo 1 2 # 3\nf 3 2 1 # 4\nfo 3 2 1 # 4\n"),
+            loads(3, &["1 faces with fewer"]),
+        ),
         case("bad-line-element", after("l 7 8 x\nf 1 2 3\n"), loads(1, &["1 points and lines"])),
         case(
             "curves",

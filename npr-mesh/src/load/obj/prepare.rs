@@ -233,7 +233,8 @@ pub(super) fn prepare(mut bytes: Vec<u8>, path: &Path, limits: &Limits) -> Resul
                 }
             }
             b"vn" => counts.arrays[2] += 1,
-            b"f" => {
+            // `fo` is what faces were in the format's first version.
+            b"f" | b"fo" => {
                 let mut corners = 0u64;
                 let corners_before = counts.corners;
                 let mut outline = Corners { rest };
@@ -275,6 +276,10 @@ pub(super) fn prepare(mut bytes: Vec<u8>, path: &Path, limits: &Limits) -> Resul
                 if !outline.rest.is_empty() {
                     line = &line[..line.len() - outline.rest.len()];
                     rewritten = true;
+                }
+                if keyword == b"fo" {
+                    edit.replace(begin, at, &[b"f", &line[word_length..]].concat());
+                    continue;
                 }
             }
             b"mtllib" => {
