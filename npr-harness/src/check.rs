@@ -168,7 +168,7 @@ struct Checker<'a> {
     rows: Vec<ReportRow>,
 }
 
-/// Checks the models, or without any the built-in scenes; if there are `styles`, only the pictures of these. `tell` is
+/// Checks the models, read as `loading` says, or without any the built-in scenes; if there are `styles`, only the pictures of these. `tell` is
 /// called with each metric as soon as it is known.
 ///
 /// # Errors
@@ -176,6 +176,7 @@ struct Checker<'a> {
 pub fn run(
     executor: &Executor,
     inputs: &[PathBuf],
+    loading: &npr_mesh::LoadOptions,
     styles: &[Style],
     out: &Path,
     tell: &dyn Fn(&Metric),
@@ -203,7 +204,7 @@ pub fn run(
         checker.model("painted", &painted_scene(), &painted, &|s| progress(0.5 + s / 2.0))?;
     }
     for (number, input) in inputs.iter().enumerate() {
-        let scene = Scene::new(npr_mesh::load(input, &Default::default())?.model);
+        let scene = Scene::new(npr_mesh::load(input, loading)?.model);
         let name = input.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
         let aspect = f64::from(SIZE.0) / f64::from(SIZE.1);
         let views = VIEWS.map(|(yaw, pitch)| {

@@ -10,7 +10,8 @@ use std::process::{Command, Output};
 
 /// A cube's corner: three quadrilaterals.
 const OBJ: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\n\
-                   f 1 4 3 2\nf 1 2 6 5\nf 1 5 7 4\n";
+                   vn 0 0 -1\nvn 0 -1 0\nvn -1 0 0\n\
+                   f 1//1 4//1 3//1 2//1\nf 1//2 2//2 6//2 5//2\nf 1//3 5//3 7//3 4//3\n";
 
 fn npr(arguments: &[&str], environment: &[(&str, &str)], folder: &Path) -> Output {
     Command::new(env!("CARGO_BIN_EXE_npr"))

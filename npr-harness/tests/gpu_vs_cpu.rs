@@ -45,7 +45,7 @@ fn check_model(name: &str, model: Model) {
 fn the_built_in_scene() {
     let Some(executor) = device() else { return };
     let folder = Folder::new();
-    let report = check::run(&executor, &[], &[], &folder.0, &|_| {}, &|_| {}).expect("pictures");
+    let report = check::run(&executor, &[], &Default::default(), &[], &folder.0, &|_| {}, &|_| {}).expect("pictures");
     println!("{report}");
     assert!(report.passed() && report.skipped.is_empty(), "{report}");
     let edges = ["cartoon", "lines", "printed-fins", "gooch", "two-lights", "wash", "wrapped", "vertex-light"];

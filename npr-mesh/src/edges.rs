@@ -143,6 +143,21 @@ impl Edges {
         Some(if edge.wound_oppositely() { -cos } else { cos })
     }
 
+    /// What is irregular and was settled by a rule, as lines for people: faces that were left out, opposite windings.
+    pub fn warnings(&self) -> Vec<String> {
+        let skipped = self.skipped.iter().filter(|skipped| **skipped).count();
+        let opposite = |edge: &&Edge| edge.kind() == EdgeKind::TwoFace && edge.wound_oppositely();
+        let opposite = self.edges.iter().filter(opposite).count();
+        [
+            (skipped, "faces lie on another one or have two corners at one place: they have no edges of their own"),
+            (opposite, "edges have faces wound oppositely: they make no crease"),
+        ]
+        .iter()
+        .filter(|(count, _)| *count > 0)
+        .map(|(count, what)| format!("{count} {what}"))
+        .collect()
+    }
+
     /// The angle by which the surface turns at an edge: 0 where it goes straight on, π where it folds back.
     /// `None` as for [`Edges::cos_dihedral`].
     pub fn dihedral_rad(&self, edge: &Edge) -> Option<f32> {

@@ -20,6 +20,15 @@ pub enum LoadError {
         /// What the system said.
         source: std::io::Error,
     },
+    /// A file that the model names is neither in the model's own folder nor in
+    /// `LoadOptions::asset_root`.
+    #[error("{}: \"{name}\" leads out of the model's folder", path.display())]
+    Outside {
+        /// The model.
+        path: PathBuf,
+        /// The name in it.
+        name: String,
+    },
     /// The bytes are not what the format prescribes.
     #[error("{}: {fault}", path.display())]
     Malformed {
@@ -29,10 +38,12 @@ pub enum LoadError {
         fault: String,
     },
     /// Well-formed, and nothing in it to draw.
-    #[error("{}: no triangle in it", path.display())]
+    #[error("{}: no triangle in it{}", path.display(), why.as_ref().map(|why| format!(" ({why})")).unwrap_or_default())]
     Empty {
         /// The file.
         path: PathBuf,
+        /// The first of what was left out, if anything was.
+        why: Option<String>,
     },
     /// A required extension, or another feature, that this crate does not have.
     #[error("{}: needs {feature}, which is not supported", path.display())]

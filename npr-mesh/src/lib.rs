@@ -24,9 +24,13 @@
 //!   a rounded face can be contours.
 //! - Non-manifold edges, opposite windings, faces without area and doubled faces each have a rule, see [`edges`]. None
 //!   of them makes a line disappear that should be seen.
-//! - A file is never trusted: indices, lengths and numbers are checked before use, sizes against [`Limits`], and what
-//!   is wrong is a [`LoadError`] that names the file and the fault. What could be repaired is a warning beside the
-//!   model.
+//! - A file is never trusted: indices, lengths, types and numbers are checked before use, sizes against [`Limits`],
+//!   before memory is asked for them, and what is wrong is a [`LoadError`] that names the file, the element and the
+//!   fault. What could be repaired or left out is a warning beside the model.
+//! - What a model names (materials, textures, buffers) is read from its own folder or below, and from
+//!   `LoadOptions::asset_root` if there is one; `..`, absolute names and symbolic links may lead from one place there to
+//!   another and nowhere else. Only regular files are read, and nothing from a network.
+//! - No size is too small or too large: what is computed of a model at 1e-30 or 1e30 is what it is at 1.
 //!
 //! # Colours
 //!

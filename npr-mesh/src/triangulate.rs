@@ -32,12 +32,18 @@ pub fn triangulate(corners: &[Vec3]) -> Vec<[u32; 3]> {
 /// There are `corners.len() - 2` of them (none for fewer than 3 corners). Nothing is allocated for triangles and
 /// quads once `triangles` has room for two.
 pub fn triangulate_into(corners: &[Vec3], triangles: &mut Vec<[u32; 3]>) {
+    triangulate_within(corners, triangles, &mut { EAR_TESTS });
+}
+
+/// [`triangulate_into`], with as many tests for ears as are left: for many polygons that need them, which take what is
+/// left together.
+pub(crate) fn triangulate_within(corners: &[Vec3], triangles: &mut Vec<[u32; 3]>, ear_tests: &mut usize) {
     triangles.clear();
     match *corners {
         [] | [_] | [_, _] => {}
         [_, _, _] => triangles.push([0, 1, 2]),
         [a, b, c, d] => triangles.extend(quad([a, b, c, d])),
-        _ => polygon(corners, triangles),
+        _ => polygon(corners, triangles, ear_tests),
     }
     debug_assert_eq!(triangles.len(), corners.len().saturating_sub(2));
 }
@@ -66,7 +72,7 @@ fn quad(corners: [Vec3; 4]) -> [[u32; 3]; 2] {
     if second_is_better { SECOND } else { FIRST }
 }
 
-fn polygon(corners: &[Vec3], triangles: &mut Vec<[u32; 3]>) {
+fn polygon(corners: &[Vec3], triangles: &mut Vec<[u32; 3]>, ear_tests: &mut usize) {
     let Some(flat) = project(corners) else {
         triangles.extend((1..corners.len() as u32 - 1).map(|i| [0, i, i + 1]));
         return;
@@ -76,23 +82,26 @@ fn polygon(corners: &[Vec3], triangles: &mut Vec<[u32; 3]>) {
     let mut rest = Vec::with_capacity(kept.len().saturating_sub(2));
     match kept.len() {
         0..3 => {}
-        n if n == flat.len() => simple(corners, &flat, &mut rest),
+        n if n == flat.len() => simple(corners, &flat, &mut rest, ear_tests),
         _ => {
             let corners: Vec<_> = kept.iter().map(|&i| corners[i as usize]).collect();
             let flat: Vec<_> = kept.iter().map(|&i| flat[i as usize]).collect();
-            simple(&corners, &flat, &mut rest);
+            simple(&corners, &flat, &mut rest, ear_tests);
         }
     }
     triangles.extend(rest.iter().map(|t| t.map(|i| kept[i as usize])));
     debug_assert_eq!(triangles.len() - first, kept.len() - 2);
 }
 
-fn simple(corners: &[Vec3], flat: &[DVec2], triangles: &mut Vec<[u32; 3]>) {
+fn simple(corners: &[Vec3], flat: &[DVec2], triangles: &mut Vec<[u32; 3]>, ear_tests: &mut usize) {
     if is_strictly_convex(flat) {
         halve(flat.len(), triangles);
     } else if !delaunay(corners, flat, triangles) {
         triangles.clear();
-        clip_ears(flat, triangles);
+        let mut of_this = EAR_TESTS.min(*ear_tests);
+        *ear_tests -= of_this;
+        clip_ears(flat, triangles, &mut of_this);
+        *ear_tests += of_this;
     }
 }
 
@@ -309,13 +318,16 @@ fn delaunay(corners: &[Vec3], flat: &[DVec2], triangles: &mut Vec<[u32; 3]>) -> 
 /// How many corners may be compared with ears, for a time of some tenths of a second.
 const EAR_TESTS: usize = 20_000_000;
 
+/// The same for all polygons of a file: some seconds.
+#[cfg(feature = "obj")]
+pub(crate) const EAR_TESTS_OF_A_FILE: usize = 10 * EAR_TESTS;
+
 /// Cuts corners off until three are left: one whose triangle is empty while there is one, else a corner without
 /// area, else the next convex one, else any.
-fn clip_ears(flat: &[DVec2], triangles: &mut Vec<[u32; 3]>) {
+fn clip_ears(flat: &[DVec2], triangles: &mut Vec<[u32; 3]>, tests_left: &mut usize) {
     let n = flat.len();
     let mut next: Vec<u32> = (1..n as u32).chain([0]).collect();
     let mut before: Vec<u32> = [n as u32 - 1].into_iter().chain(0..n as u32 - 1).collect();
-    let mut tests_left = EAR_TESTS;
     let mut left = n;
     let mut corner = 0u32;
     let mut looked_at = 0;
@@ -324,7 +336,7 @@ fn clip_ears(flat: &[DVec2], triangles: &mut Vec<[u32; 3]>) {
     while left > 3 {
         let (a, c) = (before[corner as usize], next[corner as usize]);
         let area = turn(flat[a as usize], flat[corner as usize], flat[c as usize]);
-        let is_ear = area > 0.0 && is_empty(flat, &next, [a, corner, c], &mut tests_left);
+        let is_ear = area > 0.0 && is_empty(flat, &next, [a, corner, c], tests_left);
         let rank = if area == 0.0 { 2 } else { u8::from(area > 0.0) };
         if looked_at == 0 || rank > spare.0 {
             spare = (rank, corner);
@@ -332,7 +344,7 @@ fn clip_ears(flat: &[DVec2], triangles: &mut Vec<[u32; 3]>) {
         looked_at += 1;
         let cut = if is_ear {
             corner
-        } else if looked_at >= left || tests_left == 0 {
+        } else if looked_at >= left || *tests_left == 0 {
             spare.1
         } else {
             corner = c;
@@ -356,7 +368,11 @@ fn is_empty(flat: &[DVec2], next: &[u32], ear: [u32; 3], tests_left: &mut usize)
     let (low, high) = (a.min(b).min(c), a.max(b).max(c));
     let mut i = next[ear[2] as usize];
     while i != ear[0] {
-        *tests_left = tests_left.saturating_sub(1);
+        // Nobody knows: it is not cut off as an ear.
+        if *tests_left == 0 {
+            return false;
+        }
+        *tests_left -= 1;
         let p = flat[i as usize];
         let in_box = p.cmpge(low).all() && p.cmple(high).all();
         if in_box && p != a && p != b && p != c && turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0
@@ -581,6 +597,16 @@ mod tests {
             assert_eq!(triangles.len(), corners.len() - 2);
             assert!(triangles.iter().flatten().all(|&i| (i as usize) < corners.len()));
         }
+    }
+
+    #[test]
+    fn an_outline_that_goes_round_and_round_ends() {
+        // Every corner is an ear: none of the others is elsewhere than at one of its corners.
+        let places = flat(&[(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)]);
+        let corners: Vec<_> = (0..99_000).map(|i| places[i % 3]).collect();
+        let start = std::time::Instant::now();
+        assert_eq!(triangulate(&corners).len(), 98_998);
+        assert!(start.elapsed().as_secs() < 5, "took {:?}", start.elapsed());
     }
 
     #[test]

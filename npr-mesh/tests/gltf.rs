@@ -297,7 +297,11 @@ fn strided_and_quantised_positions() {
     let rest = r#","extensionsRequired":["KHR_mesh_quantization"],"extensionsUsed":["KHR_mesh_quantization"]"#;
     let loaded = doc.mesh(r#""attributes":{"POSITION":0}"#, "", rest).unwrap();
     assert_corners(&loaded.model, &[[[0.; 3], [1., 0., 0.], [0., -1., 0.]]]);
-    assert!(loaded.warnings.is_empty());
+    assert_eq!(loaded.warnings, ["no normals: they are made from the faces"]);
+    assert_fault(
+        doc.mesh(r#""attributes":{"POSITION":0}"#, "", ""),
+        "signed 16-bit integers, normalised, and the file",
+    );
 }
 
 #[test]
@@ -483,8 +487,9 @@ fn buffers_from_data_uris_and_files() {
     for (uri, fault) in [
         ("../a b.bin", "leads out of the model's folder"),
         ("sub/%2e%2e/../a b.bin", "leads out of the model's folder"),
-        ("/etc/hostname", "not a relative path"),
-        ("file:///etc/hostname", "not a relative path"),
+        ("/etc/hostname", "leads out of the model's folder"),
+        ("file:///etc/hostname", "leads out of the model's folder"),
+        ("http://localhost/a.bin", "not a relative path"),
         ("data:;base64,AAA*", "base 64"),
         ("data:;base64,AAAA", "72 bytes stated, 3 there"),
         ("missing.bin", "missing.bin"),
@@ -496,7 +501,7 @@ fn buffers_from_data_uris_and_files() {
     folder.write("a b.bin", &doc.bin[1..]);
     let model = folder.write("m.gltf", json("a b.bin").as_bytes());
     let error = load(&model, &LoadOptions::default()).unwrap_err().to_string();
-    assert!(error.contains("m.gltf: buffer 0: 72 bytes stated, 71 there"), "{error}");
+    assert!(error.contains("buffer 0: 72 bytes stated, 71 there"), "{error}");
     let error = load(&folder.0.join("none.glb"), &LoadOptions::default()).unwrap_err();
     assert!(matches!(error, LoadError::Read { .. }), "{error}");
     std::fs::create_dir(folder.0.join("folder.glb")).unwrap();
@@ -543,6 +548,7 @@ fn broken_accessors() {
     let float = |more: &str| format!(r#"{{"componentType":5126,"type":"VEC3",{more}}}"#);
     let big = doc.accessor(float(r#""bufferView":0,"count":4000000000"#));
     let zeros = doc.accessor(float(r#""count":4000000000"#));
+    let many = doc.accessor(r#"{"componentType":5125,"type":"SCALAR","count":4000000000}"#.into());
     let long = doc.accessor(float(r#""bufferView":0,"count":4"#));
     let late = doc.accessor(float(r#""bufferView":0,"byteOffset":18446744073709551615,"count":3"#));
     let nowhere = doc.accessor(float(r#""bufferView":99,"count":3"#));
@@ -558,17 +564,17 @@ fn broken_accessors() {
     for (primitive, fault) in [
         (position(big), "POSITION: accessor 2: 4000000000 elements of 12 bytes"),
         (position(zeros), "4000000000 vertices, more than the limit of 100000000"),
-        (position(long), "mesh 0 primitive 0: POSITION: accessor 4: 4 elements of 12 bytes every 12 bytes from byte 0"),
+        (position(long), "mesh 0 primitive 0: POSITION: accessor 5: 4 elements of 12 bytes every 12 bytes from byte 0"),
         (position(late), "reach beyond buffer view 0, which has 36 bytes"),
         (position(nowhere), "buffer view 99 does not exist"),
         (position(outside), "buffer view 2: 36000 bytes from byte 40 reach beyond buffer 0"),
         (position(12345), "mesh 0 primitive 0: POSITION: accessor 12345 does not exist"),
         (position(scalar), "1 numbers in an element, expected 3"),
         (position(unknown), "unknown component type"),
-        (format!(r#"{},"indices":{indices}"#, position(0)), "indices: accessor 10: element 2: vertex 3 of 3"),
-        (format!(r#"{},"indices":{zeros}"#, position(0)), "faces, more than the limit"),
-        (format!(r#"{},"indices":0"#, position(0)), "indices: accessor 0: not unsigned integers"),
-        (format!(r#""attributes":{{"POSITION":0,"NORMAL":{four}}}"#), "NORMAL: accessor 9: 4 elements for 3 vertices"),
+        (format!(r#"{},"indices":{indices}"#, position(0)), "indices: accessor 11: element 2: vertex 3 of 3"),
+        (format!(r#"{},"indices":{many}"#, position(0)), "faces, more than the limit"),
+        (format!(r#"{},"indices":0"#, position(0)), "indices: accessor 0: floats are not allowed here"),
+        (format!(r#""attributes":{{"POSITION":0,"NORMAL":{four}}}"#), "NORMAL: accessor 10: 4 elements for 3 vertices"),
         (format!(r#"{},"mode":5"#, position(nan)), "mesh 0 primitive 0: the position of vertex 1 is not finite"),
         (format!(r#"{},"material":5"#, position(0)), "material 5: does not exist"),
         (format!(r#"{},"mode":9"#, position(0)), "unknown mode"),
@@ -606,7 +612,7 @@ fn broken_files() {
             let _ = load_bytes("m.glb", &file);
         }
     }
-    assert_fault(load_bytes("m.gltf", json.as_bytes()), "buffer 0: no URI and no binary chunk");
+    assert_fault(load_bytes("m.gltf", json.as_bytes()), "buffer view 0: buffer 0: no URI and no binary chunk");
     assert_fault(load_bytes("m.gltf", b"{}"), "not glTF 2.0: missing field `asset`");
     assert_fault(load_bytes("m.gltf", b""), "not glTF 2.0");
     assert_fault(load_bytes("m.gltf", &[0x93; 1000]), "not glTF 2.0");
@@ -638,7 +644,9 @@ fn shared(name: &str) -> Option<PathBuf> {
 
 fn shared_model(name: &str) -> Option<Model> {
     let loaded = load(&shared(name)?, &LoadOptions::default()).unwrap();
-    assert!(loaded.warnings.is_empty(), "{name}: {:?}", loaded.warnings);
+    // One model has no normals, one has faces without area: nothing else is to be said of them.
+    let told = ["no normals: they are made from the faces", "11160 of 121496 faces have no area"];
+    assert!(loaded.warnings.iter().all(|w| told.contains(&w.as_str())), "{name}: {:?}", loaded.warnings);
     let model = loaded.model;
     assert!(model.faces.iter().flatten().all(|&v| (v as usize) < model.positions.len()));
     assert!(model.positions.iter().all(|p| p.is_finite()));

@@ -27,13 +27,10 @@ pub(super) fn drop_diagonals(
             new_number += u32::from(!diagonal);
             return !diagonal;
         }
-        let mut left = vec![first, second];
-        left.extend(std::iter::from_fn(|| further.next_if(|f| f.0 == number)).map(|(_, face)| face));
-        let before = left.len();
-        while let Some((a, b)) = pair_of_one_polygon(&left, polygon) {
-            left.remove(b);
-            left.remove(a);
-        }
+        let mut all = vec![first, second];
+        all.extend(std::iter::from_fn(|| further.next_if(|f| f.0 == number)).map(|(_, face)| face));
+        let before = all.len();
+        let left = without_pairs(&all, polygon);
         if left.is_empty() {
             return false;
         }
@@ -56,10 +53,20 @@ fn runs_over(faces: &[[u32; 3]], representative: &[u32], face: u32, from: u32, t
     [(a, b), (b, c), (c, a)].contains(&(from, to))
 }
 
-/// The positions of two different faces of one polygon.
-fn pair_of_one_polygon(faces: &[u32], polygon: impl Fn(u32) -> u32) -> Option<(usize, usize)> {
-    (0..faces.len()).find_map(|a| {
-        let b = (a + 1..faces.len()).find(|&b| faces[a] != faces[b] && polygon(faces[a]) == polygon(faces[b]))?;
-        Some((a, b))
-    })
+/// What is left of ascending faces when two different ones of a polygon go, and again as long as there are two.
+fn without_pairs(faces: &[u32], polygon: impl Fn(u32) -> u32) -> Vec<u32> {
+    let mut left = Vec::new();
+    // A polygon's faces stand next to each other.
+    for of_polygon in faces.chunk_by(|&a, &b| polygon(a) == polygon(b)) {
+        // From here on one face, as often as it runs over the edge.
+        let begin = left.len();
+        for &face in of_polygon {
+            if left.get(begin).is_some_and(|waiting| *waiting != face) {
+                left.remove(begin);
+            } else {
+                left.push(face);
+            }
+        }
+    }
+    left
 }

@@ -90,6 +90,8 @@ fn a_face_that_is_turned_round_makes_no_crease() {
     }
     assert_eq!(alike.edges.iter().filter(|edge| edge.wound_oppositely()).count(), 0);
     assert_eq!(turned.edges.iter().filter(|edge| edge.wound_oppositely()).count(), 1);
+    assert!(alike.warnings().is_empty());
+    assert_eq!(turned.warnings(), ["1 edges have faces wound oppositely: they make no crease"]);
 }
 
 #[test]
@@ -111,6 +113,7 @@ fn a_duplicate_face_is_counted_but_not_drawn() {
     let drawn = find_drawn(&positions, &faces);
     assert_eq!(count(&drawn, EdgeKind::TwoFace), 18);
     assert_eq!(drawn.skipped.iter().filter(|&&s| s).count(), 2);
+    assert!(matches!(&drawn.warnings()[..], [one] if one.starts_with("2 faces lie on another one")));
     assert!(drawn.skipped[12] && drawn.skipped[13]);
 }
 
@@ -153,6 +156,20 @@ fn materials_part_where_they_differ() {
     let materials: Vec<u32> = (0..12).map(|face| u32::from(face >= 10)).collect();
     let edges = find(&positions, &faces, &[], &materials, &EdgeOptions::default());
     assert_eq!(edges.edges.iter().filter(|edge| edge.joins_two_materials()).count(), 4);
+}
+
+#[test]
+fn many_polygons_at_one_edge_take_no_quadratic_time() {
+    let positions = [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0), Vec3::Y];
+    let squares = 100_000u32;
+    let faces: Vec<[u32; 3]> = (0..squares).flat_map(|_| [[0, 1, 2], [0, 2, 3]]).collect();
+    let polygons: Vec<u32> = (0..squares).flat_map(|polygon| [polygon; 2]).collect();
+    let start = std::time::Instant::now();
+    let edges = find(&positions, &faces, &polygons, &[], &EdgeOptions::default());
+    assert!(start.elapsed().as_secs() < 5, "took {:?}", start.elapsed());
+    // Four sides of as many squares; the diagonals pair off within their polygons.
+    assert_eq!((edges.edges.len(), squares as usize), (4, edges.further_faces.len() / 4 + 2));
+    assert_eq!(count(&edges, EdgeKind::NonManifold), 4);
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! glTF 2.0, `.gltf` and `.glb`, flattened into one posed [`Model`](crate::Model).
 //!
-//! The `gltf` crate turns the JSON into typed structures and does nothing else here. Its validation is not run: it
+//! The `gltf` crate turns the JSON into typed structures and does nothing else here, of what [`parse`] gives it. Its
+//! validation is not run: it
 //! panics where a POSITION attribute names an accessor that does not exist, it lets cycles of nodes and accessors
 //! beyond their buffers pass, and it refuses files that can be drawn (a POSITION accessor without bounds). So every
 //! index is looked up with a check, and vertex data goes through [`accessor`], which checks its bounds.
@@ -14,24 +15,32 @@ mod accessor;
 mod files;
 mod materials;
 mod meshes;
+mod parse;
 mod pose;
 mod scene;
 
+use super::external::{External, shortened};
 use super::{Loaded, read_file};
 use crate::{Limits, LoadError};
 use files::Bytes;
-use gltf::json::{self, Root};
+use gltf::json::Root;
 use std::path::Path;
 
-const EXTENSIONS: [&str; 3] = ["KHR_materials_unlit", "KHR_mesh_quantization", "KHR_texture_transform"];
+const QUANTIZATION: &str = "KHR_mesh_quantization";
+const EXTENSIONS: [&str; 3] = ["KHR_materials_unlit", QUANTIZATION, "KHR_texture_transform"];
 
 /// A parsed file and the bytes that it refers to.
 struct Document<'a> {
     path: &'a Path,
     limits: &'a Limits,
+    external: &'a External<'a>,
     root: Root,
     /// One for each buffer, as long as the file says.
     buffers: Vec<Bytes<'a>>,
+    /// Of the file and its buffers.
+    bytes: u64,
+    /// Whether attributes may have the types of `KHR_mesh_quantization`.
+    quantized: bool,
 }
 
 impl Document<'_> {
@@ -52,35 +61,52 @@ fn malformed(path: &Path, fault: impl Into<String>) -> LoadError {
 ///
 /// # Errors
 /// [`LoadError`], which names the file and the fault.
-pub(super) fn load(path: &Path, limits: &Limits) -> Result<Loaded, LoadError> {
-    let bytes = read_file(path, limits)?;
-    let (text, binary) = files::split_container(&bytes).map_err(|fault| malformed(path, fault))?;
-    let root: Root =
-        json::deserialize::from_slice(text).map_err(|error| malformed(path, format!("not glTF 2.0: {error}")))?;
+pub(super) fn load(external: &External) -> Result<Loaded, LoadError> {
+    let (path, limits) = (external.model, external.limits);
+    let file = read_file(path, limits)?;
     let mut warnings = Vec::new();
+    let (text, binary) = files::split_container(&file, &mut warnings).map_err(|fault| malformed(path, fault))?;
+    let root = parse::parse(text, &mut warnings).map_err(|fault| malformed(path, format!("not glTF 2.0: {fault}")))?;
     check_requirements(path, &root, &mut warnings)?;
-    let buffers = files::buffers(path, limits, &root, binary)?;
-    let document = Document { path, limits, root, buffers };
+    let (buffers, of_buffers) = files::buffers(external, &root, binary)?;
+    let quantized = root.extensions_used.iter().chain(&root.extensions_required).any(|name| name == QUANTIZATION);
+    let bytes = file.len() as u64 + of_buffers;
+    let document = Document { path, limits, external, root, buffers, bytes, quantized };
     let nodes = scene::pose(&document)?;
     let model = meshes::flatten(&document, &nodes, &mut warnings)?;
+    warnings.extend(document.buffers.iter().enumerate().filter_map(|(number, bytes)| match bytes {
+        Bytes::Missing(fault) => Some(format!("buffer {number} is left out, and no mesh needs it: {fault}")),
+        _ => None,
+    }));
     Ok(Loaded { model, warnings })
 }
 
 /// The version (glTF 2.0, 3.2 "Asset") and the extensions (3.12 "Specifying Extensions").
 fn check_requirements(path: &Path, root: &Root, warnings: &mut Vec<String>) -> Result<(), LoadError> {
     let unsupported = |feature: String| Err(LoadError::Unsupported { path: path.to_owned(), feature });
+    let version = |text: &str| {
+        let (major, minor) = text.split_once('.')?;
+        let number = |digits: &str| digits.bytes().all(|b| b.is_ascii_digit()).then(|| digits.parse::<u32>().ok())?;
+        Some((number(major)?, number(minor)?))
+    };
     // `minVersion` is what a file needs; without it, any 2.x may be read as 2.0.
     let asset = &root.asset;
-    if let Some(needed) = asset.min_version.as_deref().filter(|v| *v != "2.0") {
-        return unsupported(format!("glTF {needed}"));
+    if let Some(needed) = asset.min_version.as_deref()
+        && version(needed).is_none_or(|needed| needed > (2, 0))
+    {
+        return unsupported(format!("glTF {}", shortened(needed)));
     }
-    if asset.version != "2" && !asset.version.starts_with("2.") {
-        return unsupported(format!("glTF {}", asset.version));
+    if asset.version != "2" && version(&asset.version).is_none_or(|(major, _)| major != 2) {
+        return unsupported(format!("glTF {}", shortened(&asset.version)));
     }
-    if let Some(name) = root.extensions_required.iter().find(|name| !EXTENSIONS.contains(&name.as_str())) {
-        return unsupported(format!("the extension {name}"));
+    let unknown = |names: &[String]| -> Vec<String> {
+        names.iter().filter(|name| !EXTENSIONS.contains(&name.as_str())).map(|name| shortened(name)).collect()
+    };
+    match &unknown(&root.extensions_required)[..] {
+        [] => {}
+        [name] => return unsupported(format!("the extension {name}")),
+        names => return unsupported(format!("the extensions {}", names.join(", "))),
     }
-    let ignored = root.extensions_used.iter().filter(|name| !EXTENSIONS.contains(&name.as_str()));
-    warnings.extend(ignored.map(|name| format!("the extension {name} is ignored")));
+    warnings.extend(unknown(&root.extensions_used).iter().map(|name| format!("the extension {name} is ignored")));
     Ok(())
 }

@@ -8,12 +8,18 @@ use std::path::Path;
 /// Width, height and `width * height * 4` bytes, rows from the top, of a PNG or JPEG file in memory.
 ///
 /// The kind is told by the first bytes, not by a file ending. The size that the header states is compared with
-/// [`Limits::texels`] before memory is reserved for it. 16-bit samples are rounded to 8; colour profiles and Exif
-/// orientation are ignored, as glTF 2.0 prescribes (3.8.2).
+/// [`Limits::texels`] and, added to `so_far`, with [`Limits::texels_in_all`] before memory is reserved for it. 16-bit
+/// samples are rounded to 8; colour profiles and Exif orientation are ignored, as glTF 2.0 prescribes (3.8.2).
 ///
 /// # Errors
 /// [`LoadError::TooLarge`] and [`LoadError::Malformed`] with `path`, the second naming the image as `name`.
-pub(super) fn decode(bytes: &[u8], name: &str, path: &Path, limits: &Limits) -> Result<(u32, u32, Vec<u8>), LoadError> {
+pub(super) fn decode(
+    bytes: &[u8],
+    name: &str,
+    path: &Path,
+    limits: &Limits,
+    so_far: &mut u64,
+) -> Result<(u32, u32, Vec<u8>), LoadError> {
     let malformed = |why: String| LoadError::Malformed { path: path.to_owned(), fault: format!("image {name}: {why}") };
     let mut reader =
         ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| malformed(e.to_string()))?;
@@ -24,13 +30,14 @@ pub(super) fn decode(bytes: &[u8], name: &str, path: &Path, limits: &Limits) -> 
     let decoder = reader.into_decoder().map_err(|e| malformed(e.to_string()))?;
     let (width, height) = decoder.dimensions();
     let texels = u64::from(width) * u64::from(height);
-    if texels > limits.texels {
-        return Err(LoadError::TooLarge {
-            path: path.to_owned(),
-            what: "texels in an image",
-            count: texels,
-            limit: limits.texels,
-        });
+    // Also those of an image that turns out to be broken: finding that out takes its time.
+    *so_far = so_far.saturating_add(texels);
+    for (what, count, limit) in
+        [("texels in an image", texels, limits.texels), ("texels in all images", *so_far, limits.texels_in_all)]
+    {
+        if count > limit {
+            return Err(LoadError::TooLarge { path: path.to_owned(), what, count, limit });
+        }
     }
     if texels == 0 {
         return Err(malformed("no texel in it".to_owned()));
@@ -53,7 +60,7 @@ mod tests {
 
     #[test]
     fn a_png_comes_back_with_its_rows_from_the_top() {
-        let (width, height, rgba8) = decode(&png(3, 2), "a", Path::new("m.obj"), &Limits::default()).unwrap();
+        let (width, height, rgba8) = decode(&png(3, 2), "a", Path::new("m.obj"), &Limits::default(), &mut 0).unwrap();
         assert_eq!((width, height), (3, 2));
         let texels: Vec<_> = rgba8.chunks(4).map(|t| [t[0], t[1], t[2], t[3]]).collect();
         assert_eq!(texels[4], [1, 1, 7, 200]);
@@ -62,15 +69,19 @@ mod tests {
     #[test]
     fn too_many_texels_are_refused() {
         let limits = Limits { texels: 5, ..Limits::default() };
-        let error = decode(&png(3, 2), "a", Path::new("m.obj"), &limits).unwrap_err();
+        let error = decode(&png(3, 2), "a", Path::new("m.obj"), &limits, &mut 0).unwrap_err();
         assert!(matches!(error, LoadError::TooLarge { count: 6, limit: 5, .. }), "{error}");
+        let limits = Limits { texels_in_all: 10, ..Limits::default() };
+        assert!(decode(&png(3, 2), "a", Path::new("m.obj"), &limits, &mut 4).is_ok());
+        let error = decode(&png(3, 2), "a", Path::new("m.obj"), &limits, &mut 5).unwrap_err();
+        assert!(matches!(error, LoadError::TooLarge { count: 11, limit: 10, .. }), "{error}");
     }
 
     #[test]
     fn garbage_is_malformed_and_named() {
         let whole = png(8, 8);
         for bytes in [&b""[..], b"not an image at all", &whole[..20], &whole[..whole.len() - 30]] {
-            let error = decode(bytes, "wall", Path::new("m.obj"), &Limits::default()).unwrap_err();
+            let error = decode(bytes, "wall", Path::new("m.obj"), &Limits::default(), &mut 0).unwrap_err();
             assert!(matches!(error, LoadError::Malformed { .. }), "{error}");
             assert!(error.to_string().contains("wall") && error.to_string().contains("m.obj"), "{error}");
         }

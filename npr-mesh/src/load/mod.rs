@@ -3,29 +3,36 @@
 //! A loader parses with the format's crate, checks everything that is then trusted (indices, lengths, finite
 //! numbers, [`Limits`]), and only then converts.
 
+mod external;
 #[cfg(feature = "gltf")]
 mod gltf;
 mod image_file;
 #[cfg(feature = "obj")]
 mod obj;
 
-use crate::{Limits, LoadError, Model, normals};
+use crate::{Limits, LoadError, Model, edges, normals};
+use external::External;
+use glam::Vec3;
 use std::fs;
 use std::io::{self, Read};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// How a file is to be read.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct LoadOptions {
     /// Bounds on what is accepted.
     pub limits: Limits,
+    /// A folder in which files that the model names (textures, materials, buffers) may lie besides the model's own. A
+    /// relative name that is not found beside the model is looked for in this folder. Without it, nothing outside of the
+    /// model's folder is read.
+    pub asset_root: Option<PathBuf>,
     /// Where the file has no normals, they are made, and split between faces that meet at more than this angle.
     pub normal_crease_angle_rad: f32,
 }
 
 impl Default for LoadOptions {
     fn default() -> Self {
-        Self { limits: Limits::default(), normal_crease_angle_rad: 45f32.to_radians() }
+        Self { limits: Limits::default(), asset_root: None, normal_crease_angle_rad: 45f32.to_radians() }
     }
 }
 
@@ -43,19 +50,65 @@ pub struct Loaded {
 /// # Errors
 /// [`LoadError`], which names the file and the fault.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, LoadError> {
+    // Said here: as a folder in which nothing is found it would be a warning for each file.
+    if let Some(root) = &options.asset_root {
+        let failed = |source| LoadError::Read { path: root.clone(), source };
+        if !fs::metadata(root).map_err(failed)?.is_dir() {
+            return Err(failed(io::ErrorKind::NotADirectory.into()));
+        }
+    }
     let ending = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
     let mut loaded = match ending.as_str() {
         #[cfg(feature = "obj")]
-        "obj" => obj::load(path, &options.limits)?,
+        "obj" => obj::load(&External::new(path, options))?,
         #[cfg(feature = "gltf")]
-        "gltf" | "glb" => gltf::load(path, &options.limits)?,
+        "gltf" | "glb" => gltf::load(&External::new(path, options))?,
         _ => return Err(LoadError::UnknownFormat { path: path.to_owned() }),
     };
+    shorten(&mut loaded.warnings);
     if loaded.model.faces.is_empty() {
-        return Err(LoadError::Empty { path: path.to_owned() });
+        return Err(LoadError::Empty { path: path.to_owned(), why: loaded.warnings.into_iter().next() });
     }
+    report(&loaded.model, &mut loaded.warnings);
     normals::fill_missing(&mut loaded.model, options.normal_crease_angle_rad);
     Ok(loaded)
+}
+
+/// What of a model is repaired whatever its format: normals that are not there, faces that cannot be seen.
+fn report(model: &Model, warnings: &mut Vec<String>) {
+    let mut used = vec![false; model.positions.len()];
+    model.faces.iter().flatten().for_each(|&vertex| used[vertex as usize] = true);
+    let of_used = || model.normals.iter().zip(&used).filter(|(_, used)| **used);
+    let missing = of_used().filter(|(normal, _)| **normal == Vec3::ZERO || !normal.is_finite()).count();
+    match (missing, of_used().count()) {
+        (0, _) => {}
+        (missing, all) if missing == all => warnings.push("no normals: they are made from the faces".to_owned()),
+        (missing, all) => {
+            warnings.push(format!("{missing} of {all} vertices have no normal: it is made from the faces around"))
+        }
+    }
+    let flat = model.faces.iter().filter(|face| edges::has_zero_area(&model.positions, face)).count();
+    if flat > 0 {
+        warnings.push(format!("{flat} of {} faces have no area", model.faces.len()));
+    }
+}
+
+/// A file with a million faults is described well enough by some of them.
+fn shorten(warnings: &mut Vec<String>) {
+    const MOST: usize = 100;
+    let more = warnings.len().saturating_sub(MOST);
+    if more > 1 {
+        warnings.truncate(MOST);
+        warnings.push(format!("and {more} more"));
+    }
+    for warning in warnings {
+        if warning.chars().any(char::is_control) {
+            *warning = warning
+                .chars()
+                .flat_map(|c| if c.is_control() { c.escape_default().collect() } else { vec![c] })
+                .collect();
+        }
+    }
 }
 
 /// All of a regular file that is within [`Limits::file_bytes`].

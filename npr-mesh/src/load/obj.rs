@@ -7,16 +7,20 @@
 //! of any size. Materials are therefore read here ([`mtl`]); tobj learns their names only.
 
 mod builder;
+mod faults;
+mod lines;
 mod mtl;
 mod prepare;
 
+use super::external::{External, shortened};
 use super::{Loaded, read_file};
-use crate::{Limits, LoadError, Material, Model};
+use crate::triangulate::EAR_TESTS_OF_A_FILE;
+use crate::{LoadError, Material, Model};
 use builder::Builder;
-use mtl::{Library, linear_from_srgb, load_textures};
+use glam::Vec3;
+use mtl::{Library, Names, linear_from_srgb, move_materials};
 use prepare::prepare;
-use std::cell::RefCell;
-use std::path::Path;
+use std::io::Read;
 
 /// Reads an OBJ file, the `.mtl` files that it names and their textures.
 ///
@@ -24,13 +28,15 @@ use std::path::Path;
 ///   convention. Normals that are not finite count as absent, such texture coordinates as 0.
 /// - `Kd` and vertex colours (`v x y z r g b`) are taken as sRGB-encoded and converted. Materials are double-sided.
 /// - Faces without a material, or with one that no file defines, get [`Material::default`] as material 0.
-/// - Groups, smoothing groups, points, lines, curves and surfaces are passed over.
-/// - A missing or broken material file or texture is a warning.
+/// - Groups and smoothing groups are passed over; points, lines, curves and surfaces are too, with a warning.
+/// - Materials may be used before the line that names their file. Of several by one name the first counts.
+/// - A missing or broken material file or texture is a warning. Textures of unused materials are not read.
 ///
 /// # Errors
 /// [`LoadError`] for what cannot be read, is no OBJ, refers to vertices that are not there or not finite, or is
 /// over a limit. A file without faces is no error here.
-pub(super) fn load(path: &Path, limits: &Limits) -> Result<Loaded, LoadError> {
+pub(super) fn load(external: &External) -> Result<Loaded, LoadError> {
+    let (path, limits) = (external.model, external.limits);
     let bytes = read_file(path, limits)?;
     let mut prepared = prepare(bytes, path, limits)?;
     let mut warnings = std::mem::take(&mut prepared.warnings);
@@ -38,35 +44,41 @@ pub(super) fn load(path: &Path, limits: &Limits) -> Result<Loaded, LoadError> {
         return Ok(Loaded { model: Model::default(), warnings });
     }
 
-    let library = RefCell::new(Library::default());
-    let folder = path.parent().unwrap_or(Path::new(""));
+    let mut library = Library::default();
+    for line in &prepared.material_files {
+        library.read(external, line)?;
+    }
+    warnings.append(&mut library.warnings);
+    let mut material_of = Vec::new();
+    let mut used = vec![false; library.materials.len()];
+    let names = Names::new(&library.materials);
+    for name in &prepared.materials_used {
+        match names.find(name) {
+            Some(number) => {
+                material_of.push((name.clone(), number));
+                used[number] = true;
+            }
+            None => {
+                let name = shortened(name);
+                warnings.push(format!("no material file defines \"{name}\": the default material stands for it"));
+            }
+        }
+    }
+
     // Two copies of a large file are one too many: tobj's own arrays come on top.
     let text = prepared.text;
     let options = tobj::LoadOptions { ignore_lines: true, ignore_points: true, ..tobj::LoadOptions::default() };
-    let (meshes, _) = tobj::load_obj_buf(&mut text.as_slice(), &options, |name| {
-        let names = library.borrow_mut().read(folder, &name.to_string_lossy(), limits);
-        let materials =
-            names.iter().map(|name| tobj::Material { name: name.clone(), ..tobj::Material::default() }).collect();
-        Ok((materials, names.into_iter().enumerate().map(|(i, name)| (name, i)).collect()))
+    // What a file uses before the line that names its material file is defined too.
+    let mut reader = (&b"mtllib all\n"[..]).chain(text.as_slice());
+    let (meshes, _) = tobj::load_obj_buf(&mut reader, &options, |_| {
+        Ok((vec![tobj::Material::default(); library.materials.len()], material_of.iter().cloned().collect()))
     })
-    .map_err(|fault| LoadError::Malformed {
-        path: path.to_owned(),
-        fault: match fault {
-            tobj::LoadError::ReadError => "not UTF-8 text".to_owned(),
-            fault => fault.to_string(),
-        },
-    })?;
-    drop(text);
-
-    let mut library = library.into_inner();
-    warnings.append(&mut library.warnings);
-    warnings.extend(
-        prepared
-            .materials_used
-            .iter()
-            .filter(|used| !library.materials.iter().any(|m| m.material.name == **used))
-            .map(|used| format!("no material file defines {used:?}: the default material stands for it")),
-    );
+    .map_err(|fault| LoadError::Malformed { path: path.to_owned(), fault: faults::explain(&text, fault) })?;
+    let positions = || meshes.iter().flat_map(|mesh| mesh.mesh.positions.as_chunks::<3>().0);
+    if let Some(vertex) = positions().find(|vertex| !vertex.iter().all(|x| x.is_finite())) {
+        return Err(LoadError::Malformed { path: path.to_owned(), fault: faults::not_finite(&text, vertex) });
+    }
+    drop((text, names));
 
     let mut model = Model::default();
     let needs_default = library.materials.is_empty()
@@ -75,7 +87,7 @@ pub(super) fn load(path: &Path, limits: &Limits) -> Result<Loaded, LoadError> {
         model.materials.push(Material::default());
     }
     let first_material = model.materials.len();
-    load_textures(library.materials, &mut model, &mut warnings, limits);
+    move_materials(library.materials, &used, &mut model, &mut warnings, external)?;
 
     let mut builder = Builder {
         model,
@@ -84,6 +96,7 @@ pub(super) fn load(path: &Path, limits: &Limits) -> Result<Loaded, LoadError> {
         corners_before: 0,
         absent: &prepared.absent,
         objects: &prepared.objects,
+        ear_tests: EAR_TESTS_OF_A_FILE,
         repaired: 0,
     };
     builder.model.faces.reserve(prepared.counts.triangles as usize);
@@ -106,8 +119,12 @@ pub(super) fn load(path: &Path, limits: &Limits) -> Result<Loaded, LoadError> {
             *color = (color.truncate() / 255.0).extend(1.0);
         }
     }
+    let outside = model.colors.iter().filter(|c| c.min_element() < 0.0 || c.max_element() > 1.0).count();
+    if outside > 0 {
+        warnings.push(format!("{outside} vertex colours are not within their range"));
+    }
     for color in &mut model.colors {
-        *color = linear_from_srgb(color.truncate()).extend(color.w);
+        *color = linear_from_srgb(color.truncate().clamp(Vec3::ZERO, Vec3::ONE)).extend(color.w);
     }
     Ok(Loaded { model, warnings })
 }

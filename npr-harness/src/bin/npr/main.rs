@@ -1,6 +1,7 @@
 //! `npr`: pictures, tables and checks from the command line.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
+mod loading;
 mod tam;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -13,7 +14,7 @@ use npr_harness::scene::Scene;
 use npr_harness::style::{Style, style, styles};
 use npr_harness::{check, gallery, inspect};
 use npr_imagespace::artist::LineKind;
-use npr_mesh::pn_triangles;
+use npr_mesh::{LoadOptions, pn_triangles};
 use serde_json::json;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
@@ -41,6 +42,8 @@ enum Command {
         /// As JSON.
         #[arg(long)]
         json: bool,
+        #[command(flatten)]
+        loading: loading::Loading,
     },
     /// GPU against CPU reference, lines against exact contours; exit status 1 when a limit is exceeded.
     Check {
@@ -55,6 +58,8 @@ enum Command {
         /// Where expected, actual and difference pictures of failed comparisons go.
         #[arg(long, default_value = "npr-out/check")]
         out: PathBuf,
+        #[command(flatten)]
+        loading: loading::Loading,
     },
     /// Draws a tonal art map for hatching into a folder, or unpacks one: its images, one file with all, and sheets.
     Tam(tam::Options),
@@ -117,6 +122,8 @@ struct Render {
     /// Print the plan: each pass and why, each that was left out and why.
     #[arg(long)]
     plan: bool,
+    #[command(flatten)]
+    loading: loading::Loading,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -158,8 +165,10 @@ fn main() -> ExitCode {
     let done = match cli.command {
         None => run_gallery(),
         Some(Command::Render(options)) => run_render(&options),
-        Some(Command::Inspect { input, json }) => run_inspect(&input, json),
-        Some(Command::Check { inputs, style, json, out }) => run_check(&inputs, &style, json, &out),
+        Some(Command::Inspect { input, json, loading }) => run_inspect(&input, json, &loading.options()),
+        Some(Command::Check { inputs, style, json, out, loading }) => {
+            run_check(&inputs, &loading.options(), &style, json, &out)
+        }
         Some(Command::Tam(options)) => tam::run(&options),
         Some(Command::Styles) => {
             for style in styles() {
@@ -202,9 +211,9 @@ fn spinner(what: &str) -> indicatif::ProgressBar {
     bar
 }
 
-fn load(path: &Path) -> Result<npr_mesh::Loaded, HarnessError> {
+fn load(path: &Path, options: &LoadOptions) -> Result<npr_mesh::Loaded, HarnessError> {
     let bar = spinner(&format!("reading {}", path.display()));
-    let loaded = npr_mesh::load(path, &Default::default())?;
+    let loaded = npr_mesh::load(path, options)?;
     bar.finish_and_clear();
     Ok(loaded)
 }
@@ -260,7 +269,7 @@ fn run_render(options: &Render) -> Result<bool, HarnessError> {
     };
     let executor = Executor::choose(backend)?;
     announce(&executor);
-    let loaded = load(&options.input)?;
+    let loaded = load(&options.input, &options.loading.options())?;
     let loaded_ms = start.elapsed().as_secs_f64() * 1e3;
     for warning in &loaded.warnings {
         eprintln!("npr: {}: warning: {warning}", options.input.display());
@@ -268,6 +277,11 @@ fn run_render(options: &Render) -> Result<bool, HarnessError> {
     let segments = checked("segments", f64::from(options.segments), 1.0, 1024.0, "1..=1024")? as u32;
     let model = if segments > 1 { pn_triangles::tessellate(&loaded.model, segments)? } else { loaded.model };
     let mut scene = Scene::new(model);
+    let mut warnings = loaded.warnings;
+    for warning in scene.edges.warnings() {
+        eprintln!("npr: {}: warning: {warning}", options.input.display());
+        warnings.push(warning);
+    }
     // Positions may have been moved to the origin.
     scene.clip = options.clip.map(|plane| plane + DVec4::W * plane.truncate().dot(scene.origin));
     for (material, kind) in &options.inner_lines {
@@ -296,7 +310,7 @@ fn run_render(options: &Render) -> Result<bool, HarnessError> {
                 "faces": scene.model.faces.len(), "edges": scene.edges.edges.len(),
                 "lines": {"silhouette": counts[0], "boundary": counts[1], "crease": counts[2], "material_border": counts[3]},
                 "load_ms": loaded_ms, "prepare_ms": prepared_ms, "render_ms": drawn_ms,
-                "passes": passes, "left_out": left_out, "warnings": loaded.warnings,
+                "passes": passes, "left_out": left_out, "warnings": warnings,
             })
         );
     } else {
@@ -335,8 +349,8 @@ fn known_style(name: &str) -> Result<Style, HarnessError> {
     })
 }
 
-fn run_inspect(input: &Path, as_json: bool) -> Result<bool, HarnessError> {
-    let loaded = load(input)?;
+fn run_inspect(input: &Path, as_json: bool, options: &LoadOptions) -> Result<bool, HarnessError> {
+    let loaded = load(input, options)?;
     let name = input.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     let inspection = inspect::inspect(&name, &loaded.model, loaded.warnings);
     if as_json {
@@ -347,7 +361,13 @@ fn run_inspect(input: &Path, as_json: bool) -> Result<bool, HarnessError> {
     Ok(true)
 }
 
-fn run_check(inputs: &[PathBuf], styles: &[String], as_json: bool, out: &Path) -> Result<bool, HarnessError> {
+fn run_check(
+    inputs: &[PathBuf],
+    loading: &LoadOptions,
+    styles: &[String],
+    as_json: bool,
+    out: &Path,
+) -> Result<bool, HarnessError> {
     let executor = Executor::choose(Backend::Auto)?;
     announce(&executor);
     let styles = styles.iter().map(|name| known_style(name)).collect::<Result<Vec<_>, _>>()?;
@@ -360,8 +380,9 @@ fn run_check(inputs: &[PathBuf], styles: &[String], as_json: bool, out: &Path) -
             bar.suspend(|| println!("{metric}"));
         }
     };
-    let report =
-        check::run(&executor, inputs, &styles, out, &tell, &|share| bar.set_position((share * 1000.0) as u64))?;
+    let report = check::run(&executor, inputs, loading, &styles, out, &tell, &|share| {
+        bar.set_position((share * 1000.0) as u64)
+    })?;
     bar.finish_and_clear();
     if as_json {
         println!("{}", serde_json::to_string_pretty(&report)?);

@@ -1,6 +1,6 @@
 //! Numbers out of buffers, every bound checked (glTF 2.0, 3.6.2 "Accessors").
 
-use super::{Document, files};
+use super::{Document, QUANTIZATION, files};
 use gltf::json::accessor::{ComponentType, Type, sparse};
 use gltf::json::validation::Checked;
 use gltf::json::{self, Index};
@@ -13,6 +13,8 @@ pub(super) struct Accessor<'d> {
     number: usize,
     /// Elements.
     pub count: u64,
+    /// Elements that there are by the file.
+    stated: u64,
     /// Whether there is a buffer view behind it.
     pub stored: bool,
     /// Numbers in an element.
@@ -32,6 +34,41 @@ struct Sparse<'d> {
     values: &'d [u8],
 }
 
+/// What an accessor is for, as far as that says which component types it may have (glTF 2.0, 3.7.2.1 "Overview", 3.7.3.1
+/// "Skins", and `KHR_mesh_quantization`).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Purpose {
+    Position,
+    Normal,
+    TexCoord,
+    /// Also weights of joints.
+    Fraction,
+    Displacement,
+    Joints,
+    Indices,
+    Matrices,
+}
+
+impl Purpose {
+    /// Whether the component type is allowed, and whether only by `KHR_mesh_quantization`.
+    fn allows(self, component: ComponentType, normalized: bool) -> (bool, bool) {
+        use ComponentType::{F32, I8, I16, U8, U16, U32};
+        let unsigned = matches!(component, U8 | U16);
+        let signed = matches!(component, I8 | I16);
+        match self {
+            Purpose::Position => (component != U32, component != F32),
+            Purpose::Normal => (component == F32 || (signed && normalized), component != F32),
+            Purpose::Displacement => (component == F32 || signed, component != F32),
+            Purpose::TexCoord => (component != U32, !(component == F32 || (unsigned && normalized))),
+            // Some files forget to say that they are normalised: there is nothing else that they could be.
+            Purpose::Fraction => (component == F32 || unsigned, false),
+            Purpose::Joints => (unsigned, false),
+            Purpose::Indices => (unsigned || component == U32, false),
+            Purpose::Matrices => (component == F32, false),
+        }
+    }
+}
+
 /// How integers become fractions.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Integers {
@@ -46,7 +83,7 @@ impl<'d> Accessor<'d> {
     ///
     /// # Errors
     /// The fault, naming the accessor.
-    pub fn new(document: &'d Document, index: Index<json::Accessor>) -> Result<Self, String> {
+    pub fn new(document: &'d Document, index: Index<json::Accessor>, purpose: Purpose) -> Result<Self, String> {
         let number = index.value();
         let accessor = document.root.get(index).ok_or_else(|| format!("accessor {number} does not exist"))?;
         let fail = |fault: String| format!("accessor {number}: {fault}");
@@ -59,10 +96,21 @@ impl<'d> Accessor<'d> {
             return Err(fail("a 2x2 or 3x3 matrix, which no attribute is".to_owned()));
         }
         let (component, lanes, count) = (component.0, kind.multiplicity(), accessor.count.0);
+        match purpose.allows(component, accessor.normalized) {
+            (false, _) => {
+                return Err(fail(format!("{} are not allowed here", type_name(component, accessor.normalized))));
+            }
+            (true, true) if !document.quantized => {
+                let what = type_name(component, accessor.normalized);
+                return Err(fail(format!("{what}, and the file does not say that it uses {QUANTIZATION}")));
+            }
+            _ => {}
+        }
         let element = component.size() * lanes;
         let mut found = Self {
             number,
             count,
+            stated: count,
             stored: false,
             lanes,
             component,
@@ -92,9 +140,21 @@ impl<'d> Accessor<'d> {
             found.stored = true;
         }
         if let Some(sparse) = &accessor.sparse {
+            if sparse.count.0 > count {
+                return Err(fail(format!("{} sparse elements of {count}", sparse.count.0)));
+            }
             found.sparse = Some(Sparse::new(document, sparse, element as u64).map_err(fail)?);
         }
         Ok(found)
+    }
+
+    /// Leaves out all elements but the first `count`.
+    pub fn first(mut self, count: u64) -> Self {
+        if count < self.count {
+            self.bytes = &self.bytes[..self.bytes.len().min(count as usize * self.stride)];
+            self.count = count;
+        }
+        self
     }
 
     /// All elements as floats, `N` to an element.
@@ -153,10 +213,11 @@ impl<'d> Accessor<'d> {
         };
         if let Some(sparse) = &self.sparse {
             for (at, value) in sparse.indices().zip(sparse.values.chunks_exact(element)) {
-                let Some(slot) = elements.get_mut(at as usize) else {
-                    return Err(self.fault(&format!("sparse index {at} of {count} elements")));
-                };
-                *slot = read(value);
+                match elements.get_mut(at as usize) {
+                    Some(slot) => *slot = read(value),
+                    None if u64::from(at) < self.stated => {}
+                    None => return Err(self.fault(&format!("sparse index {at} of {count} elements"))),
+                }
             }
         }
         Ok(elements)
@@ -166,6 +227,18 @@ impl<'d> Accessor<'d> {
     pub fn fault(&self, fault: &str) -> String {
         format!("accessor {}: {fault}", self.number)
     }
+}
+
+fn type_name(component: ComponentType, normalized: bool) -> String {
+    let name = match component {
+        ComponentType::I8 => "signed 8-bit integers",
+        ComponentType::U8 => "unsigned 8-bit integers",
+        ComponentType::I16 => "signed 16-bit integers",
+        ComponentType::U16 => "unsigned 16-bit integers",
+        ComponentType::U32 => "unsigned 32-bit integers",
+        ComponentType::F32 => "floats",
+    };
+    format!("{name}{}", if normalized { ", normalised" } else { "" })
 }
 
 impl<'d> Sparse<'d> {

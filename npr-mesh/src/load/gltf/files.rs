@@ -1,11 +1,12 @@
 //! Bytes: the binary container, buffers, and what URIs refer to.
 
-use super::{Document, malformed};
-use crate::load::read_file;
-use crate::{Limits, LoadError};
+use super::Document;
+use crate::LoadError;
+use crate::load::external::{External, meanings, shortened};
 use gltf::json::{Index, Root, buffer};
+use std::borrow::Cow;
 use std::collections::HashMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::rc::Rc;
 
 /// The data of one buffer.
@@ -14,13 +15,16 @@ pub(super) enum Bytes<'a> {
     Chunk(&'a [u8]),
     /// From a URI, with the length that the buffer states; two buffers may share a file.
     Resource(Rc<Vec<u8>>, usize),
+    /// Not to be had, and why: a fault only where something shown needs it.
+    Missing(String),
 }
 
 impl Bytes<'_> {
-    fn as_slice(&self) -> &[u8] {
+    fn as_slice(&self) -> Result<&[u8], &str> {
         match self {
-            Bytes::Chunk(bytes) => bytes,
-            Bytes::Resource(bytes, length) => &bytes[..*length],
+            Bytes::Chunk(bytes) => Ok(bytes),
+            Bytes::Resource(bytes, length) => Ok(&bytes[..*length]),
+            Bytes::Missing(fault) => Err(fault),
         }
     }
 }
@@ -29,10 +33,20 @@ impl Bytes<'_> {
 ///
 /// Our own, since the `gltf` crate's subtracts the header's length without a check and refuses files with chunks
 /// of other kinds, which the specification has readers skip.
-pub(super) fn split_container(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
+pub(super) fn split_container<'a>(
+    bytes: &'a [u8],
+    warnings: &mut Vec<String>,
+) -> Result<(&'a [u8], Option<&'a [u8]>), String> {
     const HEADER: usize = 12;
+    let mut without_mark = |text: &'a [u8]| match text.strip_prefix(b"\xEF\xBB\xBF") {
+        Some(rest) => {
+            warnings.push("a byte-order mark at the beginning is passed over".to_owned());
+            rest
+        }
+        None => text,
+    };
     if !bytes.starts_with(b"glTF") {
-        return Ok((bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes), None));
+        return Ok((without_mark(bytes), None));
     }
     let word = |at: usize| bytes.get(at..)?.first_chunk().map(|four| u32::from_le_bytes(*four));
     let (Some(version), Some(length)) = (word(4), word(8)) else {
@@ -62,50 +76,64 @@ pub(super) fn split_container(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), St
     if kind != *b"JSON" {
         return Err("first GLB chunk is not JSON".to_owned());
     }
-    Ok((text, chunks.next().filter(|(kind, _)| kind == b"BIN\0").map(|(_, body)| body)))
+    Ok((without_mark(text), chunks.next().filter(|(kind, _)| kind == b"BIN\0").map(|(_, body)| body)))
 }
 
-/// The data of all buffers. A file that several of them name is read once.
+/// The data of all buffers, and how many bytes were read for them. A file that several of them name is read once.
+///
+/// # Errors
+/// Only a limit that is exceeded: a buffer that is not there may not be needed either.
 pub(super) fn buffers<'a>(
-    path: &Path,
-    limits: &Limits,
+    external: &External,
     root: &Root,
     chunk: Option<&'a [u8]>,
-) -> Result<Vec<Bytes<'a>>, LoadError> {
+) -> Result<(Vec<Bytes<'a>>, u64), LoadError> {
     let mut read_before: HashMap<PathBuf, Rc<Vec<u8>>> = HashMap::new();
     let mut buffers = Vec::with_capacity(root.buffers.len());
     for (index, buffer) in root.buffers.iter().enumerate() {
-        let fail = |fault: String| malformed(path, format!("buffer {index}: {fault}"));
         let stated = buffer.byte_length.0;
-        let short = |there: usize| fail(format!("{stated} bytes stated, {there} there"));
-        let fit = |there: usize| usize::try_from(stated).ok().filter(|s| *s <= there).ok_or_else(|| short(there));
-        let bytes = match buffer.uri.as_deref() {
-            None => {
-                let chunk = chunk.filter(|_| index == 0).ok_or_else(|| fail("no URI and no binary chunk".into()))?;
-                Bytes::Chunk(&chunk[..fit(chunk.len())?])
-            }
-            Some(uri) => {
-                let resource = match data_uri(uri) {
-                    Some(data) => Rc::new(data.map_err(fail)?),
-                    None => {
-                        let file = resolve(path, uri).map_err(fail)?;
-                        match read_before.get(&file) {
-                            Some(bytes) => Rc::clone(bytes),
-                            None => {
-                                let bytes = Rc::new(read_file(&file, limits)?);
-                                read_before.insert(file, Rc::clone(&bytes));
-                                bytes
-                            }
-                        }
-                    }
-                };
-                let length = fit(resource.len())?;
-                Bytes::Resource(resource, length)
-            }
-        };
-        buffers.push(bytes);
+        let fit = |there: usize| usize::try_from(stated).ok().filter(|stated| *stated <= there);
+        let short = |there: usize| Bytes::Missing(format!("{stated} bytes stated, {there} there"));
+        buffers.push(match (buffer.uri.as_deref(), chunk.filter(|_| index == 0)) {
+            (None, None) => Bytes::Missing("no URI and no binary chunk".to_owned()),
+            (None, Some(chunk)) => match fit(chunk.len()) {
+                Some(length) => Bytes::Chunk(&chunk[..length]),
+                None => short(chunk.len()),
+            },
+            (Some(uri), _) => match resource(external, uri, &mut read_before) {
+                Ok(resource) => match fit(resource.len()) {
+                    Some(length) => Bytes::Resource(resource, length),
+                    None => short(resource.len()),
+                },
+                Err(error @ LoadError::TooLarge { .. }) => return Err(error),
+                Err(LoadError::Malformed { fault, .. }) => Bytes::Missing(fault),
+                Err(LoadError::Outside { name, .. }) => {
+                    Bytes::Missing(format!("URI \"{name}\" leads out of the model's folder"))
+                }
+                Err(error) => Bytes::Missing(error.to_string()),
+            },
+        });
     }
-    Ok(buffers)
+    let bytes = read_before.values().map(|bytes| bytes.len() as u64).sum();
+    Ok((buffers, bytes))
+}
+
+fn resource(
+    external: &External,
+    uri: &str,
+    read_before: &mut HashMap<PathBuf, Rc<Vec<u8>>>,
+) -> Result<Rc<Vec<u8>>, LoadError> {
+    let malformed = |fault| LoadError::Malformed { path: external.model.to_owned(), fault };
+    if let Some(data) = data_uri(uri) {
+        return data.map(Rc::new).map_err(malformed);
+    }
+    let file = external.find(&names(uri).map_err(malformed)?)?;
+    if let Some(bytes) = read_before.get(&file) {
+        return Ok(Rc::clone(bytes));
+    }
+    let bytes = Rc::new(external.read(&file)?);
+    read_before.insert(file, Rc::clone(&bytes));
+    Ok(bytes)
 }
 
 /// The bytes of a buffer view and its stride, if it states one.
@@ -120,7 +148,8 @@ pub(super) fn view<'d>(
         .buffers
         .get(buffer_number)
         .ok_or_else(|| format!("buffer view {number}: buffer {buffer_number} does not exist"))?
-        .as_slice();
+        .as_slice()
+        .map_err(|fault| format!("buffer view {number}: buffer {buffer_number}: {fault}"))?;
     let (offset, length) = (view.byte_offset.unwrap_or_default().0, view.byte_length.0);
     let slice = slice(bytes, offset, length).ok_or_else(|| {
         format!(
@@ -148,7 +177,8 @@ pub(super) fn data_uri(uri: &str) -> Option<Result<Vec<u8>, String>> {
         Ok(data) => data,
         Err(fault) => return Some(Err(fault)),
     };
-    Some(if kind.ends_with(";base64") { base64(&data) } else { Ok(data) })
+    let is_base64 = kind.len() >= 7 && kind.as_bytes()[kind.len() - 7..].eq_ignore_ascii_case(b";base64");
+    Some(if is_base64 { base64(&data) } else { Ok(data.into_owned()) })
 }
 
 /// Base 64 in the standard alphabet (RFC 4648, 4), with or without the padding at its end.
@@ -177,7 +207,10 @@ fn base64(text: &[u8]) -> Result<Vec<u8>, String> {
     Ok(bytes)
 }
 
-fn percent_decoded(text: &str) -> Result<Vec<u8>, String> {
+fn percent_decoded(text: &str) -> Result<Cow<'_, [u8]>, String> {
+    if !text.contains('%') {
+        return Ok(Cow::Borrowed(text.as_bytes()));
+    }
     let mut bytes = Vec::with_capacity(text.len());
     let mut rest = text.as_bytes();
     while let Some((&first, after)) = rest.split_first() {
@@ -193,49 +226,28 @@ fn percent_decoded(text: &str) -> Result<Vec<u8>, String> {
         bytes.push((high * 16 + low) as u8);
         rest = &after[2..];
     }
-    Ok(bytes)
+    Ok(Cow::Owned(bytes))
 }
 
-/// The file that a relative URI names, which may only lie in the model's own folder or below it: what a model
-/// refers to is read on its word alone, so it must not reach the rest of the disk.
-pub(super) fn resolve(model: &Path, uri: &str) -> Result<PathBuf, String> {
+/// The names that a URI may mean: of a file relative to the model's folder, or, from a `file:` URI, absolute.
+pub(super) fn names(uri: &str) -> Result<Vec<PathBuf>, String> {
     let refused = |why: &str| format!("URI \"{}\" {why}", shortened(uri));
-    let name = percent_decoded(uri).map_err(|fault| refused(&format!("({fault})")))?;
-    let name = String::from_utf8(name).map_err(|_| refused("is not UTF-8"))?;
-    // Drive letters and schemes have a colon, and a backslash is a separator on some systems.
-    if name.starts_with('/') || name.contains([':', '\\', '\0']) {
+    let local = uri.get(..7).filter(|scheme| scheme.eq_ignore_ascii_case("file://")).map(|_| &uri[7..]);
+    // A host would go before the path.
+    let local = local.map(|rest| rest.strip_prefix("localhost").unwrap_or(rest));
+    let name = percent_decoded(local.unwrap_or(uri)).map_err(|fault| refused(&format!("({fault})")))?;
+    let name = std::str::from_utf8(&name).map_err(|_| refused("is not UTF-8"))?;
+    // Drive letters and schemes have a colon.
+    if name.contains([':', '\0']) || local.is_some_and(|path| !path.starts_with('/')) {
         return Err(refused("is not a relative path"));
     }
-    let mut parts = Vec::new();
-    for part in name.split('/') {
-        match part {
-            "" | "." => {}
-            ".." if parts.pop().is_none() => return Err(refused("leads out of the model's folder")),
-            ".." => {}
-            _ => parts.push(part),
-        }
-    }
-    if parts.is_empty() {
-        return Err(refused("names no file"));
-    }
-    let mut file = model.parent().unwrap_or(Path::new("")).to_owned();
-    file.extend(parts);
-    Ok(file)
-}
-
-/// A URI for messages.
-pub(super) fn shortened(uri: &str) -> String {
-    const MOST: usize = 80;
-    let mut text: String = uri.chars().take(MOST).flat_map(char::escape_debug).collect();
-    if uri.chars().nth(MOST).is_some() {
-        text.push('…');
-    }
-    text
+    meanings(name).ok_or_else(|| refused("names no file"))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::path::Path;
 
     #[test]
     fn base64_of_every_length() {
@@ -256,37 +268,22 @@ mod tests {
     }
 
     #[test]
-    fn uris_stay_in_the_folder() {
-        let model = Path::new("models/m.gltf");
-        for (uri, file) in [
-            ("a.bin", "models/a.bin"),
-            ("a%20b.bin", "models/a b.bin"),
-            ("./t/../a.bin", "models/a.bin"),
-            ("t/a.png", "models/t/a.png"),
+    fn uris_name_files() {
+        for (uri, name) in [
+            ("a.bin", "a.bin"),
+            ("a%20b.bin", "a b.bin"),
+            ("./t/../a.bin", "./t/../a.bin"),
+            ("t/a.png", "t/a.png"),
+            ("%2e%2e/a.bin", "../a.bin"),
+            ("file:///m/a.bin", "/m/a.bin"),
+            ("FILE://localhost/m/a.bin", "/m/a.bin"),
         ] {
-            assert_eq!(resolve(model, uri).unwrap(), Path::new(file), "{uri}");
+            assert_eq!(names(uri).unwrap()[0], Path::new(name), "{uri}");
         }
-        for uri in [
-            "",
-            ".",
-            "..",
-            "../a.bin",
-            "t/../../a.bin",
-            "%2e%2e/a.bin",
-            "..%2fa.bin",
-            "/a.bin",
-            "%2fa.bin",
-            "C:/a.bin",
-            "file:///a.bin",
-            "http://a/a.bin",
-            "..\\a.bin",
-            "a%",
-            "a%0",
-            "a%zz",
-            "a%ff",
-            "a%00b",
-        ] {
-            assert!(resolve(model, uri).is_err(), "{uri}");
+        for uri in
+            ["", ".", "..", "C:/a.bin", "http://a/a.bin", "file://host/a.bin", "a%", "a%0", "a%zz", "a%ff", "a%00b"]
+        {
+            assert!(names(uri).is_err(), "{uri}");
         }
     }
 

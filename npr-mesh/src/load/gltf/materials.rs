@@ -1,7 +1,8 @@
 //! Materials, their textures, and which texture coordinates they want.
 
 use super::{Document, files};
-use crate::load::{image_file, read_file};
+use crate::load::external::shortened;
+use crate::load::image_file;
 use crate::{AlphaMode, LoadError, Material, Model, Texture, Wrap};
 use glam::{Vec2, Vec4};
 use gltf::json::texture::{Info, MagFilter, WrappingMode};
@@ -17,9 +18,14 @@ pub(super) struct Materials {
     textures: HashMap<(usize, [WrapKey; 2], bool), u32>,
     /// By image: the first texture made of it, or `None` if it cannot be decoded.
     images: HashMap<usize, Option<u32>>,
+    /// Of all textures so far.
+    texels: u64,
 }
 
 type WrapKey = u8;
+
+/// What the `gltf` crate has for the source of a texture that has none: extensions have images of other formats.
+const NO_SOURCE: usize = u32::MAX as usize;
 
 /// Where the texture coordinates of a primitive come from.
 #[derive(Clone, Copy)]
@@ -81,6 +87,12 @@ impl Materials {
             if !material.base_color.is_finite() {
                 return Err(fail("its base colour is not finite"));
             }
+            let clamped = material.base_color.clamp(Vec4::ZERO, Vec4::ONE);
+            if clamped != material.base_color {
+                warnings
+                    .push(format!("material {number}: its base colour {} is not within 0 to 1", material.base_color));
+                material.base_color = clamped;
+            }
             if let Some(info) = &pbr.base_color_texture {
                 uv = uv_source(info).ok_or_else(|| fail("its texture transform is not finite"))?;
                 material.texture = self.texture(document, number, info, model, warnings)?;
@@ -115,6 +127,10 @@ impl Materials {
         let wrap = sampler.map_or([Wrap::Repeat; 2], |s| [wrap(&s.wrap_s), wrap(&s.wrap_t)]);
         let smooth = !sampler.is_some_and(|s| matches!(s.mag_filter, Some(Checked::Valid(MagFilter::Nearest))));
         let image = texture.source.value();
+        if image == NO_SOURCE {
+            warnings.push(format!("material {material}: texture {number} is left out: it has no image of its own"));
+            return Ok(None);
+        }
 
         let key = (image, wrap.map(|w| w as WrapKey), smooth);
         if let Some(&slot) = self.textures.get(&key) {
@@ -122,14 +138,22 @@ impl Materials {
         }
         let made = match self.images.get(&image) {
             Some(None) => return Ok(None),
-            Some(Some(first)) => Texture { wrap, smooth, ..model.textures[*first as usize].clone() },
-            None => match decode(document, image) {
+            Some(Some(first)) => {
+                let first = &model.textures[*first as usize];
+                self.texels += u64::from(first.width) * u64::from(first.height);
+                if self.texels > document.limits.texels_in_all {
+                    return Err(document.too_large("texels in all images", self.texels, document.limits.texels_in_all));
+                }
+                Texture { wrap, smooth, ..first.clone() }
+            }
+            None => match decode(document, image, &mut self.texels) {
                 Ok(texture) => Texture { wrap, smooth, ..texture },
                 Err(error @ LoadError::TooLarge { .. }) => return Err(error),
                 Err(error) => {
                     let why = match error {
                         // Warnings are without the model's name.
                         LoadError::Malformed { path, fault } if path == document.path => fault,
+                        LoadError::Outside { name, .. } => format!("URI \"{name}\" leads out of the model's folder"),
                         other => other.to_string(),
                     };
                     warnings.push(format!("image {image} is left out: {why}"));
@@ -147,24 +171,24 @@ impl Materials {
 }
 
 /// An image from a buffer view, a `data:` URI or a file beside the model, as it is without a sampler.
-fn decode(document: &Document, number: usize) -> Result<Texture, LoadError> {
+fn decode(document: &Document, number: usize, texels: &mut u64) -> Result<Texture, LoadError> {
     let fail = |fault: String| document.malformed(fault);
     let image = document.root.images.get(number).ok_or_else(|| fail("does not exist".to_owned()))?;
-    let mut name = image.name.clone().unwrap_or_default();
+    let mut name = shortened(image.name.as_deref().unwrap_or_default());
     if name.is_empty() {
         name = format!("#{number}");
     }
     let limits = document.limits;
     let (width, height, rgba8) = match (image.buffer_view, image.uri.as_deref()) {
         (Some(view), _) => {
-            image_file::decode(files::view(document, view).map_err(fail)?.0, &name, document.path, limits)?
+            image_file::decode(files::view(document, view).map_err(fail)?.0, &name, document.path, limits, texels)?
         }
         (None, Some(uri)) => match files::data_uri(uri) {
-            Some(bytes) => image_file::decode(&bytes.map_err(fail)?, &name, document.path, limits)?,
+            Some(bytes) => image_file::decode(&bytes.map_err(fail)?, &name, document.path, limits, texels)?,
             None => {
-                let file = files::resolve(document.path, uri).map_err(fail)?;
-                name = files::shortened(uri);
-                image_file::decode(&read_file(&file, limits)?, &name, &file, limits)?
+                let file = document.external.find(&files::names(uri).map_err(fail)?)?;
+                name = shortened(uri);
+                image_file::decode(&document.external.read(&file)?, &name, &file, limits, texels)?
             }
         },
         (None, None) => return Err(fail("neither a buffer view nor a URI".to_owned())),

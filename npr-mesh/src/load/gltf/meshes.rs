@@ -1,10 +1,11 @@
 //! Mesh instances into one model.
 
 use super::Document;
-use super::accessor::{Accessor, Integers};
+use super::accessor::{Accessor, Integers, Purpose};
 use super::materials::{Materials, UvSource};
 use super::pose::{self, Influences, Mirrored, Placement};
 use super::scene::Nodes;
+use crate::edges::MOST_FACES;
 use crate::{LoadError, Model};
 use glam::{DMat4, Vec2, Vec3, Vec4};
 use gltf::json::mesh::{Mode, Primitive, Semantic};
@@ -12,6 +13,9 @@ use gltf::json::validation::Checked;
 use gltf::json::{self, Index, Node};
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
+
+/// The most that a channel of a vertex colour may be.
+const BRIGHTEST: f32 = 1000.0;
 
 /// All meshes that the nodes show, in the order of the nodes.
 ///
@@ -24,6 +28,8 @@ pub(super) fn flatten(document: &Document, nodes: &Nodes, warnings: &mut Vec<Str
         warnings,
         materials: Materials::default(),
         seen: vec![false; document.root.meshes.len()],
+        instances: 0,
+        displacements: 0,
     };
     let mut meshes = 0;
     let mut skins: HashMap<usize, Vec<DMat4>> = HashMap::new();
@@ -68,6 +74,9 @@ struct Flattener<'a> {
     materials: Materials,
     /// Meshes that were added before, whose warnings need no second line.
     seen: Vec<bool>,
+    /// Primitives so far, and displacements and weights that were read for them.
+    instances: u64,
+    displacements: u64,
 }
 
 /// A primitive and how messages call it.
@@ -109,6 +118,10 @@ impl Flattener<'_> {
     fn primitive(&mut self, part: &Part, weights: &[f32], placement: &Placement) -> Result<(), LoadError> {
         let document = self.document;
         let fail = |fault: String| document.malformed(format!("{}: {fault}", part.name));
+        self.instances += 1;
+        if self.instances > document.limits.instances {
+            return Err(document.too_large("primitives", self.instances, document.limits.instances));
+        }
         let mode = match part.primitive.mode {
             Checked::Valid(mode @ (Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)) => mode,
             Checked::Valid(mode) => {
@@ -123,11 +136,14 @@ impl Flattener<'_> {
         };
 
         // Everything is counted before memory is asked for.
-        let accessor = Accessor::new(document, position_accessor).map_err(|f| fail(format!("POSITION: {f}")))?;
+        let accessor = Accessor::new(document, position_accessor, Purpose::Position)
+            .map_err(|f| fail(format!("POSITION: {f}")))?;
         let first_vertex = self.model.positions.len();
         let vertices = self.fits("vertices", first_vertex, accessor.count, document.limits.vertices)?;
         let indices = match part.primitive.indices {
-            Some(index) => Some(Accessor::new(document, index).map_err(|f| fail(format!("indices: {f}")))?),
+            Some(index) => {
+                Some(Accessor::new(document, index, Purpose::Indices).map_err(|f| fail(format!("indices: {f}")))?)
+            }
             None => None,
         };
         let corners = indices.as_ref().map_or(accessor.count, |indices| indices.count);
@@ -135,14 +151,22 @@ impl Flattener<'_> {
             Mode::Triangles => corners / 3,
             _ => corners.saturating_sub(2),
         };
-        self.fits("faces", self.model.faces.len(), face_count, document.limits.faces)?;
+        self.fits("faces", self.model.faces.len(), face_count, document.limits.faces.min(MOST_FACES as u64))?;
         if corners < 3 || (mode == Mode::Triangles && corners % 3 != 0) {
             self.warn(part, &format!("{corners} corners, which are no whole number of triangles"));
         }
 
+        let reads = pose::targets_in_use(part.primitive, weights) + pose::influence_sets(part.primitive);
+        self.displacements = self.displacements.saturating_add(reads.saturating_mul(accessor.count));
+        if self.displacements > document.limits.displacements {
+            let limit = document.limits.displacements;
+            return Err(document.too_large("displacements and weights of joints", self.displacements, limit));
+        }
+
         let mut positions = accessor.floats::<3>(Integers::AsStated).map_err(|f| fail(format!("POSITION: {f}")))?;
-        let mut normals =
-            self.read(part, Semantic::Normals, vertices, |a| a.floats::<3>(Integers::AsStated))?.unwrap_or_default();
+        let mut normals = self
+            .read(part, Semantic::Normals, Purpose::Normal, vertices, |a| a.floats::<3>(Integers::AsStated))?
+            .unwrap_or_default();
         pose::morph(document, part.primitive, weights, &mut positions, &mut normals).map_err(fail)?;
         let influences = match placement {
             Placement::Rigid(_) => None,
@@ -173,10 +197,16 @@ impl Flattener<'_> {
     fn fits(&self, what: &'static str, so_far: usize, more: u64, limit: u64) -> Result<usize, LoadError> {
         let limit = limit.min(u32::MAX.into());
         let count = (so_far as u64).saturating_add(more);
-        match usize::try_from(more) {
-            Ok(more) if count <= limit => Ok(more),
-            _ => Err(self.document.too_large(what, count, limit)),
+        let more = match usize::try_from(more) {
+            Ok(more) if count <= limit => more,
+            _ => return Err(self.document.too_large(what, count, limit)),
+        };
+        let limit = self.document.limits.repeated.saturating_add(self.document.bytes / 8);
+        if count > limit {
+            let what = if what == "faces" { "faces from a file so small" } else { "vertices from a file so small" };
+            return Err(self.document.too_large(what, count, limit));
         }
+        Ok(more)
     }
 
     /// An attribute, if the primitive has it.
@@ -184,11 +214,12 @@ impl Flattener<'_> {
         &self,
         part: &Part,
         semantic: Semantic,
+        purpose: Purpose,
         vertices: usize,
         read: impl Fn(&Accessor) -> Result<T, String>,
     ) -> Result<Option<T>, LoadError> {
         let Some(index) = part.attribute(semantic.clone()) else { return Ok(None) };
-        let values = Accessor::new(self.document, index).and_then(|accessor| {
+        let values = Accessor::new(self.document, index, purpose).and_then(|accessor| {
             if accessor.count != vertices as u64 {
                 return Err(accessor.fault(&format!("{} elements for {vertices} vertices", accessor.count)));
             }
@@ -212,7 +243,7 @@ impl Flattener<'_> {
 
     fn uvs(&mut self, part: &Part, first: usize, vertices: usize, source: UvSource) -> Result<(), LoadError> {
         let semantic = Semantic::TexCoords(source.set);
-        match self.read(part, semantic, vertices, |a| a.floats::<2>(Integers::AsStated))? {
+        match self.read(part, semantic, Purpose::TexCoord, vertices, |a| a.floats::<2>(Integers::AsStated))? {
             Some(uvs) => {
                 self.model.uvs.resize(first, Vec2::ZERO);
                 // What is not finite has no place in a texture.
@@ -236,9 +267,18 @@ impl Flattener<'_> {
             }
             Ok(accessor.floats::<4>(Integers::Normalized)?.into_iter().map(Vec4::from_array).collect::<Vec<_>>())
         };
-        if let Some(colors) = self.read(part, Semantic::Colors(0), vertices, read)? {
+        if let Some(colors) = self.read(part, Semantic::Colors(0), Purpose::Fraction, vertices, read)? {
             self.model.colors.resize(first, Vec4::ONE);
-            self.model.colors.extend(colors.into_iter().map(|c| if c.is_finite() { c } else { Vec4::ONE }));
+            let limit = |c: Vec4| {
+                // Brighter than white is no fault, but its products must stay finite.
+                let c = c.clamp(Vec4::ZERO, Vec4::splat(BRIGHTEST));
+                c.truncate().extend(c.w.min(1.0))
+            };
+            let bad = colors.iter().filter(|c| !c.is_finite() || limit(**c) != **c).count();
+            if bad > 0 {
+                self.warn(part, &format!("{bad} colours are not finite or not within their range"));
+            }
+            self.model.colors.extend(colors.into_iter().map(|c| if c.is_finite() { limit(c) } else { Vec4::ONE }));
         }
         Ok(())
     }
@@ -284,7 +324,12 @@ impl Flattener<'_> {
             let fault = format!("{}: the position of vertex {} is not finite", part.name, vertex as usize - first);
             return Err(self.document.malformed(fault));
         }
-        positions[first..].iter_mut().filter(|p| !p.is_finite()).for_each(|p| *p = Vec3::ZERO);
+        let mut unused = 0;
+        for position in positions[first..].iter_mut().filter(|p| !p.is_finite()) {
+            *position = Vec3::ZERO;
+            unused += 1;
+        }
+        self.warn(part, &format!("{unused} positions are not finite, and no face uses them"));
         Ok(())
     }
 }

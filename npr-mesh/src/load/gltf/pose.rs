@@ -1,7 +1,7 @@
 //! Where the vertices of a mesh are: morph targets, then the skin or the node (glTF 2.0, 3.7).
 
 use super::Document;
-use super::accessor::{Accessor, Integers};
+use super::accessor::{Accessor, Integers, Purpose};
 use super::scene::Nodes;
 use glam::{DMat3, DMat4, DVec3, Vec3};
 use gltf::json::mesh::{Primitive, Semantic};
@@ -49,12 +49,12 @@ pub(super) fn joint_matrices(
     let inverse_binds = match skin.inverse_bind_matrices {
         None => Vec::new(),
         Some(accessor) => {
-            let accessor = Accessor::new(document, accessor).map_err(fail)?;
+            let accessor = Accessor::new(document, accessor, Purpose::Matrices).map_err(fail)?;
             if !accessor.stored || accessor.count < skin.joints.len() as u64 {
                 let fault = format!("{} inverse bind matrices for {} joints", accessor.count, skin.joints.len());
                 return Err(fail(accessor.fault(&fault)));
             }
-            accessor.floats::<16>(Integers::AsStated).map_err(fail)?
+            accessor.first(skin.joints.len() as u64).floats::<16>(Integers::AsStated).map_err(fail)?
         }
     };
     let matrix = |(at, joint): (usize, &Index<json::Node>)| {
@@ -65,6 +65,22 @@ pub(super) fn joint_matrices(
         Ok(inverse_binds.get(at).map_or(*world, |bind| *world * DMat4::from_cols_array(&bind.map(f64::from))))
     };
     skin.joints.iter().enumerate().map(matrix).collect()
+}
+
+/// As many sets of four joints and weights a vertex may have.
+const MOST_INFLUENCE_SETS: u32 = 8;
+
+/// How many accessors [`morph`] reads.
+pub(super) fn targets_in_use(primitive: &Primitive, weights: &[f32]) -> u64 {
+    let targets = primitive.targets.as_deref().unwrap_or(&[]);
+    2 * targets.iter().zip(weights).filter(|(_, weight)| **weight != 0.0).count() as u64
+}
+
+/// How many accessors [`Influences::read`] reads.
+pub(super) fn influence_sets(primitive: &Primitive) -> u64 {
+    let is_influence =
+        |semantic: &&Checked<Semantic>| matches!(semantic, Checked::Valid(Semantic::Joints(_) | Semantic::Weights(_)));
+    primitive.attributes.keys().filter(is_influence).count() as u64
 }
 
 /// Adds the displacements of the morph targets (3.7.2.2 "Morph Targets").
@@ -89,7 +105,7 @@ pub(super) fn morph(
             // Without normals of its own, the mesh gets made ones, from the displaced positions.
             let Some(accessor) = accessor.filter(|_| !values.is_empty()) else { continue };
             let fail = |fault: String| format!("{what} of morph target {number}: {fault}");
-            let accessor = Accessor::new(document, accessor).map_err(fail)?;
+            let accessor = Accessor::new(document, accessor, Purpose::Displacement).map_err(fail)?;
             if accessor.count != values.len() as u64 {
                 let fault = format!("{} elements for {} vertices", accessor.count, values.len());
                 return Err(fail(accessor.fault(&fault)));
@@ -129,9 +145,12 @@ impl Influences {
                 (Some(joints), Some(weights)) => (joints, weights),
                 _ => return Err(format!("only one of JOINTS_{number} and WEIGHTS_{number}")),
             };
-            let open = |what: &str, index| {
+            if number >= MOST_INFLUENCE_SETS {
+                return Err(format!("more than {MOST_INFLUENCE_SETS} sets of JOINTS and WEIGHTS"));
+            }
+            let open = |what: &str, index, purpose| {
                 let fail = |fault: String| format!("{what}_{number}: {fault}");
-                let accessor = Accessor::new(document, index).map_err(fail)?;
+                let accessor = Accessor::new(document, index, purpose).map_err(fail)?;
                 if accessor.count != vertices as u64 {
                     let fault = format!("{} elements for {vertices} vertices", accessor.count);
                     return Err(fail(accessor.fault(&fault)));
@@ -140,8 +159,10 @@ impl Influences {
             };
             let fail = |fault: String| format!("joints and weights {number}: {fault}");
             sets.push(InfluenceSet {
-                joints: open("JOINTS", joints)?.integers::<4>().map_err(fail)?,
-                weights: open("WEIGHTS", weights)?.floats::<4>(Integers::Normalized).map_err(fail)?,
+                joints: open("JOINTS", joints, Purpose::Joints)?.integers::<4>().map_err(fail)?,
+                weights: open("WEIGHTS", weights, Purpose::Fraction)?
+                    .floats::<4>(Integers::Normalized)
+                    .map_err(fail)?,
             });
         }
         Ok((!sets.is_empty()).then_some(Self { sets }))

@@ -1,7 +1,7 @@
 //! tobj's meshes in one [`Model`].
 
 use super::prepare::{Runs, runs_within};
-use crate::triangulate::triangulate_into;
+use crate::triangulate::triangulate_within;
 use crate::{Limits, LoadError, Model};
 use glam::{Vec2, Vec3, Vec4};
 use std::borrow::Cow;
@@ -21,6 +21,8 @@ pub(super) struct Builder<'a> {
     pub absent: &'a [Runs; 2],
     /// The corners with which an object or a group begins.
     pub objects: &'a [u64],
+    /// What may still be spent on polygons that cross themselves.
+    pub ear_tests: usize,
     /// Texture coordinates and colours that were replaced.
     pub repaired: u64,
 }
@@ -30,19 +32,12 @@ impl Builder<'_> {
         LoadError::Malformed { path: self.path.to_owned(), fault }
     }
 
-    /// Adds a mesh as tobj gives it without `single_index`: positions, and one index into each array per corner.
+    /// Adds a mesh as tobj gives it without `single_index`: positions, known to be finite, and one index into each array
+    /// per corner.
     pub fn add(&mut self, mesh: &tobj::Mesh, material: u32) -> Result<(), LoadError> {
         let base = self.model.positions.len();
         let positions = mesh.positions.as_chunks::<3>().0;
         let corners = mesh.indices.len();
-        for (which, &[x, y, z]) in positions.iter().enumerate() {
-            if !(x.is_finite() && y.is_finite() && z.is_finite()) {
-                let (first, of) = (which + 1, positions.len());
-                return Err(
-                    self.malformed(format!("vertex ({x}, {y}, {z}), number {first} of {of} in use, is not finite"))
-                );
-            }
-        }
         if mesh.indices.iter().any(|&i| i as usize >= positions.len()) {
             return Err(self.malformed("a face uses a vertex that is not there".to_owned()));
         }
@@ -161,7 +156,7 @@ impl Builder<'_> {
                 } else {
                     outline.clear();
                     outline.extend(corners.iter().map(|&v| model.positions[(base + v) as usize]));
-                    triangulate_into(&outline, &mut triangles);
+                    triangulate_within(&outline, &mut triangles, &mut self.ear_tests);
                     model.faces.extend(triangles.iter().map(|t| t.map(|i| base + corners[i as usize])));
                 }
                 if !objects.is_empty() {

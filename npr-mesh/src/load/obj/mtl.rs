@@ -1,7 +1,8 @@
 //! Material files and their textures.
 
-use crate::load::{image_file, read_file};
-use crate::{AlphaMode, Limits, Material, Model, Texture, Wrap};
+use crate::load::external::{External, meanings, shortened};
+use crate::load::image_file;
+use crate::{AlphaMode, LoadError, Material, Model, Texture, Wrap};
 use glam::Vec3;
 use std::collections::{BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
@@ -13,7 +14,9 @@ pub(super) struct MtlMaterial {
 }
 
 struct TextureName {
-    path: PathBuf,
+    /// The names that may be meant, and as it is written.
+    names: Vec<PathBuf>,
+    written: String,
     wrap: Wrap,
 }
 
@@ -25,48 +28,91 @@ pub(super) struct Library {
 }
 
 impl Library {
-    /// The names of the materials that a `mtllib` line adds.
-    pub fn read(&mut self, folder: &Path, names: &str, limits: &Limits) -> Vec<String> {
-        // The line can list several files, and a file's name can have spaces.
-        let whole = beside(folder, names);
-        let files =
-            if whole.is_file() { vec![whole] } else { names.split_whitespace().map(|n| beside(folder, n)).collect() };
-        let first = self.materials.len();
-        for file in files {
-            // An endless file of `mtllib` lines would otherwise read it as often.
-            if !self.read.insert(file.clone()) {
-                continue;
+    /// Adds the materials of the files on a `mtllib` line; a file that cannot be read is a warning.
+    ///
+    /// # Errors
+    /// Only a limit that is exceeded.
+    pub fn read(&mut self, external: &External, line: &str) -> Result<(), LoadError> {
+        let line = line.trim();
+        // The line can list several files, and a file's name can have spaces; a comment may follow.
+        let files = match find(external, line) {
+            Ok(whole) => vec![Ok(whole)],
+            Err(_) => {
+                let names = line.split_once(" #").map_or(line, |(names, _)| names);
+                names.split_whitespace().map(|name| find(external, name)).collect()
             }
-            match read_file(&file, limits) {
-                Ok(bytes) => {
-                    let folder = file.parent().unwrap_or(Path::new(""));
-                    read_materials(&String::from_utf8_lossy(&bytes), folder, &mut self.materials, &mut self.warnings);
+        };
+        for file in files {
+            let bytes = file.and_then(|file| {
+                // An endless file of `mtllib` lines would otherwise read it as often.
+                Ok(if self.read.insert(file.clone()) { Some((external.read(&file)?, file)) } else { None })
+            });
+            match bytes {
+                Ok(None) => {}
+                Ok(Some((bytes, file))) => {
+                    if std::str::from_utf8(&bytes).is_err() {
+                        let name = shortened(&file.file_name().unwrap_or_default().to_string_lossy());
+                        self.warnings.push(format!("material file {name}: it is not UTF-8 throughout"));
+                    }
+                    let text = String::from_utf8_lossy(&bytes);
+                    let first = self.materials.len();
+                    read_materials(&text, &mut self.materials, &mut self.warnings);
+                    for texture in self.materials[first..].iter_mut().filter_map(|m| m.texture.as_mut()) {
+                        texture.names = external.beside(&file, std::mem::take(&mut texture.names));
+                    }
                 }
-                Err(error) => self.warnings.push(format!("material file {error}")),
+                Err(error @ LoadError::TooLarge { .. }) => return Err(error),
+                Err(error) => self.warnings.push(format!("material file {}", without_model(external.model, &error))),
             }
         }
-        self.materials[first..].iter().map(|m| m.material.name.clone()).collect()
+        Ok(())
     }
 }
 
-/// A file by its name in another file: relative to that one's folder. Of an absolute name, which comes from someone
-/// else's machine, only the last part counts.
-fn beside(folder: &Path, name: &str) -> PathBuf {
+/// The numbers of materials by name; of several by one name, the first.
+pub(super) struct Names {
+    whole: HashMap<String, usize>,
+    /// Without the comment behind it.
+    bare: HashMap<String, usize>,
+}
+
+impl Names {
+    pub fn new(materials: &[MtlMaterial]) -> Self {
+        let mut names = Self { whole: HashMap::new(), bare: HashMap::new() };
+        for (number, name) in materials.iter().map(|m| m.material.name.as_str()).enumerate() {
+            names.whole.entry(name.to_owned()).or_insert(number);
+            names.bare.entry(without_comment(name).to_owned()).or_insert(number);
+        }
+        names
+    }
+
+    /// The material that a `usemtl` line names. A comment behind the name, there or where the material is defined, is
+    /// part of the name only where that is found.
+    pub fn find(&self, name: &str) -> Option<usize> {
+        let bare = without_comment(name);
+        self.whole.get(name).or_else(|| self.whole.get(bare)).or_else(|| self.bare.get(bare)).copied()
+    }
+}
+
+fn without_comment(name: &str) -> &str {
+    name.split_once(" # ").map_or(name, |(bare, _)| bare).trim_end()
+}
+
+/// An error as a line of warnings, which the name of the model goes before.
+fn without_model(model: &Path, error: &LoadError) -> String {
+    match error {
+        LoadError::Outside { path, name } if path == model => format!("\"{name}\" leads out of the model's folder"),
+        other => other.to_string(),
+    }
+}
+
+fn find(external: &External, name: &str) -> Result<PathBuf, LoadError> {
     let name = name.trim().trim_matches('"');
-    let is_absolute = name.starts_with(['/', '\\']) || name.as_bytes().get(1) == Some(&b':');
-    let direct = folder.join(name.trim_start_matches(['/', '\\']));
-    if !is_absolute && (direct.is_file() || !name.contains('\\')) {
-        return direct;
-    }
-    if is_absolute {
-        folder.join(name.rsplit(['/', '\\']).next().unwrap_or(name))
-    } else {
-        folder.join(name.replace('\\', "/"))
-    }
+    external.find(&meanings(name).unwrap_or_default())
 }
 
 /// Adds the materials of an MTL file: `newmtl`, `Kd`, `d`, `Tr` and `map_Kd`; the rest is for other light models.
-fn read_materials(text: &str, folder: &Path, materials: &mut Vec<MtlMaterial>, warnings: &mut Vec<String>) {
+fn read_materials(text: &str, materials: &mut Vec<MtlMaterial>, warnings: &mut Vec<String>) {
     let first = materials.len();
     // Per material whether it has a `Kd` and a `d` of its own.
     let mut given = Vec::new();
@@ -87,34 +133,37 @@ fn read_materials(text: &str, folder: &Path, materials: &mut Vec<MtlMaterial>, w
         else {
             continue;
         };
-        let name = &material.name;
+        let name = shortened(&material.name);
+        let shown = shortened(rest);
         let numbers = || rest.split_whitespace().map(|w| w.parse::<f32>().ok().filter(|x| x.is_finite()));
+        let mut color = None;
         match keyword {
             "Kd" => match numbers().collect::<Vec<_>>()[..] {
                 // One number stands for all three.
-                [Some(grey)] => {
-                    (material.base_color, *has_color) =
-                        (linear_from_srgb(Vec3::splat(grey)).extend(material.base_color.w), true);
-                }
-                [Some(r), Some(g), Some(b), ..] => {
-                    (material.base_color, *has_color) =
-                        (linear_from_srgb(Vec3::new(r, g, b)).extend(material.base_color.w), true);
-                }
-                _ => warnings.push(format!("material {name:?}: Kd {rest:?} is not understood")),
+                [Some(grey)] => color = Some(Vec3::splat(grey)),
+                [Some(r), Some(g), Some(b), ..] => color = Some(Vec3::new(r, g, b)),
+                _ => warnings.push(format!("material \"{name}\": Kd \"{shown}\" is not understood")),
             },
             // The number comes last; `-halo` may stand before it.
             "d" => match numbers().next_back().flatten() {
                 Some(alpha) => (material.base_color.w, *has_dissolve) = (alpha.clamp(0.0, 1.0), true),
-                None => warnings.push(format!("material {name:?}: d {rest:?} is not understood")),
+                None => warnings.push(format!("material \"{name}\": d \"{shown}\" is not understood")),
             },
             // Exporters disagree about `Tr`: where there is a `d` it is that which counts.
             "Tr" if !*has_dissolve => match numbers().next_back().flatten() {
                 Some(clear) => material.base_color.w = (1.0 - clear).clamp(0.0, 1.0),
-                None => warnings.push(format!("material {name:?}: Tr {rest:?} is not understood")),
+                None => warnings.push(format!("material \"{name}\": Tr \"{shown}\" is not understood")),
             },
-            "map_Kd" => *texture = texture_name(rest, folder),
-            "map_d" => warnings.push(format!("material {name:?}: map_d is not supported")),
+            "map_Kd" => *texture = texture_name(rest),
+            "map_d" => warnings.push(format!("material \"{name}\": map_d is not supported")),
             _ => {}
+        }
+        if let Some(encoded) = color {
+            let clamped = encoded.clamp(Vec3::ZERO, Vec3::ONE);
+            if clamped != encoded {
+                warnings.push(format!("material \"{name}\": Kd \"{shown}\" is not within 0 to 1"));
+            }
+            (material.base_color, *has_color) = (linear_from_srgb(clamped).extend(material.base_color.w), true);
         }
     }
     for (MtlMaterial { material, texture }, (has_color, _)) in materials[first..].iter_mut().zip(given) {
@@ -128,7 +177,7 @@ fn read_materials(text: &str, folder: &Path, materials: &mut Vec<MtlMaterial>, w
 }
 
 /// The file that a `map_…` line names behind its options.
-fn texture_name(line: &str, folder: &Path) -> Option<TextureName> {
+fn texture_name(line: &str) -> Option<TextureName> {
     let mut rest = line.trim();
     let mut wrap = Wrap::Repeat;
     while rest.starts_with('-') {
@@ -155,37 +204,61 @@ fn texture_name(line: &str, folder: &Path) -> Option<TextureName> {
             rest = after.trim_start();
         }
     }
-    (!rest.is_empty()).then(|| TextureName { path: beside(folder, rest), wrap })
+    let name = rest.trim_matches('"');
+    meanings(name).map(|names| TextureName { names, written: shortened(name), wrap })
 }
 
-/// Moves the materials over, each texture file read once per way of wrapping.
-pub(super) fn load_textures(
+/// Moves the materials over, with the textures of those that are `used`, each file read once per way of wrapping.
+///
+/// # Errors
+/// Only a limit that is exceeded; a texture that is not there or broken is a warning.
+pub(super) fn move_materials(
     materials: Vec<MtlMaterial>,
+    used: &[bool],
     model: &mut Model,
     warnings: &mut Vec<String>,
-    limits: &Limits,
-) {
-    let mut known: HashMap<(PathBuf, bool), Option<u32>> = HashMap::new();
-    for MtlMaterial { mut material, texture } in materials {
-        if let Some(TextureName { path, wrap }) = texture {
-            material.texture = *known.entry((path.clone(), wrap == Wrap::Clamp)).or_insert_with(|| {
-                let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
-                let decoded =
-                    read_file(&path, limits).and_then(|bytes| image_file::decode(&bytes, &name, &path, limits));
-                match decoded {
-                    Ok((width, height, rgba8)) => {
-                        model.textures.push(Texture { name, width, height, rgba8, wrap: [wrap; 2], smooth: true });
-                        Some(model.textures.len() as u32 - 1)
-                    }
-                    Err(error) => {
-                        warnings.push(format!("texture {error}"));
-                        None
-                    }
+    external: &External,
+) -> Result<(), LoadError> {
+    let mut known: HashMap<(String, bool), Option<u32>> = HashMap::new();
+    let mut texels = 0;
+    for (MtlMaterial { mut material, texture }, used) in materials.into_iter().zip(used) {
+        if let Some(TextureName { names, written, wrap }) = texture.filter(|_| *used) {
+            let key = (names[0].to_string_lossy().into_owned(), wrap == Wrap::Clamp);
+            material.texture = match known.get(&key) {
+                Some(&known) => known,
+                None => {
+                    let texture =
+                        external.find(&names).and_then(|file| read_texture(&file, wrap, &mut texels, external));
+                    let texture = match texture {
+                        Ok(texture) => {
+                            model.textures.push(texture);
+                            Some(model.textures.len() as u32 - 1)
+                        }
+                        Err(error @ LoadError::TooLarge { .. }) => return Err(error),
+                        Err(LoadError::Outside { .. }) => {
+                            warnings.push(format!("texture \"{written}\" leads out of the model's folder"));
+                            None
+                        }
+                        Err(error) => {
+                            warnings.push(format!("texture {error}"));
+                            None
+                        }
+                    };
+                    known.insert(key, texture);
+                    texture
                 }
-            });
+            };
         }
         model.materials.push(material);
     }
+    Ok(())
+}
+
+fn read_texture(file: &Path, wrap: Wrap, texels: &mut u64, external: &External) -> Result<Texture, LoadError> {
+    let name = file.file_name().unwrap_or(file.as_os_str()).to_string_lossy().into_owned();
+    let bytes = external.read(file)?;
+    let (width, height, rgba8) = image_file::decode(&bytes, &shortened(&name), file, external.limits, texels)?;
+    Ok(Texture { name, width, height, rgba8, wrap: [wrap; 2], smooth: true })
 }
 
 pub(super) fn linear_from_srgb(encoded: Vec3) -> Vec3 {

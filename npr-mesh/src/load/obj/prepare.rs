@@ -1,9 +1,12 @@
 //! A text that tobj reads as it is meant.
 
+use super::lines::{
+    Corners, count_words, first_words, line_length, number, plain_face, plain_vertex, trim_end, words_of,
+};
+use crate::edges::MOST_FACES;
 use crate::{Limits, LoadError};
 use std::borrow::Cow;
 use std::collections::BTreeSet;
-use std::io::BufRead;
 use std::ops::Range;
 use std::path::Path;
 
@@ -23,6 +26,8 @@ pub(super) struct Prepared {
     /// Corners without texture coordinate, and without normal, numbered through all faces that tobj is given.
     pub absent: [Runs; 2],
     pub materials_used: BTreeSet<String>,
+    /// What the `mtllib` lines name.
+    pub material_files: Vec<String>,
     /// The corners with which an object or a group begins, numbered likewise, ascending.
     pub objects: Vec<u64>,
     pub warnings: Vec<String>,
@@ -60,9 +65,41 @@ pub(super) fn runs_within(runs: &Runs, range: &Range<u64>) -> impl Iterator<Item
         .map(move |run| run.start.max(start)..run.end.min(end))
 }
 
+/// Keywords whose lines say nothing about the faces and their materials.
+const PASSED_OVER: [&[u8]; 28] = [
+    b"s",
+    b"mg",
+    b"vp",
+    b"vw",
+    b"cstype",
+    b"deg",
+    b"bmat",
+    b"step",
+    b"parm",
+    b"trim",
+    b"hole",
+    b"scrv",
+    b"sp",
+    b"end",
+    b"con",
+    b"bevel",
+    b"c_interp",
+    b"d_interp",
+    b"lod",
+    b"maplib",
+    b"usemap",
+    b"shadow_obj",
+    b"trace_obj",
+    b"ctech",
+    b"stech",
+    b"bsp",
+    b"bzp",
+    b"cdc",
+];
+
 const ARRAYS: [&str; 3] = ["vertex", "texture coordinate", "normal"];
 
-/// The `v`, `vt`, `vn`, `f`, `usemtl` and `mtllib` lines in a form that tobj reads as it is meant, everything
+/// The `v`, `vt`, `vn`, `f` and `usemtl` lines, each in its place, in a form that tobj reads as it is meant, everything
 /// checked that it would not check.
 pub(super) fn prepare(mut bytes: Vec<u8>, path: &Path, limits: &Limits) -> Result<Prepared, LoadError> {
     let malformed = |line: u64, fault: String| LoadError::Malformed {
@@ -72,19 +109,26 @@ pub(super) fn prepare(mut bytes: Vec<u8>, path: &Path, limits: &Limits) -> Resul
     if bytes.contains(&0) {
         return Err(malformed(0, "not a text file".to_owned()));
     }
-    if bytes.starts_with(b"\xef\xbb\xbf") {
-        bytes[..3].fill(b' ');
+    let mut repaired = Repaired::default();
+    // More than one where files were put together.
+    while bytes[3 * repaired.marks as usize..].starts_with(b"\xef\xbb\xbf") {
+        bytes[3 * repaired.marks as usize..][..3].fill(b' ');
+        repaired.marks += 1;
     }
-    // Lines ended so before 2001.
-    if !bytes.contains(&b'\n') {
-        bytes.iter_mut().filter(|b| **b == b'\r').for_each(|b| *b = b'\n');
+    // Lines ended so before 2001, and do here and there in files put together since.
+    let end = if bytes.contains(&b'\r') { bytes.len() } else { 0 };
+    for at in 0..end {
+        if bytes[at] == b'\r' && bytes.get(at + 1) != Some(&b'\n') {
+            bytes[at] = b'\n';
+        }
     }
 
     let mut counts = Counts::default();
     let mut absent = [Runs::new(), Runs::new()];
     let mut materials_used = BTreeSet::new();
+    let mut material_files = Vec::new();
+    let mut material_files_known = BTreeSet::new();
     let mut objects = Vec::new();
-    let mut repaired = Repaired::default();
     // Per array the highest number that a face names, and that face's line.
     let mut highest = [(0u64, 0u64); 3];
     let mut edit = Edit { bytes: &bytes, out: Vec::new(), copied: 0 };
@@ -135,6 +179,10 @@ pub(super) fn prepare(mut bytes: Vec<u8>, path: &Path, limits: &Limits) -> Resul
             joined.extend_from_slice(line);
             line = trim_end(&joined);
             rewritten = true;
+            repaired.continued += 1;
+        }
+        if !line.is_ascii() && std::str::from_utf8(line).is_err() {
+            repaired.not_utf8 += 1;
         }
         let bad = |fault: String| malformed(first_line_number, fault);
         let trimmed = line.trim_ascii_start();
@@ -185,7 +233,8 @@ pub(super) fn prepare(mut bytes: Vec<u8>, path: &Path, limits: &Limits) -> Resul
                 }
             }
             b"vn" => counts.arrays[2] += 1,
-            b"f" => {
+            // `fo` is what faces were in the format's first version.
+            b"f" | b"fo" => {
                 let mut corners = 0u64;
                 let corners_before = counts.corners;
                 let mut outline = Corners { rest };
@@ -228,15 +277,28 @@ pub(super) fn prepare(mut bytes: Vec<u8>, path: &Path, limits: &Limits) -> Resul
                     line = &line[..line.len() - outline.rest.len()];
                     rewritten = true;
                 }
+                if keyword == b"fo" {
+                    edit.replace(begin, at, &[b"f", &line[word_length..]].concat());
+                    continue;
+                }
             }
-            b"usemtl" | b"mtllib" => {
+            b"mtllib" => {
+                let names = String::from_utf8_lossy(rest.trim_ascii());
+                if !names.is_empty() && material_files_known.insert(names.to_string()) {
+                    material_files.push(names.into_owned());
+                }
+                edit.replace(begin, at, b"");
+                continue;
+            }
+            b"usemtl" => {
                 // Names can have any bytes; tobj takes UTF-8 only, and a single space before them.
                 let name = String::from_utf8_lossy(rest.trim_ascii());
                 if name.is_empty() {
+                    repaired.nameless += 1;
                     edit.replace(begin, at, b"");
                     continue;
                 }
-                if keyword == b"usemtl" && !materials_used.contains(name.as_ref()) {
+                if !materials_used.contains(name.as_ref()) {
                     materials_used.insert(name.to_string());
                 }
                 if rewritten || matches!(name, Cow::Owned(_)) || rest[0] != b' ' {
@@ -256,6 +318,13 @@ pub(super) fn prepare(mut bytes: Vec<u8>, path: &Path, limits: &Limits) -> Resul
             [] => continue,
             [b'#', ..] if line.is_ascii() => continue,
             _ => {
+                match keyword {
+                    b"l" | b"p" => repaired.points_and_lines += 1,
+                    b"curv" | b"curv2" | b"surf" => repaired.free_forms += 1,
+                    b"call" | b"csh" => repaired.calls += 1,
+                    _ if keyword[0] == b'#' || PASSED_OVER.contains(&keyword) => {}
+                    _ => repaired.unknown += 1,
+                }
                 edit.replace(begin, at, b"");
                 continue;
             }
@@ -267,7 +336,7 @@ pub(super) fn prepare(mut bytes: Vec<u8>, path: &Path, limits: &Limits) -> Resul
 
     for (what, count, limit) in [
         ("vertices", counts.arrays.iter().copied().max().unwrap_or(0), limits.vertices),
-        ("faces", counts.triangles, limits.faces),
+        ("faces", counts.triangles, limits.faces.min(MOST_FACES as u64)),
     ] {
         if count > limit {
             return Err(LoadError::TooLarge { path: path.to_owned(), what, count, limit });
@@ -285,110 +354,38 @@ pub(super) fn prepare(mut bytes: Vec<u8>, path: &Path, limits: &Limits) -> Resul
         text = color_all(&text);
         repaired.uncolored = counts.arrays[0] - counts.colored;
     }
-    Ok(Prepared { text, counts, absent, materials_used, objects, warnings: repaired.warnings() })
-}
-
-/// The length, with its end, of a line of `v`, a space and three numbers.
-fn plain_vertex(bytes: &[u8]) -> Option<usize> {
-    const OTHER: u8 = 0;
-    const IN_NUMBER: u8 = 1;
-    const SPACE: u8 = 2;
-    const END: u8 = 3;
-    const CLASS: [u8; 256] = {
-        let mut class = [OTHER; 256];
-        let mut i = 0;
-        while i < 256 {
-            class[i] = match i as u8 {
-                b'0'..=b'9' | b'+' | b'-' | b'.' | b'e' | b'E' => IN_NUMBER,
-                b' ' | b'\t' | b'\r' => SPACE,
-                b'\n' => END,
-                _ => OTHER,
-            };
-            i += 1;
-        }
-        class
-    };
-    let mut words = 0;
-    let mut before = SPACE;
-    for (at, &byte) in bytes.strip_prefix(b"v ")?.iter().enumerate() {
-        let class = CLASS[byte as usize];
-        if class == END || class == OTHER {
-            return (class == END && words == 3).then_some(at + 3);
-        }
-        words += u32::from(class < before);
-        before = class;
-    }
-    None
-}
-
-/// A line of `f` that has three corners and more, all with the same kinds of positive numbers, and nothing else.
-struct PlainFace {
-    /// With its end.
-    length: usize,
-    corners: u64,
-    /// Of vertex, texture coordinate and normal the highest number, 0 where the face has none.
-    highest: [u64; 3],
-}
-
-#[inline]
-fn plain_face(bytes: &[u8]) -> Option<PlainFace> {
-    let mut rest = bytes.strip_prefix(b"f ")?;
-    let mut highest = [0u64; 3];
-    let mut corners = 0;
-    loop {
-        while let [b' ', after @ ..] = rest {
-            rest = after;
-        }
-        if let [b'\n', after @ ..] | [b'\r', b'\n', after @ ..] = rest {
-            return (corners >= 3).then_some(PlainFace { length: bytes.len() - after.len(), corners, highest });
-        }
-        let mut kind = 0;
-        loop {
-            let mut value = 0u64;
-            let mut digits = 0;
-            // Ten digits could be too large a number.
-            while let [digit @ b'0'..=b'9', after @ ..] = rest
-                && digits < 10
-            {
-                value = value * 10 + u64::from(digit - b'0');
-                digits += 1;
-                rest = after;
-            }
-            let may_be_absent = kind == 1 && digits == 0;
-            if (value == 0 && !may_be_absent) || digits > 9 || (corners > 0 && (highest[kind] == 0) != (value == 0)) {
-                return None;
-            }
-            highest[kind] = highest[kind].max(value);
-            match rest {
-                [b'/', after @ ..] if kind < 2 => {
-                    kind += 1;
-                    rest = after;
-                }
-                [b' ' | b'\n' | b'\r', ..] => break,
-                _ => return None,
-            }
-        }
-        // The first corner says which kinds there are.
-        if highest[kind + 1..].iter().any(|&highest| highest > 0) {
-            return None;
-        }
-        corners += 1;
-    }
+    Ok(Prepared { text, counts, absent, materials_used, material_files, objects, warnings: repaired.warnings() })
 }
 
 #[derive(Default)]
 struct Repaired {
+    marks: u64,
+    continued: u64,
+    not_utf8: u64,
     short_faces: u64,
     vertex_words: u64,
     uncolored: u64,
+    nameless: u64,
+    points_and_lines: u64,
+    free_forms: u64,
+    calls: u64,
+    unknown: u64,
 }
 
 impl Repaired {
     fn warnings(&self) -> Vec<String> {
         [
+            (self.marks, "byte-order marks at the beginning are passed over"),
+            (self.continued, "lines go on behind a backslash: they are joined"),
+            (self.not_utf8, "lines are not UTF-8: what is not is passed over"),
             (self.short_faces, "faces with fewer than 3 corners are left out"),
             (self.vertex_words, "vertices have 5 numbers or more than 6: what is too much is passed over"),
             (self.uncolored, "vertices have no colour where others have one: they are white"),
+            (self.nameless, "usemtl lines without a name are passed over"),
+            (self.points_and_lines, "points and lines are left out"),
+            (self.free_forms, "curves and surfaces are left out"),
+            (self.calls, "calls of other files are not followed"),
+            (self.unknown, "lines begin with none of the format's keywords: they are passed over"),
         ]
         .iter()
         .filter(|(count, _)| *count > 0)
@@ -406,11 +403,13 @@ struct Edit<'a> {
 }
 
 impl Edit<'_> {
-    /// The lines from `begin` up to `end`, with their line ends, become one line.
+    /// The lines from `begin` up to `end`, with their line ends, become one line; empty ones behind it keep the numbers
+    /// of those that follow.
     fn replace(&mut self, begin: usize, end: usize, line: &[u8]) {
         self.out.extend_from_slice(&self.bytes[self.copied..begin]);
         self.out.extend_from_slice(line);
-        self.out.push(b'\n');
+        let lines = self.bytes[begin..end].iter().filter(|b| **b == b'\n').count();
+        self.out.resize(self.out.len() + lines.max(1), b'\n');
         self.copied = end;
     }
 
@@ -419,95 +418,6 @@ impl Edit<'_> {
             self.out.extend_from_slice(&self.bytes[self.copied..]);
             self.out
         })
-    }
-}
-
-/// With the line end.
-fn line_length(mut bytes: &[u8]) -> usize {
-    bytes.skip_until(b'\n').unwrap_or(0)
-}
-
-fn trim_end(line: &[u8]) -> &[u8] {
-    line.trim_ascii_end()
-}
-
-/// How many words there are before a comment, and where that begins.
-fn count_words(line: &[u8]) -> (usize, usize) {
-    let mut words = 0;
-    let mut in_space = true;
-    for (i, &b) in line.iter().enumerate() {
-        if b == b'#' {
-            return (words, i);
-        }
-        let is_space = b <= b' ';
-        words += usize::from(in_space && !is_space);
-        in_space = is_space;
-    }
-    (words, line.len())
-}
-
-fn words_of(line: &[u8]) -> impl Iterator<Item = &[u8]> {
-    line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty())
-}
-
-fn first_words(line: &[u8], count: usize) -> Vec<u8> {
-    words_of(line).take(count).collect::<Vec<_>>().join(&b' ')
-}
-
-fn number(word: &[u8]) -> Option<f32> {
-    std::str::from_utf8(word).ok()?.parse().ok()
-}
-
-/// The corners of an `f` line that are still to come; a comment in the end.
-struct Corners<'a> {
-    rest: &'a [u8],
-}
-
-impl Corners<'_> {
-    /// Numbers of vertex, texture coordinate and normal as in the file, 0 where there is none.
-    #[inline]
-    fn next_corner(&mut self) -> Result<Option<[i64; 3]>, &'static str> {
-        let mut bytes = self.rest;
-        while let [b' ' | b'\t' | b'\r' | 12, after @ ..] = bytes {
-            bytes = after;
-        }
-        if matches!(bytes, [] | [b'#', ..]) {
-            self.rest = bytes;
-            return Ok(None);
-        }
-        let mut corner = [0i64; 3];
-        let mut kind = 0;
-        loop {
-            let negative = bytes.first() == Some(&b'-');
-            let signed = negative || bytes.first() == Some(&b'+');
-            if signed {
-                bytes = &bytes[1..];
-            }
-            let mut value = 0i64;
-            let mut digits = 0;
-            while let [digit @ b'0'..=b'9', after @ ..] = bytes {
-                value = value * 10 + i64::from(digit - b'0');
-                digits += 1;
-                bytes = after;
-                if value > i64::from(u32::MAX) {
-                    return Err("a face with a number that is too large");
-                }
-            }
-            if signed && digits == 0 {
-                return Err("a face corner that is no number");
-            }
-            corner[kind] = if negative { -value } else { value };
-            match bytes {
-                [] | [b' ' | b'\t' | b'\r' | 12 | b'#', ..] => break,
-                [b'/', after @ ..] if kind < 2 => {
-                    kind += 1;
-                    bytes = after;
-                }
-                _ => return Err("a face corner that is no number"),
-            }
-        }
-        self.rest = bytes;
-        Ok(Some(corner))
     }
 }
 

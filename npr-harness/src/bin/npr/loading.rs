@@ -1,0 +1,53 @@
+//! The flags of all commands that load models.
+
+use clap::Args;
+use npr_mesh::{Limits, LoadOptions};
+use std::path::PathBuf;
+
+#[derive(Args, Clone, Default)]
+pub struct Loading {
+    /// A folder in which textures, materials and buffers of a model may lie besides the model's own folder.
+    #[arg(long, value_name = "DIR")]
+    asset_root: Option<PathBuf>,
+    /// Accept larger files, or smaller ones only: file-bytes, vertices, faces, repeated, polygon-corners, nodes,
+    /// instances, displacements, texels or texels-in-all, and how many at most. May be repeated.
+    #[arg(long, value_name = "NAME=NUMBER", value_parser = parse_limit)]
+    limit: Vec<(String, u64)>,
+}
+
+impl Loading {
+    pub fn options(&self) -> LoadOptions {
+        let mut limits = Limits::default();
+        for (name, most) in &self.limit {
+            if let Some(limit) = limit_mut(&mut limits, name) {
+                *limit = *most;
+            }
+        }
+        LoadOptions { limits, asset_root: self.asset_root.clone(), ..LoadOptions::default() }
+    }
+}
+
+fn limit_mut<'a>(limits: &'a mut Limits, name: &str) -> Option<&'a mut u64> {
+    Some(match name {
+        "file-bytes" => &mut limits.file_bytes,
+        "vertices" => &mut limits.vertices,
+        "faces" => &mut limits.faces,
+        "repeated" => &mut limits.repeated,
+        "polygon-corners" => &mut limits.polygon_corners,
+        "nodes" => &mut limits.nodes,
+        "instances" => &mut limits.instances,
+        "displacements" => &mut limits.displacements,
+        "texels" => &mut limits.texels,
+        "texels-in-all" => &mut limits.texels_in_all,
+        _ => return None,
+    })
+}
+
+fn parse_limit(text: &str) -> Result<(String, u64), String> {
+    let (name, number) = text.split_once('=').ok_or("expected NAME=NUMBER, such as vertices=200000000")?;
+    if limit_mut(&mut Limits::default(), name).is_none() {
+        return Err(format!("{name:?} is no limit (see --help)"));
+    }
+    let number = number.parse().map_err(|_| format!("{number:?} is not a whole number"))?;
+    Ok((name.to_owned(), number))
+}
