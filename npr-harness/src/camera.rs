@@ -81,7 +81,11 @@ impl Camera {
         let empty = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         let (low, high) = points.clone().map(in_view).fold(empty, |(l, h), p| (l.min(p), h.max(p)));
         let middle = (low + high) / 2.0;
-        let size = (high - low).max_element().max(f64::MIN_POSITIVE);
+        let size = match (high - low).max_element() {
+            // All at one place: any distance from it is as good, if the eye is not at the same place for rounding.
+            0.0 => middle.length().max(1.0),
+            size => size,
+        };
         let center = right * middle.x + up * middle.y + back * middle.z;
         match framing.fov_y_rad {
             Some(fov_y_rad) => {

@@ -5,10 +5,10 @@
 //! counts, with and without them, are kept, so that what was exempt can be stated and bounded.
 
 use image::{ExtendedColorType, ImageEncoder, ImageFormat, codecs::png::PngEncoder};
+use npr_hatch::write_file::write_file;
 use std::{
     fs,
     path::{Path, PathBuf},
-    sync::atomic::{AtomicU64, Ordering},
 };
 
 /// A picture in memory.
@@ -163,7 +163,7 @@ impl Image {
         Self::new(decoded.width(), decoded.height(), decoded.into_raw())
     }
 
-    /// Writes a PNG. It is written under another name beside and then renamed, so that there is never half a file.
+    /// Writes a PNG, whole or not at all ([`write_file`]).
     ///
     /// # Errors
     /// [`ImageError::Encode`] and [`ImageError::Write`], which name the file.
@@ -185,15 +185,7 @@ fn byte_count(width: u32, height: u32) -> Option<usize> {
 }
 
 fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), ImageError> {
-    static NUMBER: AtomicU64 = AtomicU64::new(0);
-    let mut name = path.file_name().unwrap_or_default().to_owned();
-    name.push(format!(".{}-{}.part", std::process::id(), NUMBER.fetch_add(1, Ordering::Relaxed)));
-    let temporary = path.with_file_name(name);
-    fs::write(&temporary, bytes).and_then(|()| fs::rename(&temporary, path)).map_err(|source| {
-        // The first error is the one to report.
-        let _ = fs::remove_file(&temporary);
-        ImageError::Write { path: path.to_owned(), source }
-    })
+    write_file(path, bytes).map_err(|source| ImageError::Write { path: path.to_owned(), source })
 }
 
 /// At most `count` pixels may differ by more than `magnitude` in any channel.

@@ -138,6 +138,12 @@ pub enum HarnessError {
         /// Why.
         source: std::io::Error,
     },
+    /// A picture that would be written over what it is made of.
+    #[error("{}: it is read for the picture, and would be overwritten by it", path.display())]
+    Overwrites {
+        /// Which file.
+        path: std::path::PathBuf,
+    },
     /// A table that could not be written as JSON.
     #[error("could not write JSON: {0}")]
     Json(#[from] serde_json::Error),

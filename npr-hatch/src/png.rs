@@ -1,11 +1,13 @@
 //! Pictures of strokes from PNG files, and maps into them.
 
 use std::fs;
+use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
-use image::{DynamicImage, GrayImage, ImageError, Luma};
+use image::{DynamicImage, GrayImage, ImageError, ImageFormat, Luma};
 
 use crate::sheet::Sheet;
+use crate::write_file::write_file;
 use crate::{HatchError, StrokeImage, Tam};
 
 type Gray16 = image::ImageBuffer<Luma<u16>, Vec<u16>>;
@@ -58,12 +60,12 @@ pub fn write_images(tam: &Tam, folder: impl AsRef<Path>) -> Result<Vec<PathBuf>,
     Ok(paths)
 }
 
-/// Writes 8-bit gray texels as a PNG file.
+/// Writes 8-bit gray texels as a PNG file, whole or not at all ([`write_file`]).
 pub fn write_gray(path: impl AsRef<Path>, width: u32, height: u32, texels: &[u8]) -> Result<(), HatchError> {
     let path = path.as_ref();
     let image = GrayImage::from_raw(width, height, texels.to_vec());
     let image = image.ok_or(HatchError::Texels { width, height, texels: texels.len() })?;
-    image.save(path).map_err(|source| HatchError::Image { path: path.into(), source })
+    save(path, |to| image.write_to(to, ImageFormat::Png))
 }
 
 /// Writes a sheet as a PNG file.
@@ -76,5 +78,13 @@ pub fn write_gray16(path: impl AsRef<Path>, width: u32, height: u32, texels: &[u
     let path = path.as_ref();
     let image = Gray16::from_raw(width, height, texels.to_vec());
     let image = image.ok_or(HatchError::Texels { width, height, texels: texels.len() })?;
-    image.save(path).map_err(|source| HatchError::Image { path: path.into(), source })
+    save(path, |to| image.write_to(to, ImageFormat::Png))
+}
+
+/// Encodes a picture, and only then touches the file.
+fn save(path: &Path, encode: impl Fn(&mut Cursor<Vec<u8>>) -> Result<(), ImageError>) -> Result<(), HatchError> {
+    let failed = |source| HatchError::Image { path: path.into(), source };
+    let mut bytes = Cursor::new(Vec::new());
+    encode(&mut bytes).map_err(failed)?;
+    write_file(path, bytes.get_ref()).map_err(|error| failed(error.into()))
 }

@@ -12,6 +12,7 @@ use npr_harness::plan::Plan;
 use npr_harness::scene::Scene;
 use npr_harness::style::{Style, style, styles};
 use npr_harness::{check, gallery, inspect};
+use npr_hatch::write_file::check_place;
 use npr_imagespace::artist::LineKind;
 use npr_mesh::pn_triangles;
 use serde_json::json;
@@ -253,6 +254,7 @@ fn run_render(options: &Render) -> Result<bool, HarnessError> {
         },
     };
     let style = known_style(&options.style)?;
+    check_output(&options.output, &[&options.input, Path::new(&options.style)])?;
     let backend = match (options.backend, samples) {
         (BackendName::Auto, 1) => Backend::Auto,
         (BackendName::Gpu, _) => Backend::Gpu,
@@ -268,8 +270,7 @@ fn run_render(options: &Render) -> Result<bool, HarnessError> {
     let segments = checked("segments", f64::from(options.segments), 1.0, 1024.0, "1..=1024")? as u32;
     let model = if segments > 1 { pn_triangles::tessellate(&loaded.model, segments)? } else { loaded.model };
     let mut scene = Scene::new(model);
-    // Positions may have been moved to the origin.
-    scene.clip = options.clip.map(|plane| plane + DVec4::W * plane.truncate().dot(scene.origin));
+    scene.clip = options.clip.map(|plane| scene.plane_here(plane));
     for (material, kind) in &options.inner_lines {
         scene.set_line_kind(material, *kind)?;
     }
@@ -316,6 +317,19 @@ fn run_render(options: &Render) -> Result<bool, HarnessError> {
         }
     }
     Ok(true)
+}
+
+/// Says before anything is computed what could not be written, and spares what is read.
+fn check_output(output: &Path, inputs: &[&Path]) -> Result<(), HarnessError> {
+    check_place(output).map_err(|source| HarnessError::Write { path: output.to_owned(), source })?;
+    let is_output = |input: &&Path| {
+        let real = |path: &Path| std::fs::canonicalize(path).ok();
+        real(input).is_some_and(|input| Some(input) == real(output))
+    };
+    if inputs.iter().any(is_output) {
+        return Err(HarnessError::Overwrites { path: output.to_owned() });
+    }
+    Ok(())
 }
 
 fn run_style(name: &str) -> Result<bool, HarnessError> {
