@@ -55,7 +55,8 @@ impl InkScale {
 /// How lines are found in the image and laid over it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ImageInk {
-    /// What is a line.
+    /// What is a line. In a parallel view the smallest jump of depth is a share of the diagonal of the model's box: so a
+    /// style suits models of any size.
     pub filter: FusedFilter,
     /// How normal, region and depth of a pixel are packed.
     pub layout: TexelLayout,
@@ -74,7 +75,7 @@ pub struct ImageInk {
 /// What image-space lines need of a scene seen by a camera.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImagePlan {
-    /// What the style asks for.
+    /// What the style asks for; jumps of depth in a parallel view in units of depth.
     pub ink: ImageInk,
     /// How eye depth is packed: the scene's own range, as far as the near plane leaves it.
     pub code: DepthCode,
@@ -92,6 +93,10 @@ impl ImagePlan {
     pub fn new(scene: &Scene, ink: &ImageInk, crease_angle_rad: f32, camera: &Camera) -> Result<Self, ImageSpaceError> {
         let code = depth_code(scene, camera, ink.layout)?;
         FilterUniform::new(&ink.filter, ink.layout, &code)?;
+        let mut ink = *ink;
+        if let (Projection::Orthographic { .. }, Some(test)) = (camera.projection, &mut ink.filter.depth) {
+            test.step *= 2.0 * scene.radius() as f32;
+        }
         if let Some(disc) = ink.brush {
             // Validates the radius.
             flood(&[], UVec2::ZERO, &disc, &FloodPlan { passes: Vec::new() })?;
@@ -99,7 +104,7 @@ impl ImagePlan {
         let materials = scene.model.materials.len();
         let line_kinds = if ink.artist { scene.line_kinds.clone() } else { vec![LineKind::Normals; materials] };
         Ok(Self {
-            ink: *ink,
+            ink,
             code,
             face_region: face_regions(scene, ink.regions, &line_kinds, crease_angle_rad)?
                 .into_iter()
