@@ -91,10 +91,8 @@ pub enum HarnessError {
         /// Those there are.
         known: String,
     },
-    /// A picture without pixels, or with more than can be held.
-    #[error(
-        "a picture of {width} × {height} px: each side must lie in 1..={limit}, and all samples together must not exceed 2^30"
-    )]
+    /// A picture without pixels, or longer than any.
+    #[error("a picture of {width} × {height} px: each side must lie in 1..={limit}")]
     Size {
         /// Px.
         width: u32,
@@ -102,6 +100,24 @@ pub enum HarnessError {
         height: u32,
         /// Px.
         limit: u32,
+    },
+    /// A picture that takes more memory than is allowed.
+    #[error(
+        "a picture of {width} × {height} px with {samples} × {samples} samples takes about {} MiB, and {} are allowed (--max-memory)",
+        bytes >> 20,
+        limit >> 20
+    )]
+    PictureMemory {
+        /// Px.
+        width: u32,
+        /// Px.
+        height: u32,
+        /// Per pixel along each axis.
+        samples: u32,
+        /// What it takes.
+        bytes: u64,
+        /// What is allowed.
+        limit: u64,
     },
     /// A number out of its range.
     #[error("{what} of {value}: it must lie in {range}")]
