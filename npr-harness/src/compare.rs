@@ -4,12 +4,18 @@
 //! channel like any other. Pixels at which the reference itself is not stable can be exempt ([`exempt_mask`]); both
 //! counts, with and without them, are kept, so that what was exempt can be stated and bounded.
 
-use image::{ExtendedColorType, ImageEncoder, ImageFormat, codecs::png::PngEncoder};
-use npr_hatch::write_file::write_file;
+use image::{ExtendedColorType, ImageEncoder, ImageFormat, ImageReader, codecs::png::PngEncoder};
+use npr_hatch::files::{read_file, write_file};
 use std::{
     fs,
+    io::Cursor,
     path::{Path, PathBuf},
 };
+
+/// Of a file.
+const MOST_BYTES: u64 = 1 << 30;
+/// Of a file's picture.
+const MOST_PIXELS: u64 = 1 << 26;
 
 /// A picture in memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -51,6 +57,18 @@ pub enum ImageError {
         path: PathBuf,
         /// What the decoder said.
         source: image::ImageError,
+    },
+    /// The file has more pixels than are read.
+    #[error("{}: {width} × {height} px: at most {limit} pixels are read", path.display())]
+    TooLarge {
+        /// The file.
+        path: PathBuf,
+        /// Pixels.
+        width: u32,
+        /// Pixels.
+        height: u32,
+        /// Pixels.
+        limit: u64,
     },
     /// No PNG could be made of it.
     #[error("{}: {source}", path.display())]
@@ -151,15 +169,19 @@ impl Image {
         (y as usize * self.width as usize + x as usize) * 4
     }
 
-    /// Reads a PNG of any colour type.
+    /// Reads a PNG of any colour type, of at most 2²⁶ pixels, which are counted before they are decoded.
     ///
     /// # Errors
-    /// [`ImageError::Read`] and [`ImageError::Decode`], which name the file.
+    /// [`ImageError::Read`], [`ImageError::Decode`] and [`ImageError::TooLarge`], which name the file.
     pub fn load_png(path: &Path) -> Result<Self, ImageError> {
-        let bytes = fs::read(path).map_err(|source| ImageError::Read { path: path.to_owned(), source })?;
-        let decoded = image::load_from_memory_with_format(&bytes, ImageFormat::Png)
-            .map_err(|source| ImageError::Decode { path: path.to_owned(), source })?
-            .into_rgba8();
+        let bytes = read_file(path, MOST_BYTES).map_err(|source| ImageError::Read { path: path.to_owned(), source })?;
+        let failed = |source| ImageError::Decode { path: path.to_owned(), source };
+        let reader = || ImageReader::with_format(Cursor::new(&bytes), ImageFormat::Png);
+        let (width, height) = reader().into_dimensions().map_err(failed)?;
+        if u64::from(width) * u64::from(height) > MOST_PIXELS {
+            return Err(ImageError::TooLarge { path: path.to_owned(), width, height, limit: MOST_PIXELS });
+        }
+        let decoded = reader().decode().map_err(failed)?.into_rgba8();
         Self::new(decoded.width(), decoded.height(), decoded.into_raw())
     }
 

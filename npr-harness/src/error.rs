@@ -28,6 +28,18 @@ pub enum HarnessError {
         /// How many it has.
         tones: usize,
     },
+    /// A map that takes long to draw, in a style, which is drawn anew for each run.
+    #[error(
+        "a map of {side} × {side} texels, {tones} tones and {candidates} candidates takes long: draw it once with npr tam, and name its file"
+    )]
+    MapEffort {
+        /// Texels.
+        side: u32,
+        /// How many.
+        tones: usize,
+        /// For each stroke.
+        candidates: u32,
+    },
     /// A file without thresholds where they are to be drawn.
     #[error("{}: the map has no thresholds; its six tones can be drawn", path.display())]
     NoThresholds {

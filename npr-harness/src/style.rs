@@ -140,6 +140,15 @@ impl Style {
         }
         // The most that any shade knows.
         Painter::new(self.lights.iter().map(|light| light.light).collect())?;
+        let (widths, what) = match &self.lines {
+            Some(Lines::Fins(look)) => (&look.width_px[..], "a line's width"),
+            Some(Lines::Printed { width_px, .. }) => (std::slice::from_ref(width_px), "a fin's width"),
+            Some(Lines::Image(_)) | None => (&[][..], ""),
+        };
+        for &width_px in widths {
+            // Wider ones take as long as there are pixels, each.
+            within(what, width_px, 0.0, 256.0, "0..=256 px")?;
+        }
         match &self.shade {
             Shade::Paper => {}
             Shade::Lambert { ambient } => within("ambient light", *ambient, 0.0, 1.0, "0..=1")?,

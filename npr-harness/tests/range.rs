@@ -34,7 +34,7 @@ fn picture(executor: &Drawing<'_>, scene: &Scene, style: &Style, fov_y_rad: Opti
 enum Drawing<'a> {
     Rays(&'a Executor),
     #[cfg(feature = "gpu")]
-    Device(npr_harness::gpu::GpuRenderer<'a>, String),
+    Device(Box<npr_harness::gpu::GpuRenderer<'a>>, String),
 }
 
 impl Drawing<'_> {
@@ -52,7 +52,7 @@ fn on_all(test: impl Fn(&Drawing<'_>)) {
     test(&Drawing::Rays(&Executor::choose(Backend::Cpu).expect("there is a CPU")));
     #[cfg(feature = "gpu")]
     if let Some(Executor::Gpu(context)) = common::device() {
-        test(&Drawing::Device(npr_harness::gpu::GpuRenderer::new(&context), context.describe()));
+        test(&Drawing::Device(Box::new(npr_harness::gpu::GpuRenderer::new(&context)), context.describe()));
     }
 }
 

@@ -4,11 +4,14 @@ use std::fs;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
-use image::{DynamicImage, GrayImage, ImageError, ImageFormat, Luma};
+use image::{DynamicImage, GrayImage, ImageError, ImageFormat, ImageReader, Luma};
 
+use crate::files::{read_file, write_file};
 use crate::sheet::Sheet;
-use crate::write_file::write_file;
 use crate::{HatchError, StrokeImage, Tam};
+
+/// A picture of a stroke that is longer holds none.
+const MOST_BYTES: u64 = 1 << 30;
 
 type Gray16 = image::ImageBuffer<Luma<u16>, Vec<u16>>;
 
@@ -32,13 +35,18 @@ impl StrokeImage {
         Self::from_ink(width, height, &ink.collect::<Vec<_>>())
     }
 
-    /// From a PNG file.
+    /// From a PNG file of at most 1 GiB. The number of texels is looked at before they are decoded.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, HatchError> {
         let path = path.as_ref();
         let failed = |source: ImageError| HatchError::Image { path: path.into(), source };
-        let reader = image::ImageReader::open(path).map_err(|error| failed(error.into()))?;
-        let reader = reader.with_guessed_format().map_err(|error| failed(error.into()))?;
-        Self::from_picture(&reader.decode().map_err(failed)?)
+        let bytes = read_file(path, MOST_BYTES).map_err(|error| failed(error.into()))?;
+        let reader = || ImageReader::new(Cursor::new(&bytes)).with_guessed_format().map_err(|e| failed(e.into()));
+        let (width, height) = reader()?.into_dimensions().map_err(failed)?;
+        let texels = u64::from(width) * u64::from(height);
+        if texels > Self::MAX_TEXELS as u64 {
+            return Err(HatchError::Texels { width, height, texels: usize::try_from(texels).unwrap_or(usize::MAX) });
+        }
+        Self::from_picture(&reader()?.decode().map_err(failed)?)
     }
 }
 

@@ -13,12 +13,10 @@ pub fn filled_buffer(device: &wgpu::Device, label: &str, contents: &[u8], usage:
         usage,
         mapped_at_creation: is_filled,
     });
-    if is_filled {
-        if let Ok(mut mapped) = buffer.get_mapped_range_mut(..) {
-            mapped.slice(..contents.len()).copy_from_slice(contents);
-            drop(mapped);
-            buffer.unmap();
-        }
+    if is_filled && let Ok(mut mapped) = buffer.get_mapped_range_mut(..) {
+        mapped.slice(..contents.len()).copy_from_slice(contents);
+        drop(mapped);
+        buffer.unmap();
     }
     buffer
 }

@@ -13,7 +13,7 @@ use npr_harness::plan::Plan;
 use npr_harness::scene::Scene;
 use npr_harness::style::{Style, style, styles};
 use npr_harness::{check, gallery, inspect};
-use npr_hatch::write_file::check_place;
+use npr_hatch::files::check_place;
 use npr_imagespace::artist::LineKind;
 use npr_mesh::pn_triangles;
 use serde_json::json;
@@ -178,10 +178,15 @@ fn main() -> ExitCode {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::FAILURE,
         Err(error) => {
-            eprintln!("npr: {error}");
+            eprintln!("npr: {}", one_line(&error.to_string()));
             ExitCode::FAILURE
         }
     }
+}
+
+/// Names in files may hold anything; no line break of theirs, and nothing that commands a terminal, is printed.
+fn one_line(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
 }
 
 /// A bar on a terminal, nothing elsewhere.
@@ -216,7 +221,7 @@ fn load(path: &Path) -> Result<npr_mesh::Loaded, HarnessError> {
 
 fn announce(executor: &Executor) {
     if let Executor::Cpu { why: Some(why) } = executor {
-        eprintln!("npr: rendering on the CPU: {why}");
+        eprintln!("npr: rendering on the CPU: {}", one_line(why));
     }
 }
 
@@ -265,7 +270,7 @@ fn run_render(options: &Render) -> Result<bool, HarnessError> {
     let loaded = load(&options.input)?;
     let loaded_ms = start.elapsed().as_secs_f64() * 1e3;
     for warning in &loaded.warnings {
-        eprintln!("npr: {}: warning: {warning}", options.input.display());
+        eprintln!("npr: {}", one_line(&format!("{}: warning: {warning}", options.input.display())));
     }
     let segments = checked("segments", f64::from(options.segments), 1.0, 1024.0, "1..=1024")? as u32;
     let model = if segments > 1 { pn_triangles::tessellate(&loaded.model, segments)? } else { loaded.model };

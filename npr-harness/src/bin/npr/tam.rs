@@ -4,7 +4,7 @@ use crate::spinner;
 use clap::Args;
 use npr_harness::error::HarnessError;
 use npr_harness::hatch::read_map;
-use npr_hatch::write_file::write_file;
+use npr_hatch::files::write_file;
 use npr_hatch::{
     Drawing, HatchError, MAX_TONES, Placement, StrokeImage, Tam, TamParameters, Thresholds, draw, even_tones, png,
     sheet, store,

@@ -1,7 +1,7 @@
-//! Files that are there as a whole, or not at all.
+//! Files that are written as a whole or not at all, and read within bounds.
 
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, Write};
+use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -17,9 +17,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// ```
 /// let folder = std::env::temp_dir().join(format!("npr-write-{}", std::process::id()));
 /// let path = folder.join("a.txt");
-/// assert!(npr_hatch::write_file::write_file(&path, b"whole").is_err()); // there is no such folder
+/// assert!(npr_hatch::files::write_file(&path, b"whole").is_err()); // there is no such folder
 /// std::fs::create_dir_all(&folder)?;
-/// npr_hatch::write_file::write_file(&path, b"whole")?;
+/// npr_hatch::files::write_file(&path, b"whole")?;
 /// assert_eq!(std::fs::read(&path)?, b"whole");
 /// # std::fs::remove_dir_all(&folder)
 /// ```
@@ -50,6 +50,29 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
 /// Those of [`write_file`], but for what only writing can tell.
 pub fn check_place(path: &Path) -> io::Result<()> {
     target(path).map(|_| ())
+}
+
+/// All of a regular file of at most so many bytes: no pipe, which may have no end or keep one waiting, and no device.
+///
+/// # Errors
+/// What the system says; a file that is not regular, or longer.
+pub fn read_file(path: &Path, most_bytes: u64) -> io::Result<Vec<u8>> {
+    // Asked before opening: to open a pipe may wait for ever.
+    let found = fs::metadata(path)?;
+    if !found.is_file() {
+        return Err(io::Error::other("not a regular file"));
+    }
+    let too_long = || {
+        let what = format!("more than the {most_bytes} bytes that such a file may have");
+        io::Error::new(io::ErrorKind::FileTooLarge, what)
+    };
+    if found.len() > most_bytes {
+        return Err(too_long());
+    }
+    let mut bytes = Vec::with_capacity(usize::try_from(found.len()).unwrap_or(0));
+    // A file may grow between the question and the reading.
+    File::open(path)?.take(most_bytes.saturating_add(1)).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > most_bytes { Err(too_long()) } else { Ok(bytes) }
 }
 
 enum Target {
@@ -178,6 +201,25 @@ mod tests {
         }
         assert_eq!(folder.names(), ["folder", "old"]);
         assert_eq!(fs::read(&old).expect("there"), b"old");
+    }
+
+    #[test]
+    fn only_regular_files_within_the_bound_are_read() {
+        let folder = Folder::new("read");
+        let path = folder.0.join("a");
+        fs::write(&path, b"12345").expect("written");
+        assert_eq!(read_file(&path, 5).expect("read"), b"12345");
+        assert_eq!(read_file(&path, 4).expect_err("too long").kind(), io::ErrorKind::FileTooLarge);
+        for (path, said) in [(&folder.0, "regular"), (&folder.0.join("none"), "")] {
+            assert!(read_file(path, 5).expect_err("no file").to_string().contains(said));
+        }
+        #[cfg(unix)]
+        for endless in ["/dev/zero", "/dev/tty"] {
+            read_file(Path::new(endless), u64::MAX).expect_err(endless);
+        }
+        // What says that it has no bytes, and has some.
+        #[cfg(target_os = "linux")]
+        assert!(read_file(Path::new("/proc/self/status"), 9).is_err_and(|e| e.kind() == io::ErrorKind::FileTooLarge));
     }
 
     #[cfg(unix)]
