@@ -103,9 +103,9 @@ fn is_quick(style: &Style) -> bool {
 pub fn tam(bytes: &[u8]) {
     one_tam(bytes);
     if let Some((content, _)) = bytes.split_last_chunk::<8>() {
-        let sum = content.iter().fold(0xcbf2_9ce4_8422_2325, |sum: u64, &byte| {
-            (sum ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
-        });
+        let sum = content
+            .iter()
+            .fold(0xcbf2_9ce4_8422_2325, |sum: u64, &byte| (sum ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3));
         one_tam(&[content, &sum.to_le_bytes()].concat());
     }
 }
