@@ -119,7 +119,7 @@ fn one_tam(bytes: &[u8]) {
 }
 
 fn draw(scene: &Scene, style: &Style, number: usize) {
-    let fov_y_rad = if number % 3 == 0 { None } else { Some(0.6) };
+    let fov_y_rad = if number.is_multiple_of(3) { None } else { Some(0.6) };
     let framing = Framing { fov_y_rad, yaw_rad: number as f64 % 6.0, ..Framing::default() };
     let camera = Camera::framed(scene.corners(), f64::from(SIZE.0) / f64::from(SIZE.1), &framing);
     let Ok(plan) = Plan::new(scene, style, &camera) else { return };

@@ -107,15 +107,12 @@ impl Executor {
     /// # Errors
     /// The error itself, else; [`HarnessError::Policy`].
     pub fn instead(backend: Backend, error: HarnessError) -> Result<Self, HarnessError> {
+        if backend != Backend::Auto || GpuPolicy::from_env()? != GpuPolicy::Auto {
+            return Err(error);
+        }
         match &error {
             #[cfg(feature = "gpu")]
-            HarnessError::Gpu(fault)
-                if backend == Backend::Auto
-                    && GpuPolicy::from_env()? == GpuPolicy::Auto
-                    && fault.is_of_the_device() =>
-            {
-                Ok(Self::Cpu { why: Some(fault.to_string()) })
-            }
+            HarnessError::Gpu(fault) if fault.is_of_the_device() => Ok(Self::Cpu { why: Some(fault.to_string()) }),
             _ => Err(error),
         }
     }

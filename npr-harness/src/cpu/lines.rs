@@ -67,8 +67,8 @@ fn line_coverage(context: &FrameContext<'_>, frame: &CpuFrame, look: &LineLook, 
 fn row_reach([p0, p1]: [DVec2; 2], row: f64, reach: f64) -> (f64, f64) {
     let along = p1 - p0;
     let length = along.length();
-    // A line along the row has all of its box; so has one whose ends are no numbers to divide by.
-    if !(along.y.abs() > 1e-3 * length) {
+    // A line along the row has all of its box.
+    if along.y.abs() <= 1e-3 * length {
         return (f64::NEG_INFINITY, f64::INFINITY);
     }
     let middle = p0.x + (row - p0.y) / along.y * along.x;
