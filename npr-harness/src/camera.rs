@@ -362,6 +362,19 @@ mod tests {
     }
 
     #[test]
+    fn points_at_one_place_have_a_camera_before_them() {
+        for place in [Vec3::ZERO, Vec3::splat(1e-40), Vec3::new(3.0, 4e7, -1e30)] {
+            for fov_y_rad in [Some(0.6), None] {
+                let camera = Camera::framed([place; 3].into_iter(), 1.5, &Framing { fov_y_rad, ..Framing::default() });
+                assert!(camera.axes().iter().all(|axis| axis.is_normalized()), "{place}: {:?}", camera.axes());
+                assert!(camera.near > 0.0 && camera.clip_from_world(1.5).is_finite(), "{place}: {camera:?}");
+                let view = camera.line_view(DVec2::new(150.0, 100.0));
+                assert!(view.depth_per_px.is_finite(), "{place}: {view:?}");
+            }
+        }
+    }
+
+    #[test]
     fn a_framed_model_fills_the_picture_and_does_not_leave_it() {
         for camera in cameras() {
             let mut widest = 0.0f64;
