@@ -15,6 +15,7 @@ use crate::image_ink::ImageInk;
 use crate::light::StyleLight;
 use glam::Vec3;
 use npr_gooch::{Gooch, GoochUniform};
+use npr_imagespace::composite::Composite;
 use npr_outline::line_look::LineLook;
 use npr_toon::half_lambert::HalfLambert;
 use npr_toon::normal::NormalUse;
@@ -148,6 +149,17 @@ impl Style {
         for &width_px in widths {
             // Wider ones take as long as there are pixels, each.
             within(what, width_px, 0.0, 256.0, "0..=256 px")?;
+        }
+        let ink = match &self.lines {
+            Some(Lines::Fins(look)) => look.ink,
+            Some(Lines::Printed { ink, .. }) => ink.extend(1.0).to_array(),
+            Some(Lines::Image(ImageInk { composite: Composite::Over { color, opacity }, .. })) => {
+                color.extend(*opacity).to_array()
+            }
+            Some(Lines::Image(_)) | None => [0.0; 4],
+        };
+        for component in ink {
+            within("a component of the lines' ink", component, 0.0, 1.0, "0..=1")?;
         }
         match &self.shade {
             Shade::Paper => {}
