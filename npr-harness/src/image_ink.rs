@@ -72,6 +72,22 @@ pub struct ImageInk {
     pub composite: Composite,
 }
 
+impl ImageInk {
+    /// Whether thresholds and brush are within their ranges.
+    ///
+    /// # Errors
+    /// Which is not.
+    pub fn validate(&self) -> Result<(), ImageSpaceError> {
+        // Of any depth.
+        FilterUniform::new(&self.filter, self.layout, &DepthCode::parallel(1.0, 2.0, self.layout)?)?;
+        if let Some(disc) = self.brush {
+            // Of no picture: only the radius is looked at.
+            flood(&[], UVec2::ZERO, &disc, &FloodPlan { passes: Vec::new() })?;
+        }
+        Ok(())
+    }
+}
+
 /// What image-space lines need of a scene seen by a camera.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImagePlan {
@@ -91,15 +107,12 @@ impl ImagePlan {
     /// # Errors
     /// What is wrong with the thresholds or the brush.
     pub fn new(scene: &Scene, ink: &ImageInk, crease_angle_rad: f32, camera: &Camera) -> Result<Self, ImageSpaceError> {
+        ink.validate()?;
         let code = depth_code(scene, camera, ink.layout)?;
-        FilterUniform::new(&ink.filter, ink.layout, &code)?;
         let mut ink = *ink;
         if let (Projection::Orthographic { .. }, Some(test)) = (camera.projection, &mut ink.filter.depth) {
-            test.step *= 2.0 * scene.radius() as f32;
-        }
-        if let Some(disc) = ink.brush {
-            // Validates the radius.
-            flood(&[], UVec2::ZERO, &disc, &FloodPlan { passes: Vec::new() })?;
+            // As large as it may be: no jump is a line then.
+            test.step = (test.step * 2.0 * scene.radius() as f32).min(f32::MAX);
         }
         let materials = scene.model.materials.len();
         let line_kinds = if ink.artist { scene.line_kinds.clone() } else { vec![LineKind::Normals; materials] };

@@ -130,7 +130,8 @@ impl Style {
     ///
     /// # Errors
     /// [`HarnessError::Toon`], [`HarnessError::Gooch`], [`HarnessError::Hatch`], [`HarnessError::SixTones`],
-    /// [`HarnessError::NoThresholds`], [`HarnessError::Range`], [`HarnessError::NoLight`].
+    /// [`HarnessError::NoThresholds`], [`HarnessError::MapEffort`], [`HarnessError::ImageSpace`], [`HarnessError::Range`],
+    /// [`HarnessError::NoLight`].
     pub fn validate(&self) -> Result<(), HarnessError> {
         for component in self.paper.to_array() {
             within("a component of the paper", component, 0.0, 1.0, "0..=1")?;
@@ -160,6 +161,9 @@ impl Style {
         };
         for component in ink {
             within("a component of the lines' ink", component, 0.0, 1.0, "0..=1")?;
+        }
+        if let Some(Lines::Image(ink)) = &self.lines {
+            ink.validate()?;
         }
         match &self.shade {
             Shade::Paper => {}

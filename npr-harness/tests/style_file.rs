@@ -220,22 +220,24 @@ fn a_map_comes_from_a_file_or_a_picture_of_a_stroke() {
     assert!(said.contains("has no ink"), "{said}");
 }
 
-/// The first was found by changing stored files at random.
+/// The first and the one after the lines were found by changing stored files at random.
 #[test]
 fn numbers_that_no_picture_survives_are_refused() {
-    let cartoon = named("cartoon").to_toml().expect("a form");
-    let lines = |what: &str| {
+    let changed = |style: &str, what: &str| {
+        let text = named(style).to_toml().expect("a form");
         let key = what.split('=').next().expect("a key");
-        assert!(cartoon.lines().any(|line| line.starts_with(key)), "{key}");
-        let changed = cartoon.lines().map(|line| if line.starts_with(key) { what } else { line });
-        changed.collect::<Vec<_>>().join("\n")
+        assert!(text.lines().any(|line| line.starts_with(key)), "{key}: {text}");
+        text.lines().map(|line| if line.starts_with(key) { what } else { line }).collect::<Vec<_>>().join("\n")
     };
+    let (lines, thick) = (|what: &str| changed("cartoon", what), |what: &str| changed("ink-thick", what));
     let cases = [
         (lines("ink = [0.1, inf, 0.11]"), "the lines' ink of inf"),
         (lines("ink = [nan, 0, 0]"), "the lines' ink of NaN"),
         (lines("opacity = -1"), "the lines' ink of -1"),
         (lines("silhouette-px = 1e30"), "width of 1000000"),
         (lines("crease-px = nan"), "width of NaN"),
+        (thick("depth-step = nan"), "NaN"),
+        (thick("radius-px = -1"), "-1"),
         ("paper = [2, 0, 0]".into(), "paper of 2"),
         ("crease-angle-deg = inf".into(), "inf"),
         ("[[light]]\ndirection = [nan, 0, 0]".into(), "light 0"),
