@@ -13,8 +13,10 @@ pub const MOST_SAMPLES: u32 = 64;
 
 /// On the CPU per sample: colour 32, depth 8, a line's coverage or a texel 8.
 const SAMPLE_BYTES: u64 = 48;
-/// On the CPU per pixel: the samples' mean 40 and the picture's four bytes, twice while it is encoded, or the encoder's.
-const MEAN_BYTES: u64 = 52;
+/// On the CPU per pixel: the mean of several samples.
+const MEAN_BYTES: u64 = 40;
+/// On the CPU per pixel: the picture, its copy while it grows, its file.
+const FILE_BYTES: u64 = 12;
 /// On a device per pixel: two colours, depth, the lines' winner, 12 of strokes, what is read back, the picture, its file.
 const DEVICE_BYTES: u64 = 48;
 /// Per pixel of ink found in the image: texels 8, depth 4, ink and brush.
@@ -36,7 +38,8 @@ pub fn picture_bytes(style: &Style, (width, height): (u32, u32), samples: u32, o
         DEVICE_BYTES + ink
     } else {
         let samples = u64::from(samples.max(1));
-        SAMPLE_BYTES.saturating_mul(samples).saturating_mul(samples).saturating_add(MEAN_BYTES + ink)
+        let mean = if samples > 1 { MEAN_BYTES } else { 0 };
+        SAMPLE_BYTES.saturating_mul(samples).saturating_mul(samples).saturating_add(mean + FILE_BYTES + ink)
     };
     pixels.saturating_mul(per_pixel)
 }
