@@ -21,7 +21,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// std::fs::create_dir_all(&folder)?;
 /// npr_hatch::files::write_file(&path, b"whole")?;
 /// assert_eq!(std::fs::read(&path)?, b"whole");
-/// # std::fs::remove_dir_all(&folder)
+/// # std::fs::remove_dir_all(&folder)?;
+/// # Ok::<(), std::io::Error>(())
 /// ```
 pub fn write_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let target = match target(path)? {
