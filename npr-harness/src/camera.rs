@@ -81,7 +81,11 @@ impl Camera {
         let empty = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         let (low, high) = points.clone().map(in_view).fold(empty, |(l, h), p| (l.min(p), h.max(p)));
         let middle = (low + high) / 2.0;
-        let size = (high - low).max_element().max(f64::MIN_POSITIVE);
+        let size = match (high - low).max_element() {
+            // All at one place: any distance from it is as good, if the eye is not at the same place for rounding.
+            0.0 => middle.length().max(1.0),
+            size => size,
+        };
         let center = right * middle.x + up * middle.y + back * middle.z;
         match framing.fov_y_rad {
             Some(fov_y_rad) => {
@@ -353,6 +357,19 @@ mod tests {
                     .fold(0.0, f64::max);
                 assert_relative_eq!(far, 1.01 * farthest, epsilon = 1e-9);
                 assert_eq!(near, camera.near);
+            }
+        }
+    }
+
+    #[test]
+    fn points_at_one_place_have_a_camera_before_them() {
+        for place in [Vec3::ZERO, Vec3::splat(1e-40), Vec3::new(3.0, 4e7, -1e30)] {
+            for fov_y_rad in [Some(0.6), None] {
+                let camera = Camera::framed([place; 3].into_iter(), 1.5, &Framing { fov_y_rad, ..Framing::default() });
+                assert!(camera.axes().iter().all(|axis| axis.is_normalized()), "{place}: {:?}", camera.axes());
+                assert!(camera.near > 0.0 && camera.clip_from_world(1.5).is_finite(), "{place}: {camera:?}");
+                let view = camera.line_view(DVec2::new(150.0, 100.0));
+                assert!(view.depth_per_px.is_finite(), "{place}: {view:?}");
             }
         }
     }

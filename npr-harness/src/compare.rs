@@ -4,12 +4,18 @@
 //! channel like any other. Pixels at which the reference itself is not stable can be exempt ([`exempt_mask`]); both
 //! counts, with and without them, are kept, so that what was exempt can be stated and bounded.
 
-use image::{ExtendedColorType, ImageEncoder, ImageFormat, codecs::png::PngEncoder};
+use image::{ExtendedColorType, ImageEncoder, ImageFormat, ImageReader, codecs::png::PngEncoder};
+use npr_hatch::files::{read_file, write_file};
 use std::{
     fs,
+    io::Cursor,
     path::{Path, PathBuf},
-    sync::atomic::{AtomicU64, Ordering},
 };
+
+/// Of a file.
+const MOST_BYTES: u64 = 1 << 30;
+/// Of a file's picture.
+const MOST_PIXELS: u64 = 1 << 26;
 
 /// A picture in memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -51,6 +57,18 @@ pub enum ImageError {
         path: PathBuf,
         /// What the decoder said.
         source: image::ImageError,
+    },
+    /// The file has more pixels than are read.
+    #[error("{}: {width} × {height} px: at most {limit} pixels are read", path.display())]
+    TooLarge {
+        /// The file.
+        path: PathBuf,
+        /// Pixels.
+        width: u32,
+        /// Pixels.
+        height: u32,
+        /// Pixels.
+        limit: u64,
     },
     /// No PNG could be made of it.
     #[error("{}: {source}", path.display())]
@@ -151,19 +169,23 @@ impl Image {
         (y as usize * self.width as usize + x as usize) * 4
     }
 
-    /// Reads a PNG of any colour type.
+    /// Reads a PNG of any colour type, of at most 2²⁶ pixels, which are counted before they are decoded.
     ///
     /// # Errors
-    /// [`ImageError::Read`] and [`ImageError::Decode`], which name the file.
+    /// [`ImageError::Read`], [`ImageError::Decode`] and [`ImageError::TooLarge`], which name the file.
     pub fn load_png(path: &Path) -> Result<Self, ImageError> {
-        let bytes = fs::read(path).map_err(|source| ImageError::Read { path: path.to_owned(), source })?;
-        let decoded = image::load_from_memory_with_format(&bytes, ImageFormat::Png)
-            .map_err(|source| ImageError::Decode { path: path.to_owned(), source })?
-            .into_rgba8();
+        let bytes = read_file(path, MOST_BYTES).map_err(|source| ImageError::Read { path: path.to_owned(), source })?;
+        let failed = |source| ImageError::Decode { path: path.to_owned(), source };
+        let reader = || ImageReader::with_format(Cursor::new(&bytes), ImageFormat::Png);
+        let (width, height) = reader().into_dimensions().map_err(failed)?;
+        if u64::from(width) * u64::from(height) > MOST_PIXELS {
+            return Err(ImageError::TooLarge { path: path.to_owned(), width, height, limit: MOST_PIXELS });
+        }
+        let decoded = reader().decode().map_err(failed)?.into_rgba8();
         Self::new(decoded.width(), decoded.height(), decoded.into_raw())
     }
 
-    /// Writes a PNG. It is written under another name beside and then renamed, so that there is never half a file.
+    /// Writes a PNG, whole or not at all ([`write_file`]).
     ///
     /// # Errors
     /// [`ImageError::Encode`] and [`ImageError::Write`], which name the file.
@@ -185,15 +207,7 @@ fn byte_count(width: u32, height: u32) -> Option<usize> {
 }
 
 fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), ImageError> {
-    static NUMBER: AtomicU64 = AtomicU64::new(0);
-    let mut name = path.file_name().unwrap_or_default().to_owned();
-    name.push(format!(".{}-{}.part", std::process::id(), NUMBER.fetch_add(1, Ordering::Relaxed)));
-    let temporary = path.with_file_name(name);
-    fs::write(&temporary, bytes).and_then(|()| fs::rename(&temporary, path)).map_err(|source| {
-        // The first error is the one to report.
-        let _ = fs::remove_file(&temporary);
-        ImageError::Write { path: path.to_owned(), source }
-    })
+    write_file(path, bytes).map_err(|source| ImageError::Write { path: path.to_owned(), source })
 }
 
 /// At most `count` pixels may differ by more than `magnitude` in any channel.

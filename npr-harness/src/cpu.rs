@@ -130,7 +130,7 @@ pub fn render_unsure(
     let samples = options.samples.max(1);
     let textures = textures(scene, plan);
     let context = FrameContext::new(scene, style, plan, camera, (width, height), options, &textures);
-    let mut fine = context.trace(width * samples, height * samples, options.threads, progress);
+    let mut fine = context.trace(width * samples, height * samples, options.threads, true, progress);
     let shared_texels = std::mem::take(&mut fine.texels);
     match &style.lines {
         Some(Lines::Fins(look)) => draw_lines(&context, &mut fine, look, f64::from(samples)),
@@ -149,7 +149,7 @@ pub fn render_unsure(
             let size_px = DVec2::new(ink_width.into(), ink_height.into());
             let shift_px = options.shift_px * size_px / DVec2::new(width.into(), height.into());
             let context = FrameContext { size_px, shift_px, painting: false, ..context };
-            context.trace(ink_width, ink_height, options.threads, &|_| {}).texels
+            context.trace(ink_width, ink_height, options.threads, false, &|_| {}).texels
         };
         ink::blot(&mut texels, (ink_width, ink_height), unsure, (width, height));
         ink::draw_ink(image, &texels, &mut frame);
@@ -241,11 +241,18 @@ impl FrameContext<'_> {
         Some((self.interpolate(&hit, hit.barycentric).at, self.paint(&hit, x, y).truncate()))
     }
 
-    /// Paints surfaces; lines are drawn over them afterwards.
-    fn trace(&self, width: u32, height: u32, threads: usize, progress: &(dyn Fn(f64) + Sync)) -> CpuFrame {
+    /// Paints surfaces; lines are drawn over them afterwards. Without a picture only what lines are found in is made.
+    fn trace(
+        &self,
+        width: u32,
+        height: u32,
+        threads: usize,
+        picture: bool,
+        progress: &(dyn Fn(f64) + Sync),
+    ) -> CpuFrame {
         let pixels = width as usize * height as usize;
-        let mut color = vec![DVec4::ZERO; pixels];
-        let mut depth = vec![0.0; pixels];
+        let mut color = vec![DVec4::ZERO; if picture { pixels } else { 0 }];
+        let mut depth = vec![0.0; color.len()];
         let mut texels = vec![[0; 2]; if self.plan.image.is_some() { pixels } else { 0 }];
         // Built before the threads ask for it, so that they do not wait for each other.
         self.scene.rays();
@@ -255,15 +262,16 @@ impl FrameContext<'_> {
         // Rows are handed out one by one, since the cost of a row depends on what is in it.
         let row = width as usize;
         let rows_of_texels = texels.chunks_mut(row).map(Some).chain(std::iter::repeat_with(|| None));
-        let work =
-            std::sync::Mutex::new(color.chunks_mut(row).zip(depth.chunks_mut(row)).zip(rows_of_texels).enumerate());
+        let rows_of_picture = color.chunks_mut(row).zip(depth.chunks_mut(row)).map(Some);
+        let rows_of_picture = rows_of_picture.chain(std::iter::repeat_with(|| None));
+        let work = std::sync::Mutex::new((0..height).zip(rows_of_picture.zip(rows_of_texels)));
         std::thread::scope(|scope| {
             for _ in 0..threads.min(height as usize).max(1) {
                 scope.spawn(|| {
                     loop {
                         let next = work.lock().expect("no thread panics while it holds the lock").next();
-                        let Some((y, ((color, depth), texels))) = next else { break };
-                        self.trace_row(y as u32, color, depth, texels);
+                        let Some((y, (picture, texels))) = next else { break };
+                        self.trace_row(y, width, picture, texels);
                         let done = rows.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1;
                         progress(f64::from(done) / f64::from(height));
                     }
@@ -273,13 +281,21 @@ impl FrameContext<'_> {
         CpuFrame { width, height, color, depth, texels }
     }
 
-    fn trace_row(&self, y: u32, color: &mut [DVec4], depth: &mut [f64], mut texels: Option<&mut [[u32; 2]]>) {
-        for (x, (color, depth)) in color.iter_mut().zip(depth).enumerate() {
-            let solid = self.first_solid(x as u32, y);
-            *color = self.trace_pixel(solid.as_ref(), x as u32, y);
-            *depth = solid.map_or(0.0, |hit| self.camera.buffer_depth(hit.t));
+    fn trace_row(
+        &self,
+        y: u32,
+        width: u32,
+        mut picture: Option<(&mut [DVec4], &mut [f64])>,
+        mut texels: Option<&mut [[u32; 2]]>,
+    ) {
+        for x in 0..width {
+            let solid = self.first_solid(x, y);
+            if let Some((color, depth)) = &mut picture {
+                color[x as usize] = self.trace_pixel(solid.as_ref(), x, y);
+                depth[x as usize] = solid.map_or(0.0, |hit| self.camera.buffer_depth(hit.t));
+            }
             if let Some(texels) = &mut texels {
-                texels[x] = self.texel(solid.as_ref(), x as u32, y);
+                texels[x as usize] = self.texel(solid.as_ref(), x, y);
             }
         }
     }
@@ -325,15 +341,16 @@ impl FrameContext<'_> {
 
 /// The mean of each pixel's samples, in display space, as coverage is blended there; of the depth, the nearest.
 fn averaged(fine: &CpuFrame, width: u32, height: u32, samples: u32) -> CpuFrame {
-    let mut color = Vec::with_capacity((width * height) as usize);
-    let mut depth = Vec::with_capacity((width * height) as usize);
+    let mut color = Vec::with_capacity(width as usize * height as usize);
+    let mut depth = Vec::with_capacity(color.capacity());
     for y in 0..height {
         for x in 0..width {
             let (mut sum, mut nearest) = (DVec4::ZERO, 0.0f64);
             for sub in 0..samples * samples {
-                let at = (y * samples + sub / samples) * fine.width + x * samples + sub % samples;
-                sum += fine.color[at as usize];
-                nearest = nearest.max(fine.depth[at as usize]);
+                let row = (y * samples + sub / samples) as usize * fine.width as usize;
+                let at = row + (x * samples + sub % samples) as usize;
+                sum += fine.color[at];
+                nearest = nearest.max(fine.depth[at]);
             }
             color.push(sum / f64::from(samples * samples));
             depth.push(nearest);

@@ -28,6 +28,18 @@ pub enum HarnessError {
         /// How many it has.
         tones: usize,
     },
+    /// A map that takes long to draw, in a style, which is drawn anew for each run.
+    #[error(
+        "a map of {side} × {side} texels, {tones} tones and {candidates} candidates takes long: draw it once with npr tam, and name its file"
+    )]
+    MapEffort {
+        /// Texels.
+        side: u32,
+        /// How many.
+        tones: usize,
+        /// For each stroke.
+        candidates: u32,
+    },
     /// A file without thresholds where they are to be drawn.
     #[error("{}: the map has no thresholds; its six tones can be drawn", path.display())]
     NoThresholds {
@@ -107,10 +119,8 @@ pub enum HarnessError {
         /// Those there are.
         known: String,
     },
-    /// A picture without pixels, or with more than can be held.
-    #[error(
-        "a picture of {width} × {height} px: each side must lie in 1..={limit}, and all samples together must not exceed 2^30"
-    )]
+    /// A picture without pixels, or longer than any.
+    #[error("a picture of {width} × {height} px: each side must lie in 1..={limit}")]
     Size {
         /// Px.
         width: u32,
@@ -118,6 +128,24 @@ pub enum HarnessError {
         height: u32,
         /// Px.
         limit: u32,
+    },
+    /// A picture that takes more memory than is allowed.
+    #[error(
+        "a picture of {width} × {height} px with {samples} × {samples} samples takes about {} MiB, and {} are allowed (--max-memory)",
+        bytes >> 20,
+        limit >> 20
+    )]
+    PictureMemory {
+        /// Px.
+        width: u32,
+        /// Px.
+        height: u32,
+        /// Per pixel along each axis.
+        samples: u32,
+        /// What it takes.
+        bytes: u64,
+        /// What is allowed.
+        limit: u64,
     },
     /// A number out of its range.
     #[error("{what} of {value}: it must lie in {range}")]
@@ -153,6 +181,12 @@ pub enum HarnessError {
         path: std::path::PathBuf,
         /// Why.
         source: std::io::Error,
+    },
+    /// A picture that would be written over what it is made of.
+    #[error("{}: it is read for the picture, and would be overwritten by it", path.display())]
+    Overwrites {
+        /// Which file.
+        path: std::path::PathBuf,
     },
     /// A table that could not be written as JSON.
     #[error("could not write JSON: {0}")]

@@ -101,6 +101,22 @@ impl Executor {
         Ok(Self::Cpu { why: Some("this build has no GPU executor".into()) })
     }
 
+    /// The CPU, where it may make a picture that a device could not make, and why it does: not where a device was asked
+    /// for, by `backend` or by the environment.
+    ///
+    /// # Errors
+    /// The error itself, else; [`HarnessError::Policy`].
+    pub fn instead(backend: Backend, error: HarnessError) -> Result<Self, HarnessError> {
+        if backend != Backend::Auto || GpuPolicy::from_env()? != GpuPolicy::Auto {
+            return Err(error);
+        }
+        match &error {
+            #[cfg(feature = "gpu")]
+            HarnessError::Gpu(fault) if fault.is_of_the_device() => Ok(Self::Cpu { why: Some(fault.to_string()) }),
+            _ => Err(error),
+        }
+    }
+
     /// Whether pictures are made with rays.
     pub fn is_cpu(&self) -> bool {
         matches!(self, Self::Cpu { .. })

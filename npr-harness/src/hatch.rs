@@ -3,10 +3,9 @@
 use crate::error::HarnessError;
 use crate::scene::Scene;
 use crate::style::{HatchEncoding, HatchMap, HatchMapping, HatchShade};
+use npr_hatch::files::read_file;
 use npr_hatch::store::{self, Stored};
 use npr_hatch::{HatchError, Tam, Thresholds, density};
-use std::fs::File;
-use std::io::Read;
 use std::path::Path;
 
 /// What of a vertex tells where strokes lie.
@@ -77,18 +76,14 @@ impl HatchPlan {
     }
 }
 
-/// Reads what `npr tam` wrote.
+/// The longest map, of 64 tones at 4096² with thresholds, has 1.4 GiB.
+const MOST_BYTES: u64 = 3 << 29;
+
+/// Reads what `npr tam` wrote: a regular file of at most 1.5 GiB.
 ///
 /// # Errors
 /// [`HarnessError::Read`], [`HarnessError::Map`].
 pub fn read_map(path: &Path) -> Result<Stored, HarnessError> {
-    let failed = |source| HarnessError::Read { path: path.to_owned(), source };
-    let mut file = File::open(path).map_err(failed)?;
-    let mut bytes = Vec::new();
-    // A file that is no map may be of any size.
-    file.by_ref().take(store::MAGIC.len() as u64).read_to_end(&mut bytes).map_err(failed)?;
-    if bytes == store::MAGIC {
-        file.read_to_end(&mut bytes).map_err(failed)?;
-    }
+    let bytes = read_file(path, MOST_BYTES).map_err(|source| HarnessError::Read { path: path.to_owned(), source })?;
     store::from_bytes(&bytes).map_err(|source| HarnessError::Map { path: path.to_owned(), source })
 }

@@ -56,7 +56,8 @@ impl InkScale {
 /// How lines are found in the image and laid over it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ImageInk {
-    /// What is a line.
+    /// What is a line. In a parallel view the smallest jump of depth is a share of the diagonal of the model's box: so a
+    /// style suits models of any size.
     pub filter: FusedFilter,
     /// How normal, region and depth of a pixel are packed.
     pub layout: TexelLayout,
@@ -79,12 +80,27 @@ impl ImageInk {
     pub fn region_most(&self) -> u32 {
         if self.shadows.has_states() { self.layout.shadowed_region_most() } else { self.layout.region_most() }
     }
+
+    /// Whether thresholds and brush are within their ranges.
+    ///
+    /// # Errors
+    /// Which is not.
+    pub fn validate(&self) -> Result<(), ImageSpaceError> {
+        // Of any depth.
+        FilterUniform::new(&self.filter, self.layout, &DepthCode::parallel(1.0, 2.0, self.layout)?)?;
+        let of_shadows = if let ShadowLines::Apart { brush, .. } = self.shadows { brush } else { None };
+        for disc in self.brush.iter().chain(&of_shadows) {
+            // Of no picture: only the radius is looked at.
+            flood(&[], UVec2::ZERO, disc, &FloodPlan { passes: Vec::new() })?;
+        }
+        Ok(())
+    }
 }
 
 /// What image-space lines need of a scene seen by a camera.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImagePlan {
-    /// What the style asks for.
+    /// What the style asks for; jumps of depth in a parallel view in units of depth.
     pub ink: ImageInk,
     /// How eye depth is packed: the scene's own range, as far as the near plane leaves it.
     pub code: DepthCode,
@@ -125,7 +141,13 @@ impl ImagePlan {
     /// # Errors
     /// What is wrong with the thresholds or the brush.
     pub fn new(scene: &Scene, ink: &ImageInk, crease_angle_rad: f32, camera: &Camera) -> Result<Self, ImageSpaceError> {
+        ink.validate()?;
         let code = depth_code(scene, camera, ink.layout)?;
+        let mut ink = *ink;
+        if let (Projection::Orthographic { .. }, Some(test)) = (camera.projection, &mut ink.filter.depth) {
+            // As large as it may be: no jump is a line then.
+            test.step = (test.step * 2.0 * scene.radius() as f32).min(f32::MAX);
+        }
         let test = match ink.shadows {
             ShadowLines::None | ShadowLines::Negated => ShadowTest::Absent,
             ShadowLines::Lines => ShadowTest::Lines,
@@ -142,7 +164,7 @@ impl ImagePlan {
         let materials = scene.model.materials.len();
         let line_kinds = if ink.artist { scene.line_kinds.clone() } else { vec![LineKind::Normals; materials] };
         Ok(Self {
-            ink: *ink,
+            ink,
             code,
             face_region: face_regions(scene, ink.regions, &line_kinds, crease_angle_rad)?
                 .into_iter()

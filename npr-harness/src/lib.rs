@@ -19,6 +19,7 @@ pub mod inspect;
 pub mod light;
 pub mod line_truth;
 pub mod normal_use;
+pub mod picture_limits;
 pub mod plan;
 pub mod rays;
 pub mod scene;

@@ -1,7 +1,7 @@
 //! A style's lights, placed in a scene.
 
 use crate::camera::Camera;
-use crate::scene::Scene;
+use crate::scene::{FARTHEST, Scene};
 use crate::shadow::homogeneous;
 use crate::style::{Shade, Style};
 use glam::{DVec4, Vec3};
@@ -80,9 +80,10 @@ fn in_world(StyleLight { light, frame }: &StyleLight, scene: &Scene, camera: &Ca
         LightPlace::Positional { position } => {
             let position = match frame {
                 LightFrame::View => scene.middle() + turned(position) * scene.radius(),
-                LightFrame::World => position.as_dvec3() - scene.origin,
+                LightFrame::World => scene.place_here(position.as_dvec3()),
             };
-            LightPlace::Positional { position: position.as_vec3() }
+            // A light that is farther away shines as from there, and its position is an f32 on a device.
+            LightPlace::Positional { position: position.clamp_length_max(FARTHEST).as_vec3() }
         }
     };
     Light { place, ..*light }

@@ -14,18 +14,22 @@ use std::sync::OnceLock;
 
 /// A model with everything that is derived from it once.
 pub struct Scene {
-    /// Its positions are relative to [`Scene::origin`].
+    /// Its positions are relative to [`Scene::origin`], and multiplied by [`Scene::scale`].
     pub model: Model,
-    /// Where the model's own origin is, if it is far from the model: f32 positions keep their precision only near 0.
+    /// What the positions are relative to, in the model's own units: 0, or the model's middle where that is far from 0,
+    /// since f32 positions keep their precision only near 0.
     pub origin: DVec3,
+    /// What the model's own units are multiplied by: 1, or a power of two where the half of the box's diagonal is not
+    /// within 2⁻²⁰..=2²⁰ of them. Squares and products of lengths then stay within f32, on a device, too.
+    pub scale: f64,
     /// For drawing: redundant faces left out.
     pub edges: Edges,
     /// Per material its colour without texture and vertex colour, display-referred.
     pub material_colors: Vec<DVec3>,
     /// Whether every edge has two faces, wound alike, so that no back of a face can be seen from outside.
     pub closed: bool,
-    /// Cuts the scene: shown is where n · p + d >= 0 for the plane (n, d), in the model's positions. The lines of a model's
-    /// edges do not know of it; those found in the image do.
+    /// Cuts the scene: shown is where n · p + d >= 0 for the plane (n, d), for positions as they are here (see
+    /// [`Scene::plane_here`]). The lines of a model's edges do not know of it; those found in the image do.
     pub clip: Option<DVec4>,
     /// Per material where its inner lines come from, in styles that ask: [`ImageInk::artist`]. All from their normals
     /// to begin with.
@@ -42,7 +46,7 @@ pub struct Scene {
 impl Scene {
     /// Finds a model's edges and prepares it.
     pub fn new(mut model: Model) -> Self {
-        let origin = recenter(&mut model);
+        let (origin, scale) = normalize(&mut model);
         let edges = edges::find(
             &model.positions,
             &model.faces,
@@ -59,6 +63,7 @@ impl Scene {
         Self {
             model,
             origin,
+            scale,
             edges,
             material_colors,
             closed,
@@ -88,6 +93,24 @@ impl Scene {
         }
         let names = self.model.materials.iter().map(|m| format!("{:?}", m.name)).collect::<Vec<_>>().join(", ");
         Err(HarnessError::UnknownMaterial { name: material.to_owned(), known: names })
+    }
+
+    /// A place in the model's own space, in the space of the positions here.
+    pub fn place_here(&self, place: DVec3) -> DVec3 {
+        (place - self.origin) * self.scale
+    }
+
+    /// A plane (n, d) of the model's own space, n · p + d = 0, in the space of the positions here: the same plane, with
+    /// the same sides, and n made unit. n must not be zero.
+    pub fn plane_here(&self, plane: DVec4) -> DVec4 {
+        // Of any size: first by the largest component, so that no square leaves the range of f64.
+        let largest = plane.truncate().abs().max_element();
+        let (normal, offset) = (plane.truncate() / largest, plane.w / largest);
+        let length = normal.length();
+        let (normal, offset) = (normal / length, offset / length);
+        // A plane that is so far away cuts off all or nothing, and its number is an f32 on a device.
+        let offset = ((normal.dot(self.origin) + offset) * self.scale).clamp(-FARTHEST, FARTHEST);
+        normal.extend(offset)
     }
 
     /// Whether a point is on the side that is shown.
@@ -170,20 +193,36 @@ impl Scene {
     }
 }
 
-/// Moves a model that is far from the origin, measured in its own size, to the origin.
+/// Nothing of a scene is so far away that more would show. Its square is well within f32.
+pub(crate) const FARTHEST: f64 = 1e15;
+
+/// Beyond 2 to this, and below 2 to minus this, a scene is brought to another size.
+const OCTAVES: i32 = 20;
+
+/// Moves a model that is far from the origin, measured in its own size, to the origin; then brings one that is very large
+/// or very small to a size of about 1, by a power of two, which rounds nothing. Returns what was subtracted, and then the
+/// factor.
 ///
 /// Others stay where they are: a subtraction could round two positions to one. Far away it cannot, since there
 /// the difference of two f32 is exact.
-fn recenter(model: &mut Model) -> DVec3 {
-    let Some((low, high)) = model.bounds() else { return DVec3::ZERO };
-    let center = low.midpoint(high);
-    if center.length() < 4.0 * (high - low).length() {
-        return DVec3::ZERO;
+fn normalize(model: &mut Model) -> (DVec3, f64) {
+    let Some((low, high)) = model.bounds() else { return (DVec3::ZERO, 1.0) };
+    let (low, high) = (low.as_dvec3(), high.as_dvec3());
+    let (middle, diagonal) = (low.midpoint(high), (high - low).length());
+    if !(middle.is_finite() && diagonal.is_finite()) {
+        return (DVec3::ZERO, 1.0);
     }
-    for position in &mut model.positions {
-        *position -= center;
+    let origin = if middle.length() < 4.0 * diagonal { DVec3::ZERO } else { middle.as_vec3().as_dvec3() };
+    let octave = if diagonal > 0.0 { (diagonal / 2.0).log2().floor() as i32 } else { 0 };
+    let scale = if octave.abs() > OCTAVES { 2f64.powi(-octave) } else { 1.0 };
+    if origin != DVec3::ZERO || scale != 1.0 {
+        for position in &mut model.positions {
+            let here = ((position.as_dvec3() - origin) * scale).as_vec3();
+            // What no face uses may lie anywhere, and is not seen.
+            *position = if here.is_finite() { here } else { Vec3::ZERO };
+        }
     }
-    center.as_dvec3()
+    (origin, scale)
 }
 
 fn signed_volume(model: &Model) -> f64 {

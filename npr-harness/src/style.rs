@@ -16,6 +16,7 @@ use crate::light::StyleLight;
 use crate::shadow::{ShadowLines, ShadowStyle};
 use glam::Vec3;
 use npr_gooch::{Gooch, GoochUniform};
+use npr_imagespace::composite::Composite;
 use npr_outline::line_look::LineLook;
 use npr_toon::half_lambert::HalfLambert;
 use npr_toon::normal::NormalUse;
@@ -134,7 +135,8 @@ impl Style {
     ///
     /// # Errors
     /// [`HarnessError::Toon`], [`HarnessError::Gooch`], [`HarnessError::Hatch`], [`HarnessError::SixTones`],
-    /// [`HarnessError::NoThresholds`], [`HarnessError::Range`], [`HarnessError::NoLight`], [`HarnessError::NoShadow`].
+    /// [`HarnessError::NoThresholds`], [`HarnessError::MapEffort`], [`HarnessError::ImageSpace`], [`HarnessError::Range`],
+    /// [`HarnessError::NoLight`], [`HarnessError::NoShadow`].
     pub fn validate(&self) -> Result<(), HarnessError> {
         for component in self.paper.to_array() {
             within("a component of the paper", component, 0.0, 1.0, "0..=1")?;
@@ -145,6 +147,34 @@ impl Style {
         }
         // The most that any shade knows.
         Painter::new(self.lights.iter().map(|light| light.light).collect())?;
+        let (widths, what) = match &self.lines {
+            Some(Lines::Fins(look)) => (&look.width_px[..], "a line's width"),
+            Some(Lines::Printed { width_px, .. }) => (std::slice::from_ref(width_px), "a fin's width"),
+            Some(Lines::Image(_)) | None => (&[][..], ""),
+        };
+        for &width_px in widths {
+            // Wider ones take as long as there are pixels, each.
+            within(what, width_px, 0.0, 256.0, "0..=256 px")?;
+        }
+        let ink = match &self.lines {
+            Some(Lines::Fins(look)) => look.ink,
+            Some(Lines::Printed { ink, .. }) => ink.extend(1.0).to_array(),
+            Some(Lines::Image(ImageInk { composite: Composite::Over { color, opacity }, .. })) => {
+                color.extend(*opacity).to_array()
+            }
+            Some(Lines::Image(_)) | None => [0.0; 4],
+        };
+        for component in ink {
+            within("a component of the lines' ink", component, 0.0, 1.0, "0..=1")?;
+        }
+        if let Some(Lines::Image(ink)) = &self.lines {
+            ink.validate()?;
+            if let ShadowLines::Apart { composite: Composite::Over { color, opacity }, .. } = ink.shadows {
+                for component in color.extend(opacity).to_array() {
+                    within("a component of the ink of shadows", component, 0.0, 1.0, "0..=1")?;
+                }
+            }
+        }
         match &self.shade {
             Shade::Paper | Shade::Normals => {}
             Shade::Lambert { ambient } => within("ambient light", *ambient, 0.0, 1.0, "0..=1")?,

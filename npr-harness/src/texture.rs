@@ -24,35 +24,24 @@ impl MipMapped {
     /// covers; of an odd size the last row or column is shared out by area.
     pub fn new(texture: &Texture) -> Self {
         let mut levels = vec![(texture.width, texture.height, texture.rgba8.clone())];
-        let mut linear: Vec<DVec4> = texture
-            .rgba8
-            .chunks_exact(4)
-            .map(|t| {
-                let d = |i: usize| DECODED[usize::from(t[i])];
-                DVec4::new(d(0), d(1), d(2), f64::from(t[3]) / 255.0)
-            })
-            .collect();
+        // The largest level is decoded where it is read: in f64 it would take eight times its bytes.
+        let decoded = |at: usize| {
+            let texel = &texture.rgba8[4 * at..4 * at + 4];
+            let d = |i: usize| DECODED[usize::from(texel[i])];
+            DVec4::new(d(0), d(1), d(2), f64::from(texel[3]) / 255.0)
+        };
+        let mut linear: Option<Vec<DVec4>> = None;
         let (mut width, mut height) = (texture.width, texture.height);
         while width > 1 || height > 1 {
-            let (next_width, next_height) = ((width / 2).max(1), (height / 2).max(1));
-            let columns = covered(width, next_width);
-            let rows = covered(height, next_height);
-            let mut next = Vec::with_capacity((next_width * next_height) as usize);
-            for row in &rows {
-                for column in &columns {
-                    let mut sum = DVec4::ZERO;
-                    for &(y, in_row) in row {
-                        for &(x, in_column) in column {
-                            sum += linear[(y * width + x) as usize] * (in_row * in_column);
-                        }
-                    }
-                    next.push(sum);
-                }
-            }
-            (width, height, linear) = (next_width, next_height, next);
+            let next = match &linear {
+                None => halved(width, height, decoded),
+                Some(linear) => halved(width, height, |at| linear[at]),
+            };
+            (width, height) = ((width / 2).max(1), (height / 2).max(1));
             let bytes =
-                linear.iter().flat_map(|t| [encode_srgb(t.x), encode_srgb(t.y), encode_srgb(t.z), t.w].map(to_byte));
+                next.iter().flat_map(|t| [encode_srgb(t.x), encode_srgb(t.y), encode_srgb(t.z), t.w].map(to_byte));
             levels.push((width, height, bytes.collect()));
+            linear = Some(next);
         }
         Self { levels, wrap: texture.wrap, smooth: texture.smooth }
     }
@@ -84,7 +73,8 @@ impl MipMapped {
     pub fn nearest_bytes(&self, uv: DVec2) -> [u8; 3] {
         let (width, height, texels) = &self.levels[0];
         let (x, y) = ((uv.x * f64::from(*width)).floor(), (uv.y * f64::from(*height)).floor());
-        let at = 4 * (wrapped(y, *height, self.wrap[1]) * width + wrapped(x, *width, self.wrap[0])) as usize;
+        let (x, y) = (wrapped(x, *width, self.wrap[0]), wrapped(y, *height, self.wrap[1]));
+        let at = 4 * (y as usize * *width as usize + x as usize);
         [texels[at], texels[at + 1], texels[at + 2]]
     }
 
@@ -99,10 +89,30 @@ impl MipMapped {
 
     fn texel(&self, level: usize, x: f64, y: f64) -> DVec4 {
         let (width, height, texels) = &self.levels[level];
-        let at = 4 * (wrapped(y, *height, self.wrap[1]) * width + wrapped(x, *width, self.wrap[0])) as usize;
+        let (x, y) = (wrapped(x, *width, self.wrap[0]), wrapped(y, *height, self.wrap[1]));
+        let at = 4 * (y as usize * *width as usize + x as usize);
         let d = |i: usize| DECODED[usize::from(texels[at + i])];
         DVec4::new(d(0), d(1), d(2), f64::from(texels[at + 3]) / 255.0)
     }
+}
+
+/// The next level of one of this size.
+fn halved(width: u32, height: u32, texel: impl Fn(usize) -> DVec4) -> Vec<DVec4> {
+    let (next_width, next_height) = ((width / 2).max(1), (height / 2).max(1));
+    let (columns, rows) = (covered(width, next_width), covered(height, next_height));
+    let mut next = Vec::with_capacity(next_width as usize * next_height as usize);
+    for row in &rows {
+        for column in &columns {
+            let mut sum = DVec4::ZERO;
+            for &(y, in_row) in row {
+                for &(x, in_column) in column {
+                    sum += texel(y as usize * width as usize + x as usize) * (in_row * in_column);
+                }
+            }
+            next.push(sum);
+        }
+    }
+    next
 }
 
 /// For each texel of a level the texels of the larger one that it covers, with their shares.

@@ -89,7 +89,7 @@ fn what_is_wrong_is_said_in_one_line() {
     std::fs::write(folder.join("model.txt"), OBJ).expect("written");
     std::fs::create_dir(folder.join("folder.obj")).expect("made");
     let model = "corner.obj";
-    let cases: [(&str, &str, &[&str], &str); 11] = [
+    let cases: [(&str, &str, &[&str], &str); 13] = [
         (model, "a.png", &["--style", "watercolour"], "watercolour"),
         ("missing.obj", "a.png", &[], "missing.obj"),
         ("empty.obj", "a.png", &[], "empty.obj"),
@@ -99,7 +99,9 @@ fn what_is_wrong_is_said_in_one_line() {
         (model, "a.png", &["--size", "0x0"], "0 × 0"),
         (model, "a.png", &["--size", "100000x100000"], "100000 × 100000"),
         (model, "no/such/folder/a.png", &["--size", "8x8"], "a.png"),
+        (model, "no/such/folder/a.png", &["--size", "8x8"], "no/such/folder does not exist"),
         (model, "folder.obj", &["--size", "8x8"], "folder.obj"),
+        (model, "./corner.obj", &["--size", "8x8"], "it is read for the picture"),
         (model, "a.png", &["--fov", "180"], "180"),
     ];
     for (input, output, more, named) in cases {
@@ -177,4 +179,25 @@ fn a_style_is_printed_changed_and_drawn() {
         assert!(text(&refused.stderr).contains(why), "{}", text(&refused.stderr));
     }
     assert_eq!(npr(&["style", "no-such"], &[], &folder.0).status.code(), Some(1));
+}
+
+/// Writing fails in its middle: the old picture stays, and no part of the new one.
+#[cfg(unix)]
+#[test]
+fn a_picture_that_cannot_be_written_leaves_the_old_one() {
+    let folder = with_model();
+    std::fs::create_dir(folder.join("out")).expect("made");
+    std::fs::write(folder.join("out/a.png"), b"the old one").expect("written");
+    // Files may have 512 or 1024 bytes; without the trap the process would be killed instead of told.
+    let limited = "trap '' XFSZ; ulimit -f 1; exec \"$0\" render corner.obj -o out/a.png --size 400x300 --backend cpu";
+    let done = Command::new("sh")
+        .args(["-c", limited, env!("CARGO_BIN_EXE_npr")])
+        .current_dir(&folder.0)
+        .output()
+        .expect("there is a shell");
+    let said = text(&done.stderr);
+    assert_eq!(done.status.code(), Some(1), "{said}");
+    assert!(said.starts_with("npr: out/a.png: "), "{said}");
+    assert_eq!(std::fs::read(folder.join("out/a.png")).expect("there"), b"the old one");
+    assert_eq!(std::fs::read_dir(folder.join("out")).expect("a folder").count(), 1, "nothing else is there");
 }

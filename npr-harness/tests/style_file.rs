@@ -243,3 +243,82 @@ fn a_map_comes_from_a_file_or_a_picture_of_a_stroke() {
     let said = read("[shade.hatch.map]\nstroke = \"paper.png\"\n").expect_err("no ink").to_string();
     assert!(said.contains("has no ink"), "{said}");
 }
+
+/// The first and the one after the lines were found by changing stored files at random.
+#[test]
+fn numbers_that_no_picture_survives_are_refused() {
+    let changed = |style: &str, what: &str| {
+        let text = named(style).to_toml().expect("a form");
+        let key = what.split('=').next().expect("a key");
+        assert!(text.lines().any(|line| line.starts_with(key)), "{key}: {text}");
+        text.lines().map(|line| if line.starts_with(key) { what } else { line }).collect::<Vec<_>>().join("\n")
+    };
+    let (lines, thick) = (|what: &str| changed("cartoon", what), |what: &str| changed("ink-thick", what));
+    let cases = [
+        (lines("ink = [0.1, inf, 0.11]"), "the lines' ink of inf"),
+        (lines("ink = [nan, 0, 0]"), "the lines' ink of NaN"),
+        (lines("opacity = -1"), "the lines' ink of -1"),
+        (lines("silhouette-px = 1e30"), "width of 1000000"),
+        (lines("crease-px = nan"), "width of NaN"),
+        (thick("depth-step = nan"), "NaN"),
+        (thick("radius-px = -1"), "-1"),
+        ("paper = [2, 0, 0]".into(), "paper of 2"),
+        ("crease-angle-deg = inf".into(), "inf"),
+        ("[[light]]\ndirection = [nan, 0, 0]".into(), "light 0"),
+        ("[[light]]\nposition = [1e30, 0, 0]".into(), "1e19"),
+        ("[[light]]\ndirection = [1e-40, 0, 0]".into(), "light 0"),
+        ("[shade.hatch]\ntile = 1e30".into(), "tile"),
+        ("[shade.hatch.map]\nside = 4096\ncandidates = 64".into(), "npr tam"),
+        ("[shade.hatch.map]\nside = 4294967295".into(), "4294967295"),
+        ("[shade.hatch.map]\nside = 1e999".into(), ""),
+    ];
+    for (text, named) in cases {
+        let said = message(&text);
+        assert!(said.contains(named) && said.lines().count() == 1, "{text}: {said}");
+    }
+}
+
+#[test]
+fn files_that_are_no_styles_end_in_an_error() {
+    let folder = Folder::new();
+    let read = |name: &str, bytes: &[u8]| {
+        std::fs::write(folder.join(name), bytes).expect("written");
+        Style::read(&folder.join(name)).expect_err(name).to_string()
+    };
+    let long = read("long.toml", &vec![b'#'; (1 << 20) + 1]);
+    assert!(long.contains("long.toml") && long.contains("1048576"), "{long}");
+    assert!(read("bytes.toml", b"paper = \"\xff\"").contains("UTF-8"));
+    let deep = [b"a = ".as_slice(), &vec![b'['; 1 << 19]].concat();
+    assert!(read("deep.toml", &deep).contains("deep.toml:1:"));
+    let nested = [b"a".as_slice(), &b".a".repeat(1 << 18), b" = 1"].concat();
+    assert!(read("nested.toml", &nested).contains("nested.toml:1:"));
+    // What a style names is a regular file, too.
+    for (form, file) in [("shade.ramp.image", "from = 0\nto = 1\n"), ("shade.hatch.map", "")] {
+        for device in ["/dev/zero", "/dev/tty", "."] {
+            let said = read("named.toml", format!("[{form}]\nfile = {device:?}\n{file}").as_bytes());
+            assert!(said.contains("regular file"), "{form}, {device}: {said}");
+        }
+    }
+    let stroke = read("stroke.toml", b"[shade.hatch.map]\nstroke = \"/dev/zero\"\n");
+    assert!(stroke.contains("regular file"), "{stroke}");
+}
+
+#[test]
+fn pictures_of_too_many_pixels_are_not_decoded() {
+    let folder = Folder::new();
+    // A header alone: 65,535 by 65,535 of RGBA. Decoding would begin with 16 GiB.
+    let mut header = b"IHDR\0\0\xff\xff\0\0\xff\xff\x08\x06\0\0\0".to_vec();
+    let sum = header.iter().fold(!0u32, |sum, &byte| {
+        (0..8).fold(sum ^ u32::from(byte), |sum, _| if sum & 1 == 1 { sum >> 1 ^ 0xedb8_8320 } else { sum >> 1 })
+    });
+    header.extend((!sum).to_be_bytes());
+    let bytes = [b"\x89PNG\r\n\x1a\n\0\0\0\x0d".as_slice(), &header, b"\0\0\0\0IDAT"].concat();
+    std::fs::write(folder.join("huge.png"), bytes).expect("written");
+    for text in
+        ["[shade.ramp.image]\nfile = \"huge.png\"\nfrom = 0\nto = 1\n", "[shade.hatch.map]\nstroke = \"huge.png\"\n"]
+    {
+        std::fs::write(folder.join("huge.toml"), text).expect("written");
+        let said = Style::read(&folder.join("huge.toml")).expect_err("too many").to_string();
+        assert!(said.contains("65535"), "{said}");
+    }
+}

@@ -14,7 +14,7 @@
 //!
 //! - [`draw`] makes the images of a [`Tam`] from [`TamParameters`], with strokes that thin out at their ends or that look
 //!   like a [`StrokeImage`]; [`store`] puts a map into one file, the modules `png` and `sheet` (feature `image`, on by
-//!   default) into pictures.
+//!   default) into pictures, and [`files`] those into files that are never half there.
 //! - [`hatch_weights`] and [`hatch_blend`], listings 4 and 5: six tones by light; [`weights`] tells the transfer
 //!   curve: with a brightness of 7 and the default tones the hatched tone is N·L, down to 1/7. [`hatch_color`] puts
 //!   it over a coloured surface. [`hatch_shadowed`] has the darkest tone in shadows.
@@ -70,6 +70,7 @@ pub mod density;
 mod draw;
 mod error;
 pub mod field;
+pub mod files;
 pub mod lookup;
 pub mod mapping;
 mod parameters;

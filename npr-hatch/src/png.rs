@@ -1,12 +1,17 @@
 //! Pictures of strokes from PNG files, and maps into them.
 
 use std::fs;
+use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
-use image::{DynamicImage, GrayImage, ImageError, Luma};
+use image::{DynamicImage, GrayImage, ImageError, ImageFormat, ImageReader, Luma};
 
+use crate::files::{read_file, write_file};
 use crate::sheet::Sheet;
 use crate::{HatchError, StrokeImage, Tam};
+
+/// A picture of a stroke that is longer holds none.
+const MOST_BYTES: u64 = 1 << 30;
 
 type Gray16 = image::ImageBuffer<Luma<u16>, Vec<u16>>;
 
@@ -30,13 +35,18 @@ impl StrokeImage {
         Self::from_ink(width, height, &ink.collect::<Vec<_>>())
     }
 
-    /// From a PNG file.
+    /// From a PNG file of at most 1 GiB. The number of texels is looked at before they are decoded.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, HatchError> {
         let path = path.as_ref();
         let failed = |source: ImageError| HatchError::Image { path: path.into(), source };
-        let reader = image::ImageReader::open(path).map_err(|error| failed(error.into()))?;
-        let reader = reader.with_guessed_format().map_err(|error| failed(error.into()))?;
-        Self::from_picture(&reader.decode().map_err(failed)?)
+        let bytes = read_file(path, MOST_BYTES).map_err(|error| failed(error.into()))?;
+        let reader = || ImageReader::new(Cursor::new(&bytes)).with_guessed_format().map_err(|e| failed(e.into()));
+        let (width, height) = reader()?.into_dimensions().map_err(failed)?;
+        let texels = u64::from(width) * u64::from(height);
+        if texels > Self::MAX_TEXELS as u64 {
+            return Err(HatchError::Texels { width, height, texels: usize::try_from(texels).unwrap_or(usize::MAX) });
+        }
+        Self::from_picture(&reader()?.decode().map_err(failed)?)
     }
 }
 
@@ -58,12 +68,12 @@ pub fn write_images(tam: &Tam, folder: impl AsRef<Path>) -> Result<Vec<PathBuf>,
     Ok(paths)
 }
 
-/// Writes 8-bit gray texels as a PNG file.
+/// Writes 8-bit gray texels as a PNG file, whole or not at all ([`write_file`]).
 pub fn write_gray(path: impl AsRef<Path>, width: u32, height: u32, texels: &[u8]) -> Result<(), HatchError> {
     let path = path.as_ref();
     let image = GrayImage::from_raw(width, height, texels.to_vec());
     let image = image.ok_or(HatchError::Texels { width, height, texels: texels.len() })?;
-    image.save(path).map_err(|source| HatchError::Image { path: path.into(), source })
+    save(path, |to| image.write_to(to, ImageFormat::Png))
 }
 
 /// Writes a sheet as a PNG file.
@@ -76,5 +86,13 @@ pub fn write_gray16(path: impl AsRef<Path>, width: u32, height: u32, texels: &[u
     let path = path.as_ref();
     let image = Gray16::from_raw(width, height, texels.to_vec());
     let image = image.ok_or(HatchError::Texels { width, height, texels: texels.len() })?;
-    image.save(path).map_err(|source| HatchError::Image { path: path.into(), source })
+    save(path, |to| image.write_to(to, ImageFormat::Png))
+}
+
+/// Encodes a picture, and only then touches the file.
+fn save(path: &Path, encode: impl Fn(&mut Cursor<Vec<u8>>) -> Result<(), ImageError>) -> Result<(), HatchError> {
+    let failed = |source| HatchError::Image { path: path.into(), source };
+    let mut bytes = Cursor::new(Vec::new());
+    encode(&mut bytes).map_err(failed)?;
+    write_file(path, bytes.get_ref()).map_err(|error| failed(error.into()))
 }

@@ -3,6 +3,7 @@
 use approx::assert_abs_diff_eq;
 use glam::DVec3;
 use npr_hatch::*;
+use proptest::prelude::*;
 
 type Register = [f64; 4];
 
@@ -181,5 +182,67 @@ fn shadows_have_the_darkest_tone() {
         assert_eq!(hatch_shadowed(tone, darkest, 0.0), tone.min(darkest));
         let soft = hatch_shadowed(tone, darkest, 0.5);
         assert!((soft - 0.5 * (tone + tone.min(darkest))).abs() < 1e-15);
+    }
+}
+
+/// Six tones that fall, between white and black.
+fn tones() -> impl Strategy<Value = (DVec3, DVec3)> {
+    prop::array::uniform6(0.001..1.0f64).prop_map(|mut tones| {
+        tones.sort_by(|a, b| b.total_cmp(a));
+        (DVec3::from_slice(&tones), DVec3::from_slice(&tones[3..]))
+    })
+}
+
+proptest! {
+    /// At any light factor: no weight below 0 or above 1, at most two of them, neighbours, and a sum of 1 but above 6.
+    #[test]
+    fn weights_of_any_factor_are_shares(factor in prop_oneof![-2.0..9.0f64, any::<f64>()]) {
+        prop_assume!(!factor.is_nan());
+        let HatchWeights { light, dark } = hatch_weights(factor);
+        let weights = [light.x, light.y, light.z, dark.x, dark.y, dark.z];
+        prop_assert!(weights.iter().all(|weight| (0.0..=1.0).contains(weight)), "{weights:?}");
+        prop_assert!((weights.iter().sum::<f64>() - (7.0 - factor).clamp(0.0, 1.0)).abs() < 1e-12, "{weights:?}");
+        let there: Vec<usize> = (0..6).filter(|&tone| weights[tone] > 0.0).collect();
+        prop_assert!(there.len() <= 2 && there.windows(2).all(|pair| pair[1] == pair[0] + 1), "{weights:?}");
+    }
+
+    /// A blend lies between the darkest of its texels and paper, and gets no darker where the light gets brighter.
+    #[test]
+    fn blends_of_any_tones_stay_between_them(
+        (light, dark) in tones(),
+        factor in prop_oneof![-2.0..9.0f64, -1e300..1e300f64],
+        more in 0.0..3.0f64,
+    ) {
+        let tone = hatch_blend(light, dark, hatch_weights(factor));
+        prop_assert!((dark.z - 1e-12..=1.0).contains(&tone), "{tone}");
+        let brighter = hatch_blend(light, dark, hatch_weights(factor + more));
+        prop_assert!(brighter >= tone - 1e-12, "{tone}, then {brighter}");
+        for lit in [0.0, 0.3, 1.0] {
+            let shadowed = hatch_shadowed(tone, dark.z, lit);
+            prop_assert!((dark.z - 1e-12..=tone + 1e-12).contains(&shadowed), "{shadowed} of {tone}");
+        }
+        let color = hatch_color(tone, DVec3::new(0.9, 0.5, 0.2), DVec3::new(0.1, 0.0, 0.2));
+        prop_assert!(color.is_finite() && color.min_element() >= 0.0 && color.max_element() <= 1.0, "{color}");
+    }
+
+    /// The factor that gives a tone is found for any tones, and gives it, or the nearest there is.
+    #[test]
+    fn any_tone_is_reached((light, dark) in tones(), tone in 0.0..1.0f64) {
+        let factor = hatch_linear(light, dark, tone);
+        prop_assert!((1.0..=7.0).contains(&factor), "{factor}");
+        let tones = [1.0, light.x, light.y, light.z, dark.x, dark.y, dark.z];
+        // Two tones that are one have no factor between them.
+        prop_assume!(tones.windows(2).all(|pair| pair[0] - pair[1] > 1e-6));
+        let found = hatch_transfer(light, dark, factor);
+        prop_assert!((found - tone.max(dark.z)).abs() < 1e-9, "{found} in place of {tone}");
+    }
+
+    /// The texels that six tones may have, and weights of any sum: a blend is a tone, whatever it is given.
+    #[test]
+    fn a_blend_is_a_tone(texels in prop::array::uniform6(0.0..=1.0f64), weights in prop::array::uniform6(0.0..=4.0f64)) {
+        let three = |of: &[f64]| DVec3::from_slice(of);
+        let weights = HatchWeights { light: three(&weights), dark: three(&weights[3..]) };
+        let tone = hatch_blend(three(&texels), three(&texels[3..]), weights);
+        prop_assert!((0.0..=1.0).contains(&tone), "{tone}");
     }
 }

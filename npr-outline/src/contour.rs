@@ -121,6 +121,7 @@ pub fn contour_edges(model: &Model, edges: &Edges, options: &ContourOptions) -> 
         let normal = if own == Vec3::ZERO { lent.get(&face).copied().unwrap_or(Vec3::ZERO) } else { own };
         if is_turned(face) { -normal } else { normal }
     };
+    let points = plane_points(model);
     let mut contours = ContourEdges { origin, ..Default::default() };
     contours.planes.reserve_exact(edges.edges.len());
     contours.ends.reserve_exact(edges.edges.len());
@@ -158,7 +159,8 @@ pub fn contour_edges(model: &Model, edges: &Edges, options: &ContourOptions) -> 
                 flags |= TRAIT_CUT_OUT;
             }
             let plane = |normal: Vec3, face: u32| {
-                let on = plane_point(model, face) - origin.as_dvec3();
+                let on = points.get(face as usize).copied().unwrap_or_else(|| first_corner(model, face));
+                let on = on - origin.as_dvec3();
                 normal.extend(-normal.as_dvec3().dot(on) as f32).to_array()
             };
             let plane0 = plane(n0, first);
@@ -176,19 +178,21 @@ pub fn contour_edges(model: &Model, edges: &Edges, options: &ContourOptions) -> 
     Ok(contours)
 }
 
-/// A point of the face's plane, the same for all of the face's edges: its first corner, or of a polygon, which may be
-/// warped, the mean of its triangles' corners.
-fn plane_point(model: &Model, face: u32) -> DVec3 {
-    let corner = |v: u32| model.positions[v as usize].as_dvec3();
-    let face = face as usize;
-    if model.face_polygon.is_empty() {
-        return corner(model.faces[face][0]);
+fn first_corner(model: &Model, face: u32) -> DVec3 {
+    model.positions[model.faces[face as usize][0] as usize].as_dvec3()
+}
+
+/// Per face a point of its plane, the same for all of its edges: of a polygon, which may be warped, the mean of its
+/// triangles' corners. Empty where each face is a polygon by itself: then it is [`first_corner`].
+fn plane_points(model: &Model) -> Vec<DVec3> {
+    let mut points = Vec::with_capacity(model.face_polygon.len());
+    for polygon in model.face_polygon.chunk_by(|a, b| a == b) {
+        let faces = &model.faces[points.len()..points.len() + polygon.len()];
+        let corners = faces.iter().flatten().map(|&v| model.positions[v as usize].as_dvec3());
+        let mean = corners.sum::<DVec3>() / (3 * polygon.len()) as f64;
+        points.resize(points.len() + polygon.len(), mean);
     }
-    let polygon = model.face_polygon[face];
-    let first = model.face_polygon[..face].iter().rposition(|&p| p != polygon).map_or(0, |before| before + 1);
-    let count = model.face_polygon[first..].iter().take_while(|&&p| p == polygon).count();
-    let sum: DVec3 = model.faces[first..first + count].iter().flatten().map(|&v| corner(v)).sum();
-    sum / (3 * count) as f64
+    points
 }
 
 /// For each face of zero area the normal, wound like the face, of the neighbour over its longest edge.
@@ -209,21 +213,32 @@ fn borrowed_normals(positions: &[Vec3], edges: &Edges) -> HashMap<u32, Vec3> {
             }
         }
     }
-    let mut lent = HashMap::new();
+    // Slivers may lean on slivers: each is asked once, and what is found is handed back along the way. A ring of them, and
+    // what leans on it, has none.
+    let mut lent = HashMap::<u32, Vec3>::new();
+    let mut way = Vec::new();
     for &face in lenders.keys() {
-        // Slivers may lean on slivers; a ring of them ends after as many steps as there are.
-        let (mut at, mut turned) = (face, false);
-        for _ in 0..=lenders.len() {
-            let Some(&(_, lender, oppositely)) = lenders.get(&at) else { break };
-            turned ^= oppositely;
-            at = lender;
-            let normal = edges.face_normals[at as usize];
-            if normal != Vec3::ZERO {
-                lent.insert(face, if turned { -normal } else { normal });
-                break;
+        let mut at = face;
+        let mut found = loop {
+            let own = edges.face_normals[at as usize];
+            if own != Vec3::ZERO {
+                break own;
             }
+            if let Some(&known) = lent.get(&at) {
+                break known;
+            }
+            let Some(&(_, lender, oppositely)) = lenders.get(&at) else { break Vec3::ZERO };
+            // Until it is known: whoever comes by again has gone round.
+            lent.insert(at, Vec3::ZERO);
+            way.push((at, oppositely));
+            at = lender;
+        };
+        while let Some((at, oppositely)) = way.pop() {
+            found = if oppositely { -found } else { found };
+            lent.insert(at, found);
         }
     }
+    lent.retain(|_, normal| *normal != Vec3::ZERO);
     lent
 }
 

@@ -4,9 +4,9 @@
 //! antialiasing, as in 2002.
 
 use crate::OutlineError;
+use crate::filled_buffer::filled_buffer;
 use crate::fin_printed::{FIN_PRINTED_WGSL, FinDepth, FinView, PrintedFins};
 use crate::normal_format::{NORMAL_FORMAT_WGSL, NormalFormat};
-use wgpu::util::DeviceExt;
 
 pub(crate) const FIN_PASS_WGSL: &str = include_str!("fin_pass.wgsl");
 
@@ -124,9 +124,7 @@ impl FinPass {
         if bytes > limit {
             return Err(OutlineError::TooManyEdges { bytes, limit });
         }
-        let buffer = |label, contents: &[u8], usage| {
-            device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
-        };
+        let buffer = |label, contents: &[u8], usage| filled_buffer(device, label, contents, usage);
         let placed: Vec<[f32; 6]> = fins
             .vertices
             .iter()
@@ -169,11 +167,9 @@ impl FinPass {
         if fins.index_count == 0 {
             return;
         }
-        let uniform = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("printed fins' view"),
-            contents: bytemuck::bytes_of(&FinUniform::new(view, ink)),
-            usage: wgpu::BufferUsages::UNIFORM,
-        });
+        let uniform = FinUniform::new(view, ink);
+        let usage = wgpu::BufferUsages::UNIFORM;
+        let uniform = filled_buffer(device, "printed fins' view", bytemuck::bytes_of(&uniform), usage);
         let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("printed fins"),
             layout: &self.layout,

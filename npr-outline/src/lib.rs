@@ -41,6 +41,8 @@
 pub mod contour;
 mod error;
 #[cfg(feature = "wgpu")]
+pub mod filled_buffer;
+#[cfg(feature = "wgpu")]
 pub mod fin_pass;
 pub mod fin_printed;
 pub mod line_look;

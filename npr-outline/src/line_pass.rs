@@ -10,10 +10,10 @@
 
 use crate::OutlineError;
 use crate::contour::{ContourEdges, TRAIT_ALWAYS, TRAIT_CUT_OUT};
+use crate::filled_buffer::filled_buffer;
 use crate::line_look::LineLook;
 use crate::segment::LineView;
 use glam::{DVec4, Vec3};
-use wgpu::util::DeviceExt;
 
 /// The WGSL library of this crate: no bindings, no entry points.
 pub const WGSL: &str = include_str!("line.wgsl");
@@ -222,7 +222,7 @@ impl LinePass {
         // A binding of no bytes is refused; one blank record stands in where there are no edges.
         let buffer = |label, contents: &[u8], usage| {
             let contents = if contents.is_empty() { &[0u8; 32][..] } else { contents };
-            device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
+            filled_buffer(device, label, contents, usage)
         };
         let storage = wgpu::BufferUsages::STORAGE;
         let planes = buffer("outline planes", bytemuck::cast_slice(&contours.planes), storage);
@@ -269,7 +269,7 @@ impl LinePass {
     /// `eye`: world space, a point with w = 1 or the direction to the viewer with w = 0.
     ///
     /// # Errors
-    /// [`OutlineError::Width`].
+    /// [`OutlineError::Width`]; [`OutlineError::TooManyEdges`] where the records do not fit a buffer.
     #[expect(clippy::too_many_arguments, reason = "each is a thing of its own; a struct would only rename them")]
     pub fn record(
         &self,
@@ -283,22 +283,21 @@ impl LinePass {
     ) -> Result<(), OutlineError> {
         look.validate()?;
         let uniform = OutlineUniform::new(look, view, eye, source);
-        let uniform = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("outline view"),
-            contents: bytemuck::bytes_of(&uniform),
-            usage: wgpu::BufferUsages::UNIFORM,
-        });
+        let uniform = filled_buffer(device, "outline view", bytemuck::bytes_of(&uniform), wgpu::BufferUsages::UNIFORM);
         let group = |layout, resources: &[_]| bind_group(device, "outline", layout, resources);
         let view_group = group(&self.view_layout, &[uniform.as_entire_binding()]);
         let picture = [targets.depth, targets.painted].map(wgpu::BindingResource::TextureView);
         let picture_group = group(&self.picture_layout, &picture);
         let records = match source {
             LineSource::Records([]) => None,
-            LineSource::Records(records) => Some(device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: Some("outline records"),
-                contents: bytemuck::cast_slice(records),
-                usage: wgpu::BufferUsages::VERTEX,
-            })),
+            LineSource::Records(records) => {
+                let (bytes, limit) = (size_of_val(records) as u64, device.limits().max_buffer_size);
+                if bytes > limit {
+                    return Err(OutlineError::TooManyEdges { bytes, limit });
+                }
+                let usage = wgpu::BufferUsages::VERTEX;
+                Some(filled_buffer(device, "outline records", bytemuck::cast_slice(records), usage))
+            }
             LineSource::OnDevice(edges) => {
                 self.record_compaction(encoder, &view_group, edges);
                 None

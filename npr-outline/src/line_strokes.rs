@@ -11,13 +11,13 @@
 //! storage texture: [`STROKE_FORMAT`].
 
 use crate::OutlineError;
+use crate::filled_buffer::filled_buffer;
 use crate::line_look::LineLook;
 use crate::line_pass::{
     INK_WGSL, LineRecord, OutlineUniform, WGSL, bind_group, buffer_entry, shader, storage_limit, texture_entry,
     workgroups,
 };
 use crate::segment::LineView;
-use wgpu::util::DeviceExt;
 
 const STROKES_WGSL: &str = include_str!("line_strokes.wgsl");
 
@@ -174,9 +174,7 @@ impl LineStrokes {
         let invocations = SHARERS * records.len() as u32;
         let (columns, rows) = workgroups(invocations);
         let uniform = OutlineUniform::of_records(look, view, records.len() as u32, 64 * columns);
-        let buffer = |label, contents: &[u8], usage| {
-            device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
-        };
+        let buffer = |label, contents: &[u8], usage| filled_buffer(device, label, contents, usage);
         let uniform = buffer("stroke view", bytemuck::bytes_of(&uniform), wgpu::BufferUsages::UNIFORM);
         let records = buffer("stroke records", bytemuck::cast_slice(records), wgpu::BufferUsages::STORAGE);
         let group = |layout, resources: &[_]| bind_group(device, "strokes", layout, resources);

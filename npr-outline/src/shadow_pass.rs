@@ -12,9 +12,9 @@
 //! 8 bits: a pixel under 128 to 256 layers of faces between it and the light is taken for lit.
 
 use crate::OutlineError;
+use crate::filled_buffer::filled_buffer;
 use crate::shadow_volume::{ShadowCasters, VolumeEdge, VolumeFace};
 use glam::{DMat4, DVec4};
-use wgpu::util::DeviceExt;
 
 /// WGSL of [`crate::shadow_volume`]: no bindings, no entry points.
 pub const SHADOW_WGSL: &str = include_str!("shadow_volume.wgsl");
@@ -214,15 +214,13 @@ impl ShadowPass {
         area: Option<[u32; 4]>,
     ) {
         let local = light - casters.origin.as_dvec3().extend(0.0) * light.w;
-        let uniform = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("shadow view"),
-            contents: bytemuck::bytes_of(&ShadowUniform {
-                clip_from_world: clip_from_world.as_mat4().to_cols_array_2d(),
-                light: light.as_vec4().to_array(),
-                local_light: local.as_vec4().to_array(),
-            }),
-            usage: wgpu::BufferUsages::UNIFORM,
-        });
+        let uniform = ShadowUniform {
+            clip_from_world: clip_from_world.as_mat4().to_cols_array_2d(),
+            light: light.as_vec4().to_array(),
+            local_light: local.as_vec4().to_array(),
+        };
+        let usage = wgpu::BufferUsages::UNIFORM;
+        let uniform = filled_buffer(device, "shadow view", bytemuck::bytes_of(&uniform), usage);
         let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("shadow view"),
             layout: &self.layout,
@@ -295,6 +293,5 @@ fn upload(device: &wgpu::Device, label: &'static str, contents: &[u8]) -> Result
         return Err(OutlineError::TooManyEdges { bytes, limit });
     }
     let usage = wgpu::BufferUsages::VERTEX;
-    let descriptor = wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage };
-    Ok((!contents.is_empty()).then(|| device.create_buffer_init(&descriptor)))
+    Ok((!contents.is_empty()).then(|| filled_buffer(device, label, contents, usage)))
 }

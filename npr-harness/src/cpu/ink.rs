@@ -72,7 +72,7 @@ pub(super) fn blot(texels: &mut [[u32; 2]], size: (u32, u32), pixels: &[usize], 
         let along = |at: u32, of: u32, ink: u32| at * ink / of..((at + 1) * ink).div_ceil(of);
         for row in along(y, picture.1, size.1) {
             for column in along(x, picture.0, size.0) {
-                let texel = &mut texels[(row * size.0 + column) as usize];
+                let texel = &mut texels[row as usize * size.0 as usize + column as usize];
                 *texel = if *texel == BACKGROUND { [u32::MAX; 2] } else { BACKGROUND };
             }
         }

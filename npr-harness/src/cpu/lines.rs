@@ -46,7 +46,9 @@ fn line_coverage(context: &FrameContext<'_>, frame: &CpuFrame, look: &LineLook, 
         let [p0, p1] = segment.ends_px;
         let (low, high) = ((p0.min(p1) - reach).floor(), (p0.max(p1) + reach).ceil());
         for y in (low.y.max(0.0) as i64)..=(high.y.min(last.1 as f64) as i64) {
-            for x in (low.x.max(0.0) as i64)..=(high.x.min(last.0 as f64) as i64) {
+            // Of the row what can be within reach: of a long slanted line that is little of its box.
+            let (from, to) = row_reach(segment.ends_px, y as f64 + 0.5, reach);
+            for x in (low.x.max(from).max(0.0) as i64)..=(high.x.min(to).min(last.0 as f64) as i64) {
                 let point = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
                 let covered = outline_coverage(&segment, point, width_px);
                 let pixel = &mut coverage[(y * (last.0 + 1) + x) as usize];
@@ -59,6 +61,19 @@ fn line_coverage(context: &FrameContext<'_>, frame: &CpuFrame, look: &LineLook, 
         }
     }
     coverage
+}
+
+/// Where a row of pixels may be within reach of a line: the columns' range, a little too wide.
+fn row_reach([p0, p1]: [DVec2; 2], row: f64, reach: f64) -> (f64, f64) {
+    let along = p1 - p0;
+    let length = along.length();
+    // A line along the row has all of its box.
+    if along.y.abs() <= 1e-3 * length {
+        return (f64::NEG_INFINITY, f64::INFINITY);
+    }
+    let middle = p0.x + (row - p0.y) / along.y * along.x;
+    let half = reach * length / along.y.abs() + 1.0;
+    (middle - half, middle + half)
 }
 
 /// Draws the fins of the printed listing over `frame`. They are sampled where the surfaces are, so that a moved sample

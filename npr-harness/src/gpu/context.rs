@@ -16,7 +16,15 @@ pub struct GpuContext {
     pub can_find_lines: bool,
     /// Whether lines can be drawn by compute shaders.
     pub can_stroke: bool,
-    faults: Arc<Mutex<Vec<String>>>,
+    faults: Arc<Mutex<Faults>>,
+}
+
+/// What a device reported since it was last asked.
+#[derive(Default)]
+struct Faults {
+    /// Why it is there no more; that remains.
+    lost: Option<String>,
+    first: Option<wgpu::Error>,
 }
 
 impl GpuContext {
@@ -60,13 +68,20 @@ impl GpuContext {
             })
             .await
             .map_err(|source| GpuError::NoDevice { adapter: describe(&info), source })?;
-        let faults = Arc::new(Mutex::new(Vec::new()));
+        // Without these, wgpu ends the process.
+        let faults = Arc::new(Mutex::new(Faults::default()));
         let sink = Arc::clone(&faults);
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
             if let Ok(mut faults) = sink.lock() {
-                faults.push(error.to_string());
+                faults.first.get_or_insert(error);
             }
         }));
+        let sink = Arc::clone(&faults);
+        device.set_device_lost_callback(move |reason, message| {
+            if let Ok(mut faults) = sink.lock() {
+                faults.lost.get_or_insert_with(|| one_line(&format!("{reason:?} {message}")));
+            }
+        });
         Ok(Self { device, queue, info, can_find_lines, can_stroke, faults })
     }
 
@@ -83,14 +98,21 @@ impl GpuContext {
     /// Waits for all that was submitted.
     ///
     /// # Errors
-    /// [`GpuError::Device`] with the first fault that the device reported since the last call.
+    /// [`GpuError::Lost`]; [`GpuError::OutOfMemory`] or [`GpuError::Device`], the first fault that the device reported
+    /// since the last call.
     pub fn wait(&self) -> Result<(), GpuError> {
         let polled = self.device.poll(wgpu::PollType::wait_indefinitely());
         let mut faults = self.faults.lock().map_err(|_| GpuError::Device { fault: "a fault was lost".into() })?;
-        if let Some(fault) = faults.drain(..).next() {
-            return Err(GpuError::Device { fault });
+        if let Some(reason) = &faults.lost {
+            return Err(GpuError::Lost { reason: reason.clone() });
         }
-        polled.map(|_| ()).map_err(|error| GpuError::Device { fault: error.to_string() })
+        match faults.first.take() {
+            Some(error @ wgpu::Error::OutOfMemory { .. }) => {
+                Err(GpuError::OutOfMemory { fault: one_line(&error.to_string()) })
+            }
+            Some(error) => Err(GpuError::Device { fault: one_line(&error.to_string()) }),
+            None => polled.map(|_| ()).map_err(|error| GpuError::Device { fault: one_line(&error.to_string()) }),
+        }
     }
 }
 
@@ -103,7 +125,7 @@ impl GpuContext {
             let _ = sender.send(result);
         });
         self.wait()?;
-        let device_error = |fault: String| GpuError::Device { fault };
+        let device_error = |fault: String| GpuError::Device { fault: one_line(&fault) };
         receiver.recv().map_err(|e| device_error(e.to_string()))?.map_err(|e| device_error(e.to_string()))?;
         let mapped = buffer.get_mapped_range(..).map_err(|e| device_error(e.to_string()))?;
         Ok(mapped.to_vec())
@@ -122,6 +144,11 @@ impl GpuContext {
         self.queue.submit([encoder.finish()]);
         self.map(&copy)
     }
+}
+
+/// wgpu tells causes on lines of their own.
+fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 fn describe(info: &wgpu::AdapterInfo) -> String {

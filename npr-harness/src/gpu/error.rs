@@ -53,7 +53,19 @@ pub enum GpuError {
     /// Shadow volumes in a parallel view, whose depth ends, on a device that cuts off what is farther.
     #[error("this device cannot draw shadow volumes in a parallel view (a shadow map, or the CPU, can)")]
     ParallelVolumes,
-    /// The device reported a fault, or was lost.
+    /// The device is there no more.
+    #[error("the graphics device was lost: {reason}")]
+    Lost {
+        /// In its own words.
+        reason: String,
+    },
+    /// The device has no memory left.
+    #[error("the graphics device is out of memory: {fault}")]
+    OutOfMemory {
+        /// In its own words.
+        fault: String,
+    },
+    /// The device reported a fault.
     #[error("the graphics device failed: {fault}")]
     Device {
         /// In its own words.
@@ -74,4 +86,26 @@ pub enum GpuError {
     /// A tonal art map that cannot be looked up.
     #[error(transparent)]
     Hatch(#[from] npr_hatch::HatchError),
+}
+
+impl GpuError {
+    /// Whether it lies with the device, and the CPU may make the picture.
+    pub fn is_of_the_device(&self) -> bool {
+        use npr_outline::OutlineError;
+        match self {
+            Self::NoAdapter { .. }
+            | Self::NoDevice { .. }
+            | Self::TooLarge { .. }
+            | Self::RampTooLarge { .. }
+            | Self::BufferTooLarge { .. }
+            | Self::ParallelVolumes
+            | Self::Lost { .. }
+            | Self::OutOfMemory { .. }
+            | Self::Device { .. } => true,
+            Self::Outline(error) => {
+                matches!(error, OutlineError::TooManyEdges { .. } | OutlineError::PictureTooLarge { .. })
+            }
+            Self::ImageSpace(_) | Self::Toon(_) | Self::Gooch(_) | Self::Hatch(_) => false,
+        }
+    }
 }

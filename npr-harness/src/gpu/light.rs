@@ -4,6 +4,7 @@ use super::{GpuContext, GpuError};
 use crate::style::{PainterShade, Ramp2dSource, RampShade, RampSource, Shade, Style};
 use bytemuck::Zeroable;
 use npr_gooch::GoochUniform;
+use npr_outline::filled_buffer::filled_buffer;
 use npr_toon::ToonUniform;
 use npr_toon::half_lambert::HalfLambert;
 use npr_toon::normal::NormalUse;
@@ -242,9 +243,5 @@ impl Blank {
 
 /// A uniform that is written once.
 pub(super) fn uniform_buffer(device: &wgpu::Device, contents: &[u8]) -> wgpu::Buffer {
-    device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-        label: Some("uniform"),
-        contents,
-        usage: wgpu::BufferUsages::UNIFORM,
-    })
+    filled_buffer(device, "uniform", contents, wgpu::BufferUsages::UNIFORM)
 }

@@ -11,6 +11,7 @@ use crate::texture::MipMapped;
 use bytemuck::Zeroable;
 use glam::Vec4;
 use npr_mesh::{AlphaMode, Texture, Wrap};
+use npr_outline::filled_buffer::filled_buffer;
 use std::collections::HashMap;
 use std::ops::Range;
 use wgpu::util::DeviceExt;
@@ -62,8 +63,7 @@ impl GpuScene {
             if bytes > limit {
                 return Err(GpuError::BufferTooLarge { what, bytes, limit });
             }
-            let descriptor = wgpu::util::BufferInitDescriptor { label: Some(what), contents, usage };
-            Ok(context.device.create_buffer_init(&descriptor))
+            Ok(filled_buffer(&context.device, what, contents, usage))
         };
         let split =
             plan.image.as_ref().map(|image| split_by_region(&model.faces, &image.face_region, model.positions.len()));
@@ -231,7 +231,8 @@ fn upload_texture(context: &GpuContext, texture: &Texture) -> (wgpu::TextureView
     let levels = MipMapped::new(texture).levels;
     let limit = context.device.limits().max_texture_dimension_2d;
     // Of a texture that the device cannot hold, the levels that it can.
-    let fitting: Vec<_> = levels.iter().skip_while(|(w, h, _)| *w > limit || *h > limit).collect();
+    let fits = |&(w, h, ref level): &(u32, u32, Vec<u8>)| w.max(h) <= limit && u32::try_from(level.len()).is_ok();
+    let fitting: Vec<_> = levels.iter().skip_while(|level| !fits(level)).collect();
     let (width, height, _) = *fitting[0];
     let mut bytes = Vec::new();
     // A texture's levels halve, rounding down, exactly as those of `MipMapped` do.

@@ -16,9 +16,9 @@ use glam::{DVec2, DVec3, DVec4};
 use npr_imagespace::artist::LineKind;
 use npr_imagespace::format::texel::{DepthCode, TexelLayout};
 use npr_imagespace::pass::fused::texel_format;
+use npr_outline::filled_buffer::filled_buffer;
 use std::cell::RefCell;
 use std::collections::HashMap;
-use wgpu::util::DeviceExt;
 
 /// `SurfaceView` of `surface.wgsl`.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
@@ -353,13 +353,8 @@ impl SurfacePass {
             Vec::new()
         };
         let blended_indices = (!blended.is_empty()).then(|| {
-            device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: Some("blended faces"),
-                contents: bytemuck::cast_slice(
-                    &blended.iter().map(|f| scene.model.faces[*f as usize]).collect::<Vec<_>>(),
-                ),
-                usage: wgpu::BufferUsages::INDEX,
-            })
+            let faces: Vec<_> = blended.iter().map(|f| scene.model.faces[*f as usize]).collect();
+            filled_buffer(device, "blended faces", bytemuck::cast_slice(&faces), wgpu::BufferUsages::INDEX)
         });
         let paper = style.paper.as_dvec3();
         let clear = wgpu::Color { r: paper.x, g: paper.y, b: paper.z, a: 1.0 };

@@ -6,8 +6,8 @@
 use super::Style;
 use super::form::StyleForm;
 use crate::compare::ImageError;
-use std::fs;
-use std::io::{self, Read};
+use npr_hatch::files::read_file;
+use std::io;
 use std::path::{Path, PathBuf};
 
 /// Longer files are no styles.
@@ -101,14 +101,6 @@ impl Style {
 }
 
 fn read_text(path: &Path) -> io::Result<String> {
-    // Asked before opening: to open a pipe may wait for ever.
-    if !fs::metadata(path)?.is_file() {
-        return Err(io::Error::other("not a regular file"));
-    }
-    let mut text = String::new();
-    fs::File::open(path)?.take(MOST_BYTES + 1).read_to_string(&mut text)?;
-    if text.len() as u64 > MOST_BYTES {
-        return Err(io::Error::other("more than 1 MiB, which is no style"));
-    }
-    Ok(text)
+    let text = String::from_utf8(read_file(path, MOST_BYTES)?);
+    text.map_err(|_| io::Error::new(io::ErrorKind::InvalidData, "it is no UTF-8 text"))
 }

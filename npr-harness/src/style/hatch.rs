@@ -5,7 +5,7 @@ use crate::error::HarnessError;
 use crate::hatch::read_map;
 use glam::{DVec3, Vec3};
 use npr_hatch::store::Stored;
-use npr_hatch::{Drawing, HATCH_TONES, HatchError, StrokeImage, Tam, TamParameters, Thresholds, draw};
+use npr_hatch::{Drawing, HATCH_TONES, HatchError, Placement, StrokeImage, Tam, TamParameters, Thresholds, draw};
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
@@ -206,6 +206,7 @@ impl HatchShade {
     pub(super) fn validate(&self) -> Result<(), HarnessError> {
         if let Some((parameters, _)) = self.map.strokes() {
             parameters.validate()?;
+            check_effort(parameters)?;
         }
         let tones = self.map.tones();
         if self.encoding == HatchEncoding::SixTones && tones != HATCH_TONES {
@@ -233,6 +234,19 @@ impl HatchShade {
         Ok(())
     }
 }
+
+/// What is drawn for a picture takes seconds: 2²⁶ texels, of all tones and candidates. `npr tam` draws anything.
+fn check_effort(parameters: &TamParameters) -> Result<(), HarnessError> {
+    let TamParameters { side, tones, placement, .. } = parameters;
+    let candidates = if let Placement::BestOf { candidates } = placement { *candidates } else { 1 };
+    let texels = u64::from(*side).pow(2) * tones.len() as u64 * u64::from(candidates);
+    if texels > MOST_EFFORT {
+        return Err(HarnessError::MapEffort { side: *side, tones: tones.len(), candidates });
+    }
+    Ok(())
+}
+
+const MOST_EFFORT: u64 = 1 << 26;
 
 /// The six tones of a map, the lighter three and the darker three; a map of another number is asked for none.
 pub(crate) fn six_tones(tam: &Tam) -> (DVec3, DVec3) {

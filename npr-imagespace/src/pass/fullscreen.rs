@@ -3,7 +3,6 @@
 use super::{INK_FORMAT, InkTarget, Onto};
 use crate::composite::{Composite, CompositeUniform};
 use glam::Vec3;
-use wgpu::util::DeviceExt;
 
 const FULLSCREEN_WGSL: &str = include_str!("fullscreen.wgsl");
 
@@ -200,9 +199,17 @@ fn binding_type(bound: Bound) -> wgpu::BindingType {
 }
 
 pub(super) fn uniform(device: &wgpu::Device, contents: &[u8]) -> wgpu::Buffer {
-    device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("ink uniform"),
-        contents,
+        size: (contents.len() as u64).next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT),
         usage: wgpu::BufferUsages::UNIFORM,
-    })
+        mapped_at_creation: true,
+    });
+    // wgpu's own way to do this panics where the device is lost. Here the buffer is invalid then, which it reports.
+    if let Ok(mut mapped) = buffer.get_mapped_range_mut(..) {
+        mapped.slice(..contents.len()).copy_from_slice(contents);
+        drop(mapped);
+        buffer.unmap();
+    }
+    buffer
 }

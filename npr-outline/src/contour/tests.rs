@@ -338,6 +338,96 @@ fn angles_and_widths_that_are_none_are_refused() {
     assert!(lines.is_empty());
 }
 
+/// Chains of slivers and polygons of many corners take a time that grows with their number, not with its square.
+#[test]
+fn long_chains_and_large_polygons_end() {
+    let count = 100_000u32;
+    let start = std::time::Instant::now();
+    let on_a_line = |i: u32| Vec3::new(i as f32 * 1e-3, 0.0, 0.0);
+    let chain = Model {
+        positions: (0..count).map(on_a_line).chain([Vec3::Y, Vec3::Y + Vec3::X]).collect(),
+        faces: (0..count - 2).map(|i| [i, i + 1, i + 2]).chain([[0, 1, count]]).collect(),
+        face_material: vec![0; count as usize - 1],
+        materials: vec![Default::default()],
+        ..Default::default()
+    };
+    let contours = contours_of(&chain, &NO_CREASES);
+    assert!(contours.planes.iter().all(|p| p.plane0.iter().chain(&p.plane1).all(|x| x.is_finite())));
+    let around = |i: u32| {
+        let angle = std::f64::consts::TAU * f64::from(i) / f64::from(count);
+        DVec3::new(angle.cos(), angle.sin(), 0.0).as_vec3()
+    };
+    let polygon = Model {
+        positions: (0..count).map(around).collect(),
+        faces: (1..count - 1).map(|i| [0, i, i + 1]).collect(),
+        face_material: vec![0; count as usize - 2],
+        face_polygon: vec![0; count as usize - 2],
+        materials: vec![Default::default()],
+        ..Default::default()
+    };
+    assert_eq!(contours_of(&polygon, &NO_CREASES).planes.len(), count as usize);
+    // Each took more than a minute once.
+    assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
+}
+
+/// A coordinate of any size and sign, often one of a few, so that corners meet and lie in line.
+fn coordinate() -> impl Strategy<Value = f32> {
+    prop_oneof![
+        (-2i8..3).prop_map(f32::from),
+        -1.0..1.0f32,
+        prop_oneof![Just(1e-30f32), Just(-1e-20), Just(1e18), Just(-1e10), Just(1e-40)],
+    ]
+}
+
+proptest! {
+    /// Of any soup, seen from anywhere: no number that is none, every index within its array, and a scan that tells what
+    /// each record tells.
+    #[test]
+    fn records_of_any_soup_are_finite_and_within_bounds(
+        corners in prop::collection::vec([coordinate(), coordinate(), coordinate()], 3..12),
+        faces in prop::collection::vec(([0usize..12, 0usize..12, 0usize..12], 0u32..2, any::<bool>()), 1..40),
+        crease_angle_rad in 0.0..std::f32::consts::PI,
+        material_borders: bool,
+        eye in [coordinate(), coordinate(), coordinate()],
+        parallel: bool,
+    ) {
+        let mut polygon = 0;
+        let model = Model {
+            positions: corners.iter().copied().map(Vec3::from).collect(),
+            faces: faces.iter().map(|(face, ..)| face.map(|v| (v % corners.len()) as u32)).collect(),
+            face_material: faces.iter().map(|&(_, material, _)| material).collect(),
+            face_polygon: faces.iter().map(|&(.., begins)| { polygon += u32::from(begins); polygon }).collect(),
+            materials: vec![Default::default(); 2],
+            ..Default::default()
+        };
+        let options = ContourOptions { crease_angle_rad, material_borders };
+        let contours = contours_of(&model, &options);
+        let count = contours.planes.len();
+        prop_assert!(count <= 3 * model.faces.len());
+        prop_assert_eq!((contours.ends.len(), contours.traits.len(), contours.first_face.len()), (count, count, count));
+        prop_assert!(contours.always <= count);
+        prop_assert!(contours.origin.is_finite());
+        for (edge, planes) in contours.planes.iter().enumerate() {
+            for plane in [planes.plane0, planes.plane1] {
+                prop_assert!(plane.iter().all(|x| x.is_finite()), "{plane:?}");
+                let length = Vec3::new(plane[0], plane[1], plane[2]).length();
+                prop_assert!(length == 0.0 || (length - 1.0).abs() < 1e-5, "a normal of length {length}");
+            }
+            prop_assert!(contours.ends[edge].iter().all(|&v| (v as usize) < model.positions.len()));
+            prop_assert!((contours.first_face[edge] as usize) < model.faces.len());
+        }
+        let eye = DVec3::from(eye.map(f64::from)).extend(if parallel { 0.0 } else { 1.0 });
+        let local = contours.local_eye(eye);
+        let mut lines = Vec::new();
+        contours.scan(eye, &mut lines);
+        prop_assert!(lines.is_sorted() && lines.last().is_none_or(|&last| (last as usize) < count));
+        for edge in 0..count {
+            let said = contours.kind(edge, local).is_some();
+            prop_assert_eq!(said, lines.contains(&(edge as u32)), "edge {}", edge);
+        }
+    }
+}
+
 proptest! {
     #[test]
     fn the_records_tell_what_the_corners_tell(eye in prop::array::uniform3(-8.0..8.0f64)) {

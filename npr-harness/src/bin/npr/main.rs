@@ -9,10 +9,12 @@ use glam::{DVec3, DVec4};
 use npr_harness::camera::{Camera, Framing};
 use npr_harness::error::HarnessError;
 use npr_harness::executor::{Backend, Executor};
+use npr_harness::picture_limits::{MEMORY_BYTES, MOST_SAMPLES, check_picture};
 use npr_harness::plan::Plan;
 use npr_harness::scene::Scene;
 use npr_harness::style::{Style, style, styles};
 use npr_harness::{check, gallery, inspect};
+use npr_hatch::files::check_place;
 use npr_imagespace::artist::LineKind;
 use npr_mesh::{LoadOptions, pn_triangles};
 use serde_json::json;
@@ -106,6 +108,9 @@ struct Render {
     /// Samples per pixel along each axis; more than 1 renders on the CPU.
     #[arg(long, default_value_t = 1)]
     samples: u32,
+    /// What the picture may take of memory while it is made, GiB.
+    #[arg(long, value_name = "GIB", default_value_t = MEMORY_BYTES as f64 / f64::from(1 << 30))]
+    max_memory: f64,
     /// Round a coarse model: each edge is cut into so many pieces, on the curves that its normals ask for.
     #[arg(long, default_value_t = 1)]
     segments: u32,
@@ -182,10 +187,15 @@ fn main() -> ExitCode {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::FAILURE,
         Err(error) => {
-            eprintln!("npr: {error}");
+            eprintln!("npr: {}", one_line(&error.to_string()));
             ExitCode::FAILURE
         }
     }
+}
+
+/// Names in files may hold anything; no line break of theirs, and nothing that commands a terminal, is printed.
+fn one_line(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
 }
 
 /// A bar on a terminal, nothing elsewhere.
@@ -220,7 +230,7 @@ fn load(path: &Path, options: &LoadOptions) -> Result<npr_mesh::Loaded, HarnessE
 
 fn announce(executor: &Executor) {
     if let Executor::Cpu { why: Some(why) } = executor {
-        eprintln!("npr: rendering on the CPU: {why}");
+        eprintln!("npr: rendering on the CPU: {}", one_line(why));
     }
 }
 
@@ -239,18 +249,12 @@ fn checked(what: &'static str, value: f64, low: f64, high: f64, range: &'static 
     if (low..=high).contains(&value) { Ok(value) } else { Err(HarnessError::Range { what, value, range }) }
 }
 
-const LARGEST_SIDE: u32 = 65_536;
-const LARGEST_PICTURE: u64 = 1 << 30;
-
 fn run_render(options: &Render) -> Result<bool, HarnessError> {
     let start = Instant::now();
     let (width, height) = options.size;
-    let sides_fit = (1..=LARGEST_SIDE).contains(&width) && (1..=LARGEST_SIDE).contains(&height);
-    let samples = checked("samples", f64::from(options.samples), 1.0, 64.0, "1..=64")? as u32;
-    let pixels = u64::from(width) * u64::from(height) * u64::from(samples * samples);
-    if !sides_fit || pixels > LARGEST_PICTURE {
-        return Err(HarnessError::Size { width, height, limit: LARGEST_SIDE });
-    }
+    let most = f64::from(MOST_SAMPLES);
+    let samples = checked("samples", f64::from(options.samples), 1.0, most, "1..=64")? as u32;
+    let memory = checked("memory", options.max_memory, 0.0, 1e6, "0..=1e6 GiB")? * f64::from(1 << 30);
     let framing = Framing {
         yaw_rad: checked("yaw", options.yaw, -1e6, 1e6, "-1e6..=1e6 degrees")?.to_radians(),
         pitch_rad: checked("pitch", options.pitch, -90.0, 90.0, "-90..=90 degrees")?.to_radians(),
@@ -262,28 +266,30 @@ fn run_render(options: &Render) -> Result<bool, HarnessError> {
         },
     };
     let style = known_style(&options.style)?;
+    check_output(&options.output, &[&options.input, Path::new(&options.style)])?;
     let backend = match (options.backend, samples) {
         (BackendName::Auto, 1) => Backend::Auto,
         (BackendName::Gpu, _) => Backend::Gpu,
         _ => Backend::Cpu,
     };
-    let executor = Executor::choose(backend)?;
+    let mut executor = Executor::choose(backend)?;
+    let check = |executor: &Executor| check_picture(&style, options.size, samples, !executor.is_cpu(), memory as u64);
+    check(&executor)?;
     announce(&executor);
     let loaded = load(&options.input, &options.loading.options())?;
     let loaded_ms = start.elapsed().as_secs_f64() * 1e3;
     for warning in &loaded.warnings {
-        eprintln!("npr: {}: warning: {warning}", options.input.display());
+        eprintln!("npr: {}", one_line(&format!("{}: warning: {warning}", options.input.display())));
     }
     let segments = checked("segments", f64::from(options.segments), 1.0, 1024.0, "1..=1024")? as u32;
     let model = if segments > 1 { pn_triangles::tessellate(&loaded.model, segments)? } else { loaded.model };
     let mut scene = Scene::new(model);
     let mut warnings = loaded.warnings;
     for warning in scene.edges.warnings() {
-        eprintln!("npr: {}: warning: {warning}", options.input.display());
+        eprintln!("npr: {}", one_line(&format!("{}: warning: {warning}", options.input.display())));
         warnings.push(warning);
     }
-    // Positions may have been moved to the origin.
-    scene.clip = options.clip.map(|plane| plane + DVec4::W * plane.truncate().dot(scene.origin));
+    scene.clip = options.clip.map(|plane| scene.plane_here(plane));
     for (material, kind) in &options.inner_lines {
         scene.set_line_kind(material, *kind)?;
     }
@@ -292,9 +298,19 @@ fn run_render(options: &Render) -> Result<bool, HarnessError> {
     let prepared_ms = start.elapsed().as_secs_f64() * 1e3 - loaded_ms;
     let drawing = Instant::now();
     let bar = progress_bar("rendering");
-    let image = executor.render(&scene, &style, &plan, &camera, options.size, samples, &|share| {
-        bar.set_position((share * 1000.0) as u64);
-    })?;
+    let render = |executor: &Executor| {
+        let tell = |share| bar.set_position((share * 1000.0) as u64);
+        executor.render(&scene, &style, &plan, &camera, options.size, samples, &tell)
+    };
+    let image = match render(&executor) {
+        Ok(image) => image,
+        Err(error) => {
+            executor = Executor::instead(backend, error)?;
+            check(&executor)?;
+            announce(&executor);
+            render(&executor)?
+        }
+    };
     bar.finish_and_clear();
     image.save_png(&options.output)?;
     let drawn_ms = drawing.elapsed().as_secs_f64() * 1e3;
@@ -330,6 +346,19 @@ fn run_render(options: &Render) -> Result<bool, HarnessError> {
         }
     }
     Ok(true)
+}
+
+/// Says before anything is computed what could not be written, and spares what is read.
+fn check_output(output: &Path, inputs: &[&Path]) -> Result<(), HarnessError> {
+    check_place(output).map_err(|source| HarnessError::Write { path: output.to_owned(), source })?;
+    let is_output = |input: &&Path| {
+        let real = |path: &Path| std::fs::canonicalize(path).ok();
+        real(input).is_some_and(|input| Some(input) == real(output))
+    };
+    if inputs.iter().any(is_output) {
+        return Err(HarnessError::Overwrites { path: output.to_owned() });
+    }
+    Ok(())
 }
 
 fn run_style(name: &str) -> Result<bool, HarnessError> {

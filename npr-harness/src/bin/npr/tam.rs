@@ -4,6 +4,7 @@ use crate::spinner;
 use clap::Args;
 use npr_harness::error::HarnessError;
 use npr_harness::hatch::read_map;
+use npr_hatch::files::write_file;
 use npr_hatch::{
     Drawing, HatchError, MAX_TONES, Placement, StrokeImage, Tam, TamParameters, Thresholds, draw, even_tones, png,
     sheet, store,
@@ -14,6 +15,9 @@ use std::time::Instant;
 
 /// Levels of fewer texels along a side hold too few strokes for an exact tone.
 const SMALLEST_SIDE: u32 = 64;
+
+/// Pictures besides the tones'.
+const WRITTEN: [&str; 4] = ["sheet.png", "tiled.png", "thresholds.png", "ramp.png"];
 
 #[derive(Args)]
 pub struct Options {
@@ -165,6 +169,9 @@ struct Found {
 }
 
 pub fn run(options: &Options) -> Result<bool, HarnessError> {
+    if let Some(stroke) = options.drawn.stroke.as_deref().filter(|stroke| is_overwritten(stroke, &options.output)) {
+        return Err(HarnessError::Overwrites { path: stroke.to_owned() });
+    }
     let map = match &options.map {
         Some(path) => read(path)?,
         None => make(&options.drawn)?,
@@ -182,6 +189,14 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
         println!("{}", table(options, &map, &found, &files, write_s));
     }
     Ok(true)
+}
+
+/// Whether a picture that is read lies in the folder and has the name of one that is written there.
+fn is_overwritten(picture: &Path, folder: &Path) -> bool {
+    let real = |path: &Path| std::fs::canonicalize(path).ok();
+    let name = picture.file_name().and_then(|name| name.to_str()).unwrap_or("");
+    let is_written = WRITTEN.contains(&name) || name.starts_with("tone_") && name.ends_with(".png");
+    is_written && real(picture).is_some_and(|picture| picture.parent() == real(folder).as_deref())
 }
 
 fn make(drawn: &Drawn) -> Result<Map, HarnessError> {
@@ -221,13 +236,14 @@ fn write(map: &Map, folder: &Path) -> Result<Vec<PathBuf>, HarnessError> {
     if effort.is_some() {
         let path = file("map.tam");
         let bytes = store::to_bytes(tam, thresholds.as_ref())?;
-        std::fs::write(&path, bytes).map_err(|source| HarnessError::Write { path, source })?;
+        write_file(&path, &bytes).map_err(|source| HarnessError::Write { path, source })?;
     }
-    png::write_sheet(file("sheet.png"), &sheet::contact(tam))?;
-    png::write_sheet(file("tiled.png"), &sheet::tiled(tam))?;
+    let [sheet_name, tiled, thresholds_name, ramp] = WRITTEN;
+    png::write_sheet(file(sheet_name), &sheet::contact(tam))?;
+    png::write_sheet(file(tiled), &sheet::tiled(tam))?;
     if let Some(thresholds) = thresholds {
-        png::write_gray16(file("thresholds.png"), tam.side, tam.side, &thresholds.levels[0])?;
-        png::write_sheet(file("ramp.png"), &sheet::ramp(thresholds))?;
+        png::write_gray16(file(thresholds_name), tam.side, tam.side, &thresholds.levels[0])?;
+        png::write_sheet(file(ramp), &sheet::ramp(thresholds))?;
     }
     files.extend(png::write_images(tam, folder)?);
     bar.finish_and_clear();

@@ -1,0 +1,139 @@
+//! What is done with any bytes, by the fuzz targets and by the test of the stored corpus.
+//!
+//! Each function takes bytes as a file's and goes all the way that a command would go with the file: an error is a
+//! good end, a panic is none, and neither is a number that is not finite.
+
+use npr_harness::camera::{Camera, Framing};
+use npr_harness::cpu::{self, CpuOptions};
+use npr_harness::plan::Plan;
+use npr_harness::scene::Scene;
+use npr_harness::style::{HatchSource, Shade, Style, styles};
+use npr_hatch::{sheet, store};
+use npr_mesh::{Model, embedded};
+use std::path::{Path, PathBuf};
+
+/// Larger models are loaded and looked at, but not drawn.
+const MOST_FACES: usize = 2_000;
+/// Px.
+const SIZE: (u32, u32) = (24, 16);
+
+/// As a model's `.obj`.
+pub fn obj(bytes: &[u8]) {
+    model(bytes, "obj");
+}
+
+/// As a model's `.glb`, or `.gltf` where they do not begin like one.
+pub fn gltf(bytes: &[u8]) {
+    model(bytes, if bytes.starts_with(b"glTF") { "glb" } else { "gltf" });
+}
+
+fn model(bytes: &[u8], ending: &str) {
+    let folder = folder();
+    let path = folder.join(format!("model.{ending}"));
+    std::fs::write(&path, bytes).expect("there is space");
+    let loaded = npr_mesh::load(&path, &Default::default());
+    std::fs::remove_file(&path).expect("it was there");
+    let _ = std::fs::remove_dir(&folder);
+    let Ok(loaded) = loaded else { return };
+    sound(&loaded.model);
+    if loaded.model.faces.len() > MOST_FACES {
+        return;
+    }
+    let all = styles();
+    // Which style, and from where, is up to the bytes, so that the same bytes do the same.
+    let sum = bytes.iter().fold(0usize, |sum, &byte| sum.wrapping_mul(31).wrapping_add(byte.into()));
+    let style = &all[sum % all.len()];
+    if !is_quick(style) {
+        return;
+    }
+    draw(&Scene::new(loaded.model), style, sum);
+}
+
+/// What everything after a loader relies on.
+fn sound(model: &Model) {
+    let vertices = model.positions.len();
+    assert!(!model.faces.is_empty(), "a model without faces");
+    assert!(model.positions.iter().all(|p| p.is_finite()), "positions");
+    assert!(model.normals.len() == vertices, "{} normals of {vertices} vertices", model.normals.len());
+    assert!(model.normals.iter().all(|n| n.is_normalized()), "normals");
+    assert!(model.uvs.is_empty() || model.uvs.len() == vertices, "coordinates");
+    assert!(model.uvs.iter().all(|uv| uv.is_finite()), "coordinates");
+    assert!(model.colors.is_empty() || model.colors.len() == vertices, "colours");
+    assert!(model.colors.iter().all(|color| color.is_finite()), "colours");
+    assert!(model.faces.iter().flatten().all(|&vertex| (vertex as usize) < vertices), "indices");
+    assert!(model.face_material.len() == model.faces.len(), "materials of faces");
+    assert!(model.face_material.iter().all(|&number| (number as usize) < model.materials.len()), "materials");
+    for of_faces in [&model.face_mesh, &model.face_polygon] {
+        assert!(of_faces.is_empty() || of_faces.len() == model.faces.len(), "meshes or polygons of faces");
+    }
+    assert!(model.face_polygon.is_sorted(), "polygons");
+    for material in &model.materials {
+        assert!(material.base_color.is_finite(), "a material's colour");
+        assert!(material.texture.is_none_or(|number| (number as usize) < model.textures.len()), "a texture");
+    }
+    for texture in &model.textures {
+        let texels = texture.width as usize * texture.height as usize;
+        assert!(texels > 0 && texture.rgba8.len() == 4 * texels, "a texture's texels");
+    }
+}
+
+/// As a style's file, drawn on a small model.
+pub fn style(bytes: &[u8]) {
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    let path = Path::new("/there/is/no/such/folder/style.toml");
+    let Ok(style) = Style::from_toml(text, path) else { return };
+    let again = style.to_toml().expect("what was read can be written");
+    let again = Style::from_toml(&again, path).unwrap_or_else(|error| panic!("{error}:\n{again}"));
+    assert!(again == style, "{again:?}\nis not\n{style:?}");
+    if is_quick(&style) {
+        draw(&Scene::new(embedded::cube()), &style, bytes.len());
+    }
+}
+
+/// Whether it draws no map, or a small one.
+fn is_quick(style: &Style) -> bool {
+    let Shade::Hatch(hatch) = &style.shade else { return true };
+    match hatch.map.source() {
+        HatchSource::Parameters(parameters) => parameters.side <= 32 && parameters.tones.len() <= 8,
+        _ => false,
+    }
+}
+
+/// As a file with a tonal art map; also with the checksum put right, which no mutation would hit.
+pub fn tam(bytes: &[u8]) {
+    one_tam(bytes);
+    if let Some((content, _)) = bytes.split_last_chunk::<8>() {
+        let sum = content
+            .iter()
+            .fold(0xcbf2_9ce4_8422_2325, |sum: u64, &byte| (sum ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3));
+        one_tam(&[content, &sum.to_le_bytes()].concat());
+    }
+}
+
+fn one_tam(bytes: &[u8]) {
+    let Ok(stored) = store::from_bytes(bytes) else { return };
+    let again = store::to_bytes(&stored.tam, stored.thresholds.as_ref()).expect("what was read can be written");
+    assert!(store::from_bytes(&again).is_ok_and(|again| again == stored), "it is not what was read");
+    let _ = (sheet::contact(&stored.tam), sheet::tiled(&stored.tam), stored.thresholds.as_ref().map(sheet::ramp));
+    let _ = stored.tam.pack_tones(0);
+}
+
+fn draw(scene: &Scene, style: &Style, number: usize) {
+    let fov_y_rad = if number.is_multiple_of(3) { None } else { Some(0.6) };
+    let framing = Framing { fov_y_rad, yaw_rad: number as f64 % 6.0, ..Framing::default() };
+    let camera = Camera::framed(scene.corners(), f64::from(SIZE.0) / f64::from(SIZE.1), &framing);
+    let Ok(plan) = Plan::new(scene, style, &camera) else { return };
+    let options = CpuOptions { threads: 1, ..CpuOptions::default() };
+    let frame = cpu::render(scene, style, &plan, &camera, SIZE, &options, &|_| {});
+    assert!(frame.color.iter().all(|color| color.is_finite()), "a colour that is not finite");
+    assert!(frame.depth.iter().all(|depth| depth.is_finite()), "a depth that is not finite");
+}
+
+/// In memory, where there is such a place; one for each process.
+fn folder() -> PathBuf {
+    let memory = Path::new("/dev/shm");
+    let place = if memory.is_dir() { memory.to_owned() } else { std::env::temp_dir() };
+    let folder = place.join(format!("npr-fuzz-{}-{:?}", std::process::id(), std::thread::current().id()));
+    std::fs::create_dir_all(&folder).expect("a folder can be made");
+    folder
+}

@@ -1,0 +1,115 @@
+//! How large a picture may be: said before anything is allocated.
+
+use crate::error::HarnessError;
+use crate::image_ink::InkScale;
+use crate::shadow::ShadowMethod;
+use crate::style::{Lines, Style};
+
+/// Px along a side.
+pub const LARGEST_SIDE: u32 = 65_536;
+/// What a picture may take if nothing else is said, bytes.
+pub const MEMORY_BYTES: u64 = 2 << 30;
+/// Samples per pixel along each axis.
+pub const MOST_SAMPLES: u32 = 64;
+
+/// On the CPU per sample: colour 32, depth 8, a line's coverage or a texel 8.
+const SAMPLE_BYTES: u64 = 48;
+/// On the CPU per pixel: the mean of several samples.
+const MEAN_BYTES: u64 = 40;
+/// On the CPU per pixel: the picture, its copy while it grows, its file.
+const FILE_BYTES: u64 = 12;
+/// On a device per pixel: two colours, depth, the lines' winner, 12 of strokes, what is read back, the picture, its file.
+const DEVICE_BYTES: u64 = 48;
+/// Per pixel of ink found in the image: texels 8, depth 4, ink and brush.
+const INK_BYTES: u64 = 20;
+
+/// On a device per pixel of the picture, and of the ink where that has another size: depth and the stencil of shadows.
+const STENCIL_BYTES: u64 = 8;
+
+/// About how many bytes of memory a picture takes while it is made, besides the scene: as a rule a little less.
+/// A software adapter's memory is the machine's, too.
+pub fn picture_bytes(style: &Style, (width, height): (u32, u32), samples: u32, on_device: bool) -> u64 {
+    let pixels = u64::from(width) * u64::from(height);
+    let ink = match &style.lines {
+        Some(Lines::Image(ink)) => match ink.scale {
+            InkScale::Half => INK_BYTES / 4,
+            InkScale::One => INK_BYTES,
+            InkScale::Double => 4 * INK_BYTES,
+        },
+        _ => 0,
+    };
+    let (mut stencil, mut map) = (0, 0);
+    match style.shadow.map(|shadow| shadow.method) {
+        Some(ShadowMethod::Volumes) => stencil = STENCIL_BYTES + if ink > INK_BYTES { 4 * STENCIL_BYTES } else { 0 },
+        Some(ShadowMethod::Map { side }) => map = 4 * u64::from(side) * u64::from(side),
+        None => {}
+    }
+    let per_pixel = if on_device {
+        DEVICE_BYTES + ink + stencil
+    } else {
+        map = 0;
+        let samples = u64::from(samples.max(1));
+        let mean = if samples > 1 { MEAN_BYTES } else { 0 };
+        SAMPLE_BYTES.saturating_mul(samples).saturating_mul(samples).saturating_add(mean + FILE_BYTES + ink)
+    };
+    pixels.saturating_mul(per_pixel).saturating_add(map)
+}
+
+/// Whether a picture can be asked for.
+///
+/// # Errors
+/// [`HarnessError::Size`], [`HarnessError::PictureMemory`].
+pub fn check_picture(
+    style: &Style,
+    (width, height): (u32, u32),
+    samples: u32,
+    on_device: bool,
+    most_bytes: u64,
+) -> Result<(), HarnessError> {
+    if ![width, height].iter().all(|side| (1..=LARGEST_SIDE).contains(side)) {
+        return Err(HarnessError::Size { width, height, limit: LARGEST_SIDE });
+    }
+    let bytes = picture_bytes(style, (width, height), samples, on_device);
+    if bytes > most_bytes {
+        return Err(HarnessError::PictureMemory { width, height, samples, bytes, limit: most_bytes });
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::style::{style, styles};
+
+    #[test]
+    fn no_size_overflows() {
+        for style in styles() {
+            for on_device in [false, true] {
+                let most = picture_bytes(&style, (u32::MAX, u32::MAX), u32::MAX, on_device);
+                assert!(most > 1 << 63, "{}", style.name);
+                assert_eq!(picture_bytes(&style, (0, 9), 1, on_device), 0);
+            }
+        }
+    }
+
+    #[test]
+    fn usual_pictures_fit_and_huge_ones_do_not() {
+        let check = |name: &str, size, samples, on_device| {
+            check_picture(&style(name).expect("it is there"), size, samples, on_device, MEMORY_BYTES)
+        };
+        for on_device in [false, true] {
+            for style in styles() {
+                check(&style.name, (3840, 2160), 1, on_device).expect("a large screen's");
+                check(&style.name, (1280, 720), if on_device { 1 } else { 4 }, on_device).expect("a usual one");
+            }
+            for size in [(0, 0), (0, 5), (100_000, 100_000), (65_537, 1)] {
+                assert!(matches!(check("cartoon", size, 1, on_device), Err(HarnessError::Size { .. })), "{size:?}");
+            }
+            let refused = check("cartoon", (65_536, 16_384), 1, on_device);
+            assert!(matches!(refused, Err(HarnessError::PictureMemory { .. })), "{refused:?}");
+            check("cartoon", (65_536, 512), 1, on_device).expect("it is long, not large");
+        }
+        let sampled = check("cartoon", (3840, 2160), 64, false);
+        assert!(matches!(sampled, Err(HarnessError::PictureMemory { samples: 64, .. })), "{sampled:?}");
+    }
+}

@@ -1,0 +1,132 @@
+//! What a device cannot do, or does no longer, is an error.
+#![cfg(feature = "gpu")]
+
+mod common;
+
+use common::device;
+use npr_harness::camera::{Camera, Framing};
+use npr_harness::error::HarnessError;
+use npr_harness::executor::{Backend, Executor, GpuPolicy};
+use npr_harness::gpu::{GpuContext, GpuError, GpuRenderer};
+use npr_harness::plan::{LineMethod, Plan};
+use npr_harness::scene::Scene;
+use npr_harness::style::{style, styles};
+use npr_mesh::embedded;
+
+fn on_device() -> Option<Box<GpuContext>> {
+    match device()? {
+        Executor::Gpu(context) => Some(context),
+        Executor::Cpu { .. } => None,
+    }
+}
+
+fn render(executor: &Executor, name: &str, size: (u32, u32)) -> Result<(), HarnessError> {
+    let scene = Scene::new(embedded::cube());
+    let style = style(name).expect("it is there");
+    let camera = Camera::framed(scene.corners(), f64::from(size.0) / f64::from(size.1), &Framing::default());
+    let plan = Plan::new(&scene, &style, &camera)?;
+    executor.render(&scene, &style, &plan, &camera, size, 1, &|_| {}).map(|_| ())
+}
+
+#[test]
+fn a_lost_device_is_an_error_in_every_style() {
+    for style in styles() {
+        let Some(context) = on_device() else { return };
+        context.device.destroy();
+        let done = render(&Executor::Gpu(context), &style.name, (16, 16));
+        let Err(HarnessError::Gpu(error @ GpuError::Lost { .. })) = &done else { panic!("{}: {done:?}", style.name) };
+        let said = error.to_string();
+        assert!(said.starts_with("the graphics device was lost: ") && said.lines().count() == 1, "{said}");
+    }
+}
+
+/// Lost between two frames.
+#[test]
+fn a_device_may_be_lost_while_it_is_used() {
+    let Some(context) = on_device() else { return };
+    let scene = Scene::new(embedded::cube());
+    let style = style("cartoon").expect("it is there");
+    let camera = Camera::framed(scene.corners(), 1.0, &Framing::default());
+    let plan = Plan::new(&scene, &style, &camera).expect("a good style");
+    let renderer = GpuRenderer::new(&context);
+    let targets = renderer.targets(32, 32).expect("targets");
+    let uploaded = renderer.upload(&scene, &plan, LineMethod::Auto).expect("an upload");
+    renderer.draw(&scene, &uploaded, &style, &plan, &camera, &targets).expect("drawn");
+    renderer.read(&targets).expect("a picture");
+    context.device.destroy();
+    // Recorded for a device that is there no more: nothing is said before it is read.
+    let _ = renderer.draw(&scene, &uploaded, &style, &plan, &camera, &targets);
+    let read = renderer.read(&targets);
+    assert!(matches!(read, Err(GpuError::Lost { .. })), "{read:?}");
+}
+
+#[test]
+fn what_a_device_refuses_is_an_error_once() {
+    let Some(context) = on_device() else { return };
+    let usage = wgpu::BufferUsages::VERTEX;
+    let too_large = context.device.limits().max_buffer_size.saturating_add(1) & !3;
+    let buffer = |size| {
+        let descriptor = wgpu::BufferDescriptor { label: Some("too large"), size, usage, mapped_at_creation: false };
+        let _ = context.device.create_buffer(&descriptor);
+    };
+    buffer(too_large.max(1 << 60));
+    let refused = context.wait();
+    let Err(GpuError::Device { fault } | GpuError::OutOfMemory { fault }) = &refused else { panic!("{refused:?}") };
+    assert!(fault.contains("too large") && fault.lines().count() == 1, "{fault}");
+    context.wait().expect("it was told");
+    render(&Executor::Gpu(context), "cartoon", (16, 16)).expect("the device goes on");
+}
+
+/// No adapter gives so much to one buffer after the other.
+#[test]
+fn a_device_without_memory_is_an_error() {
+    let Some(context) = on_device() else { return };
+    let size = context.device.limits().max_buffer_size.min(1 << 46) & !3;
+    let mut kept = Vec::new();
+    for _ in 0..1 << 12 {
+        kept.push(filled_of(&context, size));
+        match context.wait() {
+            Ok(()) => {}
+            Err(GpuError::OutOfMemory { fault }) => {
+                assert_eq!(fault.lines().count(), 1, "{fault}");
+                return;
+            }
+            Err(other) => panic!("{other}"),
+        }
+    }
+    // A software adapter promises whatever the system does: again, with an end to that.
+    assert!(std::env::var_os("NPR_TEST_LIMITED").is_none(), "any memory is promised");
+    let own = std::env::current_exe().expect("a test is a file");
+    let limited = "ulimit -v 60000000 && NPR_TEST_LIMITED=1 exec \"$0\" --exact a_device_without_memory_is_an_error";
+    let done = std::process::Command::new("sh").arg("-c").arg(limited).arg(own).output().expect("there is a shell");
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stdout));
+}
+
+fn filled_of(context: &GpuContext, size: u64) -> wgpu::Buffer {
+    context.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("large"),
+        size,
+        usage: wgpu::BufferUsages::STORAGE,
+        mapped_at_creation: false,
+    })
+}
+
+#[test]
+fn pictures_beyond_the_limits_are_refused_by_name() {
+    let Some(context) = on_device() else { return };
+    let limit = context.device.limits().max_texture_dimension_2d;
+    let executor = Executor::Gpu(context);
+    for (name, size) in [("cartoon", (limit + 1, 2)), ("lines", (2, limit + 1)), ("ink-thick", (limit / 2 + 1, 2))] {
+        let done = render(&executor, name, size);
+        let Err(HarnessError::Gpu(GpuError::TooLarge { limit: said, .. })) = done else { panic!("{name}: {done:?}") };
+        assert_eq!(said, limit);
+        let error = HarnessError::Gpu(GpuError::TooLarge { width: size.0, height: size.1, limit });
+        let instead = Executor::instead(Backend::Auto, error);
+        if GpuPolicy::from_env().expect("a policy") == GpuPolicy::Auto {
+            assert!(instead.is_ok_and(|executor| executor.is_cpu()));
+        } else {
+            assert!(instead.is_err(), "a device was asked for");
+        }
+    }
+    render(&executor, "cartoon", (limit, 1)).expect("as long as can be");
+}

@@ -1,0 +1,22 @@
+//! Buffers with contents, also from a device that gives none.
+
+/// A buffer of some bytes, filled up with zeros to a multiple of four.
+///
+/// `wgpu::util::DeviceExt::create_buffer_init` panics where the device is lost or has no memory left. Here the buffer is
+/// invalid then, as with `create_buffer`, and the device reports it to whoever listens for its errors.
+pub fn filled_buffer(device: &wgpu::Device, label: &str, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
+    let size = (contents.len() as u64).next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT);
+    let is_filled = size > 0;
+    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size,
+        usage,
+        mapped_at_creation: is_filled,
+    });
+    if is_filled && let Ok(mut mapped) = buffer.get_mapped_range_mut(..) {
+        mapped.slice(..contents.len()).copy_from_slice(contents);
+        drop(mapped);
+        buffer.unmap();
+    }
+    buffer
+}
