@@ -1,6 +1,6 @@
 //! Shadows: pictures of the styles that have them, and states of pixels against shadow rays.
 
-use super::{Checker, Limit};
+use super::Checker;
 use crate::camera::Camera;
 use crate::error::HarnessError;
 use crate::scene::Scene;
@@ -31,6 +31,7 @@ impl Checker<'_> {
     /// Eight lights and views, two of them with the eye in the shadow.
     #[cfg(feature = "gpu")]
     fn shadow_states(&mut self, model: &str, scene: &Scene) -> Result<(), HarnessError> {
+        use super::Limit;
         use crate::executor::Executor;
         use crate::plan::LineMethod;
         use crate::shadow::ShadowMethod;

@@ -152,8 +152,7 @@ fn banded(base: vec3<f32>, light_there: vec2<f32>, at: ShadowAt) -> vec3<f32> {
     let light = shadow_light(light_there, at);
     var widths = vec2<f32>(0.0);
     if toon.antialias != 0u {
-        // As wide in a shadow: the light there is this one's, negated.
-        widths.x = toon_pixel_border_width(light_there.x);
+        widths.x = shadow_border_width(light_there.x, -abs(light_there.x), at);
         if surface_highlight {
             widths.y = toon_pixel_border_width(light_there.y);
         }
@@ -172,7 +171,8 @@ fn banded(base: vec3<f32>, light_there: vec2<f32>, at: ShadowAt) -> vec3<f32> {
 fn shaded(base: vec3<f32>, light_there: vec2<f32>, at: ShadowAt) -> vec3<f32> {
     let light = shadow_light(light_there, at);
     if surface_shade == SHADE_PAINTER {
-        let widths = vec2<f32>(toon_pixel_border_width(light_there.x), toon_pixel_border_width(light_there.y));
+        let of_first = shadow_border_width(light_there.x, -abs(light_there.x), at);
+        let widths = vec2<f32>(of_first, toon_pixel_border_width(light_there.y));
         return toon_paint(lights, shade_of_table(light, widths), vec4<f32>(base, 1.0)).rgb;
     }
     if surface_shade == SHADE_GOOCH {
