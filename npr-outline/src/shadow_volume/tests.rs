@@ -27,10 +27,14 @@ fn near(place: DVec3) -> DVec4 {
     place.extend(1.0)
 }
 
-/// A point in no volume: far towards the light, or right beside it.
+/// A point in no volume: far towards the light and aside, so that the way there crosses sides; or right beside the light.
 fn beyond(light: DVec4) -> DVec3 {
     let aside = DVec3::new(0.31, -0.17, 0.23);
-    if light.w == 0.0 { light.truncate() * 1e3 + aside } else { light.truncate() + aside * 1e-4 }
+    if light.w == 0.0 {
+        light.truncate() * 1e3 + light.truncate().cross(aside) * 2e3
+    } else {
+        light.truncate() + aside * 1e-4
+    }
 }
 
 /// How many faces that cast lie between a point and the light: the definition, by straight intersection in f64.
@@ -93,10 +97,57 @@ fn three_faces_at_one_edge_cast_one_each() {
     let positions = vec![Vec3::ZERO, Vec3::Z, Vec3::X, Vec3::NEG_X, Vec3::new(0.1, -1.0, 0.0)];
     let casters = casters_of(&soup(positions, vec![[0, 1, 2], [1, 0, 3], [0, 1, 4]]));
     let light = far(DVec3::new(0.05, 1.0, 0.0));
-    for at in [DVec3::new(0.2, -2.0, 0.3), DVec3::new(-0.4, -2.0, 0.3), DVec3::new(3.0, -2.0, 0.3)] {
+    for at in [
+        DVec3::new(0.2, -2.0, 0.3),
+        DVec3::new(-0.4, -2.0, 0.3),
+        DVec3::new(3.0, -2.0, 0.3),
+        DVec3::new(-3.0, -0.5, 0.4),
+    ] {
         assert_eq!(casters.count_at(at, beyond(light), light), layers(&casters, at, light), "{at}");
     }
     assert_eq!(casters.edges.iter().filter(|edge| edge.flags & VOLUME_SECOND != 0).count(), 0);
+}
+
+#[test]
+fn a_face_turned_by_mistake_leaves_no_hole_in_a_shadow() {
+    let mut cube = embedded::cube();
+    let (low, high) = cube.bounds().unwrap();
+    let is_top = |face: &[u32; 3]| face.iter().all(|&v| cube.positions[v as usize].y == high.y);
+    let top: Vec<usize> = (0..cube.faces.len()).filter(|&face| is_top(&cube.faces[face])).collect();
+    assert_eq!(top.len(), 2);
+    for face in top {
+        cube.faces[face].swap(0, 1);
+    }
+    let casters = casters_of(&cube);
+    assert!(casters.open);
+    let light = far(DVec3::new(0.01, 1.0, 0.02));
+    for (x, z) in [(0.1, 0.2), (0.5, 0.4), (0.8, 0.7), (0.3, 0.9)] {
+        let at = low.as_dvec3() + (high - low).as_dvec3() * DVec3::new(x, -1.0, z);
+        assert_eq!(casters.count_at(at, beyond(light), light), 2, "{at}");
+    }
+}
+
+/// A cup that hangs from a plate: every edge of its rim has two faces of the plate, and one of its own.
+#[test]
+fn what_ends_at_an_edge_of_others_is_open() {
+    let p = Vec3::new;
+    let rim = [p(1.0, 0.0, 1.0), p(2.0, 0.0, 1.0), p(1.5, 0.0, 2.0)];
+    let outside = [p(-3.0, 0.0, -2.0), p(6.0, 0.0, -2.0), p(1.5, 0.0, 7.0)];
+    let positions: Vec<Vec3> = rim.into_iter().chain(outside).chain([p(1.5, -1.0, 1.3)]).collect();
+    let mut faces = vec![[0, 2, 1]];
+    for i in 0..3 {
+        let j = (i + 1) % 3;
+        faces.extend([[i, j, j + 3], [i, j + 3, i + 3]]);
+    }
+    let plate = faces.len();
+    faces.extend([[0, 1, 6], [1, 2, 6], [2, 0, 6]]);
+    let casters = casters_of(&soup(positions, faces));
+    assert!(casters.faces[plate..].iter().all(|face| face.flags == VOLUME_OPEN));
+    for light in [far(DVec3::new(0.1, 1.0, 0.2)), far(DVec3::new(0.1, -1.0, 0.2))] {
+        for at in [p(1.5, -3.0, 1.3), p(1.5, 3.0, 1.3), p(1.5, -0.2, 1.35), p(0.2, -2.0, 0.3)].map(|at| at.as_dvec3()) {
+            assert_eq!(casters.count_at(at, beyond(light), light), layers(&casters, at, light), "{at} {light}");
+        }
+    }
 }
 
 #[test]
