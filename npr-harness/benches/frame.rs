@@ -28,7 +28,7 @@ fn main() {
     let lambert = Shade::Lambert { ambient: 0.25 };
     let found = |layout| Some(Lines::Image(ImageInk { layout, ..ImageInk::default() }));
     let light = |name: &str| Style { lines: None, ..style(name).expect("a style of this crate") };
-    let cases: [(&str, Style, LineMethod); 16] = [
+    let mut cases: Vec<(&str, Style, LineMethod, u32)> = [
         ("Lambert", Style { shade: lambert.clone(), lines: None, ..base.clone() }, LineMethod::Rectangles),
         ("toon", Style { lines: None, ..base.clone() }, LineMethod::Rectangles),
         (
@@ -66,9 +66,15 @@ fn main() {
         ("toon + lines found on the device", base.clone(), LineMethod::OnDevice),
         (
             "toon + printed fins, all edges",
-            Style { lines: style("printed-fins").and_then(|s| s.lines), ..base },
+            Style { lines: style("printed-fins").and_then(|s| s.lines), ..base.clone() },
             LineMethod::Rectangles,
         ),
-    ];
+    ]
+    .map(|(name, style, method)| (name, style, method, 1))
+    .into();
+    let plain_toon = Style { lines: None, ..base.clone() };
+    cases.push(("toon, 2 × 2 samples", plain_toon.clone(), LineMethod::Rectangles, 2));
+    cases.push(("toon, 4 × 4 samples", plain_toon, LineMethod::Rectangles, 4));
+    cases.push(("toon + lines as strokes, 2 × 2 samples", base, LineMethod::Strokes, 2));
     common::compare(&context, &scene, &camera, &cases);
 }

@@ -45,6 +45,6 @@ fn main() {
         ("thresholds, planes", hatched(thresholds, planes, pixel)),
         ("thresholds, form", hatched(thresholds, form, pixel)),
     ];
-    let cases = cases.map(|(name, style)| (name, style, LineMethod::Rectangles));
+    let cases = cases.map(|(name, style)| (name, style, LineMethod::Rectangles, 1));
     common::compare(&context, &scene, &camera, &cases);
 }

@@ -37,10 +37,12 @@ fn main() {
         ("toon-shadow", named("toon-shadow")),
     ];
     let (scene, camera) = common::bunny(|_| {});
-    let software = cases.clone().map(|(name, style)| (name, style, LineMethod::Auto));
+    let software = cases.clone().map(|(name, style)| (name, style, LineMethod::Auto, 1));
     common::compare(&context, &scene, &camera, &software);
     // With what casts sorted out by the device, as on hardware.
-    let sorted =
-        [("Lambert", plain, LineMethod::Auto), ("volumes, sorted out there", cases[1].1.clone(), LineMethod::OnDevice)];
+    let sorted = [
+        ("Lambert", plain, LineMethod::Auto, 1),
+        ("volumes, sorted out there", cases[1].1.clone(), LineMethod::OnDevice, 1),
+    ];
     common::compare(&context, &scene, &camera, &sorted);
 }

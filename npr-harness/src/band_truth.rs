@@ -2,7 +2,8 @@
 //!
 //! The reference draws N·L itself, 16 × 16 times finer than the picture. From it follow what is exactly true of the picture
 //! wherever its pixels lie, by steps of 1/16 px: the mean tone of each, where borders are, and where silhouettes. The
-//! picture is drawn by the same executor, one sample a pixel, so that nothing but its borders is at fault.
+//! picture is drawn by the same executor, with one sample a pixel, so that nothing but its borders is at fault, or with
+//! several.
 //!
 //! # What flicker is
 //!
@@ -86,7 +87,8 @@ impl BandAccuracy {
 }
 
 /// Measures `bands`, without their highlight, on a scene made of a [`white`] model, over a pan by 4 px to the right: the
-/// two [`Where`] in turn. Takes 10 KB a pixel.
+/// two [`Where`] in turn. `samples`, along each axis of a pixel, are the antialiased borders'; the hard ones have one.
+/// Takes 10 KB a pixel.
 ///
 /// # Errors
 /// What is wrong with the bands.
@@ -95,17 +97,18 @@ pub fn band_accuracy(
     camera: &Camera,
     (width, height): (u32, u32),
     bands: &Bands,
+    samples: u32,
 ) -> Result<[BandAccuracy; 2], HarnessError> {
     let of = |shade| Style { shade, ..style("toon").expect("a style of this crate") };
     let n_dot_l = [(-1.0, Vec3::ZERO), (1.0, Vec3::ONE)].map(|(at, color)| RampStop { at, color });
     let n_dot_l = Ramp { stops: n_dot_l.to_vec(), blend: RampBlend::Smooth };
     let n_dot_l = of(Shade::Ramp(RampShade { ramp: RampSource::Stops(n_dot_l), half_lambert: None }));
-    let drawn = |style: &Style, size, shift_px| {
+    let drawn = |style: &Style, size, shift_px, samples| {
         let plan = Plan::new(scene, style, camera)?;
-        let options = CpuOptions { shift_px, ..Default::default() };
+        let options = CpuOptions { shift_px, samples, ..Default::default() };
         Ok::<_, HarnessError>(cpu::render(scene, style, &plan, camera, size, &options, &|_| {}))
     };
-    let fine = drawn(&n_dot_l, (width * FINE as u32, height * FINE as u32), DVec2::ZERO)?;
+    let fine = drawn(&n_dot_l, (width * FINE as u32, height * FINE as u32), DVec2::ZERO, 1)?;
     let truth = Truth::new(&fine, camera, bands);
     drop(fine);
     let hard = of(Shade::Toon(Bands { highlight: None, antialias: false, ..bands.clone() }));
@@ -116,8 +119,8 @@ pub fn band_accuracy(
         let shift_px = DVec2::new(step as f64 / FINE as f64, 0.0);
         let tones = |frame: CpuFrame| -> Vec<f64> { frame.color.iter().map(|c| mean(c.truncate())).collect() };
         let now = [
-            tones(drawn(&hard, (width, height), shift_px)?),
-            tones(drawn(&smooth, (width, height), shift_px)?),
+            tones(drawn(&hard, (width, height), shift_px, 1)?),
+            tones(drawn(&smooth, (width, height), shift_px, samples)?),
             truth.picture(step),
         ];
         for (sums, place) in sums.iter_mut().zip([Where::AwayFromSilhouettes, Where::AndFromCreases]) {

@@ -60,6 +60,27 @@ impl Default for Framing {
     }
 }
 
+/// [`Camera::rays`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PictureRays {
+    eye: DVec3,
+    /// From the picture's middle to its right border, at eye depth 1 in perspective.
+    right: DVec3,
+    up: DVec3,
+    forwards: DVec3,
+    size_px: DVec2,
+    is_parallel: bool,
+}
+
+impl PictureRays {
+    /// [`Camera::ray`].
+    pub fn through(&self, point_px: DVec2) -> (DVec3, DVec3) {
+        let ndc = DVec2::new(2.0 * point_px.x / self.size_px.x - 1.0, 1.0 - 2.0 * point_px.y / self.size_px.y);
+        let aside = self.right * ndc.x + self.up * ndc.y;
+        if self.is_parallel { (self.eye + aside, self.forwards) } else { (self.eye, aside + self.forwards) }
+    }
+}
+
 /// What of the picture's width and height a fitted model takes up.
 const FILL: f64 = 0.9;
 
@@ -178,16 +199,18 @@ impl Camera {
         }
     }
 
-    /// The ray through a point of the picture: origin, and a direction of which one unit is one unit of eye depth.
+    /// The ray through a point of the picture: origin, and a direction of which one unit is one unit of eye depth. For
+    /// many points of one picture take [`Self::rays`].
     pub fn ray(&self, point_px: DVec2, size_px: DVec2) -> (DVec3, DVec3) {
+        self.rays(size_px).through(point_px)
+    }
+
+    /// The rays through a picture's points.
+    pub fn rays(&self, size_px: DVec2) -> PictureRays {
         let [right, up, back] = self.axes();
         let half = self.half_extent(size_px.x / size_px.y);
-        let ndc = DVec2::new(2.0 * point_px.x / size_px.x - 1.0, 1.0 - 2.0 * point_px.y / size_px.y);
-        let aside = right * (ndc.x * half.x) + up * (ndc.y * half.y);
-        match self.projection {
-            Projection::Perspective { .. } => (self.eye, aside - back),
-            Projection::Orthographic { .. } => (self.eye + aside, -back),
-        }
+        let is_parallel = matches!(self.projection, Projection::Orthographic { .. });
+        PictureRays { eye: self.eye, right: right * half.x, up: up * half.y, forwards: -back, size_px, is_parallel }
     }
 
     /// The eye depths between which rays may hit.

@@ -8,11 +8,12 @@ mod lines;
 mod reference;
 mod shadow;
 
-pub use reference::{Reference, Shot};
+pub use reference::{PLACES, Reference, Shot};
 pub use shadow::{STATES_PX, STATES_SHARE};
 
 use crate::camera::{Camera, Framing};
 use crate::compare::{Comparison, Image, ReportRow, Tolerance, compare, html_report, leave_behind};
+use crate::cpu::Sight;
 use crate::error::HarnessError;
 use crate::executor::Executor;
 use crate::gallery::{painted_camera, painted_scene, still_life_camera};
@@ -168,8 +169,8 @@ struct Checker<'a> {
     rows: Vec<ReportRow>,
 }
 
-/// Checks the models, read as `loading` says, or without any the built-in scenes; if there are `styles`, only the pictures of these. `tell` is
-/// called with each metric as soon as it is known.
+/// Checks the models, read as `loading` says, or without any the built-in scenes; if there are `styles`, only the pictures
+/// of these. `tell` is called with each metric as soon as it is known.
 ///
 /// # Errors
 /// [`HarnessError`]; an exceeded limit is none.
@@ -197,8 +198,9 @@ pub fn run(
         checker.model("scene", &scene, &[("composed".into(), camera)], &|s| progress(s / 2.0))?;
         if styles.is_empty() {
             checker.borders("scene", "composed", &scene, &camera)?;
-            checker.strokes("scene", "composed", &scene, &camera)?;
-            checker.shadows("scene", "composed", &scene, &camera)?;
+            let sight = Sight::kept(&scene, &camera, SIZE, PLACES);
+            checker.strokes("scene", "composed", &sight)?;
+            checker.shadows("scene", "composed", &sight)?;
         }
         let painted = [("composed".into(), painted_camera())];
         checker.model("painted", &painted_scene(), &painted, &|s| progress(0.5 + s / 2.0))?;
@@ -214,8 +216,9 @@ pub fn run(
         checker.model(&name, &scene, &views, &|share| progress((number as f64 + share) / total))?;
         if let (true, Some((view, camera))) = (styles.is_empty(), views.first()) {
             checker.borders(&name, view, &scene, camera)?;
-            checker.strokes(&name, view, &scene, camera)?;
-            checker.shadows(&name, view, &scene, camera)?;
+            let sight = Sight::kept(&scene, camera, SIZE, PLACES);
+            checker.strokes(&name, view, &sight)?;
+            checker.shadows(&name, view, &sight)?;
         }
     }
     checker.finish()
@@ -264,9 +267,10 @@ impl Checker<'_> {
         progress: &dyn Fn(f64),
     ) -> Result<(), HarnessError> {
         for (number, (view, camera)) in views.iter().enumerate() {
+            let sight = Sight::kept(scene, camera, SIZE, PLACES);
             if !self.styles.is_empty() {
                 for style in self.styles {
-                    self.picture(name, view, scene, camera, style)?;
+                    self.picture(name, view, &sight, style)?;
                 }
                 progress((number + 1) as f64 / views.len() as f64);
                 continue;
@@ -284,7 +288,7 @@ impl Checker<'_> {
             let once = ["ink-thick", "ink-fine"].iter().chain(light.iter().filter(|_| !artist));
             for name_of_style in often.iter().chain(once.filter(|_| number == 0)).filter(wanted) {
                 let style = style(name_of_style).expect("a style of this crate");
-                self.picture(name, view, scene, camera, &style)?;
+                self.picture(name, view, &sight, &style)?;
             }
             if of_edges {
                 self.lines(name, view, scene, camera)?;
@@ -316,33 +320,27 @@ impl Checker<'_> {
     }
 
     /// The pictures of the hatched styles.
-    fn strokes(&mut self, model: &str, view: &str, scene: &Scene, camera: &Camera) -> Result<(), HarnessError> {
+    fn strokes(&mut self, model: &str, view: &str, sight: &Sight<'_>) -> Result<(), HarnessError> {
         for name in ["hatch", "hatch-planes", "hatch-color", "printed-hatch"] {
-            if scene.clip.is_none() {
-                self.picture(model, view, scene, camera, &style(name).expect("a style of this crate"))?;
+            if sight.scene.clip.is_none() {
+                self.picture(model, view, sight, &style(name).expect("a style of this crate"))?;
             }
         }
         Ok(())
     }
 
     /// The device's picture against the reference.
-    fn picture(
-        &mut self,
-        model: &str,
-        view: &str,
-        scene: &Scene,
-        camera: &Camera,
-        style: &Style,
-    ) -> Result<(), HarnessError> {
+    fn picture(&mut self, model: &str, view: &str, sight: &Sight<'_>, style: &Style) -> Result<(), HarnessError> {
+        let Sight { scene, camera, size, .. } = *sight;
         let technique = style.name.as_str();
         if self.executor.is_cpu() {
             return Ok(());
         }
         let plan = Plan::new(scene, style, camera)?;
-        let actual = self.executor.render(scene, style, &plan, camera, SIZE, 1, &|_| {})?;
+        let actual = self.executor.render(scene, style, &plan, camera, size, 1, &|_| {})?;
         let magnitude = magnitude(&plan);
         let tolerance = Tolerance { magnitude, count: 0 };
-        let mut reference = Reference::new(Shot { scene, style, plan: &plan, camera, size: SIZE })?;
+        let mut reference = Reference::new(Shot { sight, style, plan: &plan, samples: 1 })?;
         let mut comparison = compare(&reference.image, &actual, &reference.exempt)?;
         if !comparison.passes(&[tolerance]) {
             reference.look_closer()?;

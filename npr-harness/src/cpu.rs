@@ -9,11 +9,15 @@ mod ink;
 mod lines;
 mod shade;
 mod shadow;
+mod sight;
 mod surface;
 
+pub(crate) use ink::{Blot, blotted};
 pub use lines::draw_lines;
+pub(crate) use shadow::ShadowAt;
+pub use sight::Sight;
 
-use crate::camera::Camera;
+use crate::camera::{Camera, PictureRays};
 use crate::color::to_bytes;
 use crate::compare::Image;
 use crate::light::lights_in_world;
@@ -24,9 +28,10 @@ use crate::style::{Lines, Shade, Style};
 use crate::texture::MipMapped;
 use glam::{DVec2, DVec3, DVec4};
 use hatch::Strokes;
-use npr_imagespace::shadow::ShadowState;
 use npr_toon::source::{Light, combined_color};
 use shadow::Casting;
+use sight::Hits;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 /// What is asked of a frame on the CPU.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,6 +88,8 @@ pub struct FrameContext<'a> {
     pub camera: &'a Camera,
     /// Px, of the grid that is sampled.
     pub size_px: DVec2,
+    /// Through its points.
+    rays: PictureRays,
     /// As the style's shade asks for them: one, or two for the painter.
     pub lights: Vec<Light>,
     /// Of all of them.
@@ -112,25 +119,39 @@ pub fn render(
     options: &CpuOptions,
     progress: &(dyn Fn(f64) + Sync),
 ) -> CpuFrame {
-    render_unsure(scene, style, plan, camera, size, options, &[], progress)
+    render_seen(&Sight::new(scene, camera, size), style, plan, options, progress)
 }
 
-/// The same, where lines in the image take it that some pixels, by number, show what differs from all their neighbours.
-#[expect(clippy::too_many_arguments, reason = "each is a thing of its own; a struct would only rename them")]
-pub fn render_unsure(
-    scene: &Scene,
+/// As [`render`], of a view of which something may be known.
+pub fn render_seen(
+    sight: &Sight<'_>,
     style: &Style,
     plan: &Plan,
-    camera: &Camera,
-    (width, height): (u32, u32),
     options: &CpuOptions,
-    unsure: &[usize],
     progress: &(dyn Fn(f64) + Sync),
 ) -> CpuFrame {
+    let mut frame = without_ink(sight, style, plan, options, progress);
+    if let Some(image) = &plan.image {
+        ink::draw_ink(image, &mut frame);
+    }
+    frame
+}
+
+/// The frame before lines are found in it, and the texels for that.
+pub(crate) fn without_ink(
+    sight: &Sight<'_>,
+    style: &Style,
+    plan: &Plan,
+    options: &CpuOptions,
+    progress: &(dyn Fn(f64) + Sync),
+) -> CpuFrame {
+    let Sight { scene, camera, size: (width, height), .. } = *sight;
     let samples = options.samples.max(1);
     let textures = textures(scene, plan);
-    let context = FrameContext::new(scene, style, plan, camera, (width, height), options, &textures);
-    let mut fine = context.trace(width * samples, height * samples, options.threads, true, progress);
+    let context = FrameContext::new(scene, style, plan, camera, (width, height), options, textures);
+    let fine_size = (width * samples, height * samples);
+    let hits = sight.hits(fine_size, options, || context.first_hits(fine_size, options.threads));
+    let mut fine = context.trace(fine_size, hits.as_ref(), options.threads, true, progress);
     let shared_texels = std::mem::take(&mut fine.texels);
     match &style.lines {
         Some(Lines::Fins(look)) => draw_lines(&context, &mut fine, look, f64::from(samples)),
@@ -142,57 +163,60 @@ pub fn render_unsure(
     let mut frame = if samples == 1 { fine } else { averaged(&fine, width, height, samples) };
     if let Some(image) = &plan.image {
         let (ink_width, ink_height) = image.ink.scale.size((width, height));
-        let mut texels = if (ink_width, ink_height) == (width, height) && samples == 1 {
+        frame.texels = if (ink_width, ink_height) == (width, height) && samples == 1 {
             shared_texels
         } else {
             // One sample for each pixel of the ink, whatever the picture has: lines are as wide as on a device.
             let size_px = DVec2::new(ink_width.into(), ink_height.into());
             let shift_px = options.shift_px * size_px / DVec2::new(width.into(), height.into());
-            let context = FrameContext { size_px, shift_px, painting: false, ..context };
-            context.trace(ink_width, ink_height, options.threads, false, &|_| {}).texels
+            let rays = camera.rays(size_px);
+            let context = FrameContext { size_px, rays, shift_px, painting: false, ..context };
+            context.trace((ink_width, ink_height), None, options.threads, false, &|_| {}).texels
         };
-        ink::blot(&mut texels, (ink_width, ink_height), unsure, (width, height));
-        ink::draw_ink(image, &texels, &mut frame);
-        frame.texels = texels;
     }
     frame
 }
 
-/// What is seen through each pixel: its state of shadow, its face, and where it is. `None` for background.
-pub(crate) fn seen_states(
-    scene: &Scene,
-    style: &Style,
-    plan: &Plan,
-    camera: &Camera,
-    (width, height): (u32, u32),
-) -> Vec<Option<(ShadowState, u32, DVec3)>> {
-    let textures = textures(scene, plan);
-    let context = FrameContext::new(scene, style, plan, camera, (width, height), &CpuOptions::default(), &textures);
-    let seen = |y: u32| {
-        (0..width)
-            .map(|x| {
-                let hit = context.first_solid(x, y)?;
-                Some((context.shadow_at(&hit).state, hit.face, context.interpolate(&hit, hit.barycentric).at))
-            })
-            .collect::<Vec<_>>()
-    };
-    // Both halves at once, and as many more as there are threads.
-    scene.rays();
-    let threads = std::thread::available_parallelism().map_or(1, usize::from) as u32;
-    let rows = height.div_ceil(threads);
-    std::thread::scope(|scope| {
-        let part = |thread: u32| (thread * rows..((thread + 1) * rows).min(height)).flat_map(seen).collect::<Vec<_>>();
-        let parts: Vec<_> = (0..threads).map(|thread| scope.spawn(move || part(thread))).collect();
-        parts.into_iter().flat_map(|part| part.join().expect("no thread panics")).collect()
-    })
+/// What is seen through a pixel.
+#[derive(Clone, Copy)]
+pub(crate) struct Seen {
+    /// The depth buffer's value.
+    pub(crate) depth: f64,
+    /// What shadows make of it.
+    pub(crate) shadow: ShadowAt,
+    /// Which face.
+    pub(crate) face: u32,
+    /// World space.
+    pub(crate) at: DVec3,
+}
+
+/// What is seen through each pixel, rows from the top; `None` for background.
+pub(crate) fn seen(sight: &Sight<'_>, style: &Style, plan: &Plan, options: &CpuOptions) -> Vec<Option<Seen>> {
+    let Sight { scene, camera, size, .. } = *sight;
+    let context = FrameContext::new(scene, style, plan, camera, size, options, textures(scene, plan));
+    let hits = sight.hits(size, options, || context.first_hits(size, options.threads));
+    let row = size.0 as usize;
+    let mut seen = vec![None; row * size.1 as usize];
+    context.by_rows((0u32..).zip(seen.chunks_mut(row)), options.threads, |(y, seen)| {
+        for (x, seen) in (0u32..).zip(seen) {
+            let known = hits.as_ref().map(|hits| hits[y as usize * row + x as usize]);
+            *seen = known.unwrap_or_else(|| context.first_solid(x, y)).map(|hit| Seen {
+                depth: camera.buffer_depth(hit.t),
+                shadow: context.shadow_at(&hit),
+                face: hit.face,
+                at: context.interpolate(&hit, hit.barycentric).at,
+            });
+        }
+    });
+    seen
 }
 
 /// The scene's textures as a frame looks them up; none if it does not.
-pub(crate) fn textures(scene: &Scene, plan: &Plan) -> Vec<MipMapped> {
+pub(crate) fn textures<'a>(scene: &'a Scene, plan: &Plan) -> &'a [MipMapped] {
     if plan.painted || plan.cut_out || plan.image.as_ref().is_some_and(|i| i.ink.artist) {
-        scene.model.textures.iter().map(MipMapped::new).collect()
+        scene.mip_mapped()
     } else {
-        Vec::new()
+        &[]
     }
 }
 
@@ -209,11 +233,13 @@ impl<'a> FrameContext<'a> {
     ) -> Self {
         let samples = options.samples.max(1);
         let lights = lights_in_world(style, scene, camera);
+        let size_px = DVec2::new(f64::from(width * samples), f64::from(height * samples));
         Self {
             scene,
             style,
             camera,
-            size_px: DVec2::new(f64::from(width * samples), f64::from(height * samples)),
+            size_px,
+            rays: camera.rays(size_px),
             light_color: combined_color(&lights),
             lights,
             textures,
@@ -242,54 +268,73 @@ impl FrameContext<'_> {
     }
 
     /// Paints surfaces; lines are drawn over them afterwards. Without a picture only what lines are found in is made.
+    /// `hits`, if they are known, are those of [`Self::first_hits`].
     fn trace(
         &self,
-        width: u32,
-        height: u32,
+        (width, height): (u32, u32),
+        hits: Option<&Hits>,
         threads: usize,
         picture: bool,
         progress: &(dyn Fn(f64) + Sync),
     ) -> CpuFrame {
-        let pixels = width as usize * height as usize;
+        let (row, pixels) = (width as usize, width as usize * height as usize);
         let mut color = vec![DVec4::ZERO; if picture { pixels } else { 0 }];
         let mut depth = vec![0.0; color.len()];
         let mut texels = vec![[0; 2]; if self.plan.image.is_some() { pixels } else { 0 }];
-        // Built before the threads ask for it, so that they do not wait for each other.
-        self.scene.rays();
-        let rows = std::sync::atomic::AtomicU32::new(0);
-        let available = std::thread::available_parallelism().map_or(1, usize::from);
-        let threads = if threads == 0 { available } else { threads };
-        // Rows are handed out one by one, since the cost of a row depends on what is in it.
-        let row = width as usize;
         let rows_of_texels = texels.chunks_mut(row).map(Some).chain(std::iter::repeat_with(|| None));
         let rows_of_picture = color.chunks_mut(row).zip(depth.chunks_mut(row)).map(Some);
         let rows_of_picture = rows_of_picture.chain(std::iter::repeat_with(|| None));
-        let work = std::sync::Mutex::new((0..height).zip(rows_of_picture.zip(rows_of_texels)));
+        let rows = AtomicU32::new(0);
+        self.by_rows((0..height).zip(rows_of_picture.zip(rows_of_texels)), threads, |(y, (picture, texels))| {
+            let hits = hits.map(|hits| &hits[y as usize * row..][..row]);
+            self.trace_row(y, width, hits, picture, texels);
+            let done = rows.fetch_add(1, Ordering::Relaxed) + 1;
+            progress(f64::from(done) / f64::from(height));
+        });
+        CpuFrame { width, height, color, depth, texels }
+    }
+
+    /// What is seen through each pixel, but for what is blended over it.
+    fn first_hits(&self, (width, height): (u32, u32), threads: usize) -> Hits {
+        let mut hits = vec![None; width as usize * height as usize];
+        self.by_rows((0u32..).zip(hits.chunks_mut(width as usize)), threads, |(y, row)| {
+            for (x, hit) in (0..).zip(row) {
+                *hit = self.first_solid(x, y);
+            }
+        });
+        Hits::new(hits)
+    }
+
+    /// Does `work` for all rows, on several threads. Rows are handed out one by one, since the cost of a row depends on
+    /// what is in it.
+    fn by_rows<Row>(&self, rows: impl Iterator<Item = Row> + Send, threads: usize, work: impl Fn(Row) + Sync) {
+        // Built before the threads ask for it, so that they do not wait for each other.
+        self.scene.rays();
+        let available = std::thread::available_parallelism().map_or(1, usize::from);
+        let rows = std::sync::Mutex::new(rows);
         std::thread::scope(|scope| {
-            for _ in 0..threads.min(height as usize).max(1) {
+            for _ in 0..if threads == 0 { available } else { threads } {
                 scope.spawn(|| {
                     loop {
-                        let next = work.lock().expect("no thread panics while it holds the lock").next();
-                        let Some((y, (picture, texels))) = next else { break };
-                        self.trace_row(y, width, picture, texels);
-                        let done = rows.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1;
-                        progress(f64::from(done) / f64::from(height));
+                        let next = rows.lock().expect("no thread panics while it holds the lock").next();
+                        let Some(row) = next else { break };
+                        work(row);
                     }
                 });
             }
         });
-        CpuFrame { width, height, color, depth, texels }
     }
 
     fn trace_row(
         &self,
         y: u32,
         width: u32,
+        hits: Option<&[Option<Hit>]>,
         mut picture: Option<(&mut [DVec4], &mut [f64])>,
         mut texels: Option<&mut [[u32; 2]]>,
     ) {
         for x in 0..width {
-            let solid = self.first_solid(x, y);
+            let solid = hits.map_or_else(|| self.first_solid(x, y), |hits| hits[x as usize]);
             if let Some((color, depth)) = &mut picture {
                 color[x as usize] = self.trace_pixel(solid.as_ref(), x, y);
                 depth[x as usize] = solid.map_or(0.0, |hit| self.camera.buffer_depth(hit.t));
@@ -307,7 +352,7 @@ impl FrameContext<'_> {
 
     /// What is seen through a pixel, but for what is blended over it.
     fn first_solid(&self, x: u32, y: u32) -> Option<Hit> {
-        let (origin, direction) = self.camera.ray(self.sample_point(f64::from(x), f64::from(y)), self.size_px);
+        let (origin, direction) = self.rays.through(self.sample_point(f64::from(x), f64::from(y)));
         let is_solid = |hit: &Hit| {
             self.is_shown(hit)
                 && self.scene.keeps(origin + direction * hit.t)
@@ -325,7 +370,7 @@ impl FrameContext<'_> {
             _ => paper,
         };
         if self.plan.blended && self.painting {
-            let (origin, direction) = self.camera.ray(self.sample_point(f64::from(x), f64::from(y)), self.size_px);
+            let (origin, direction) = self.rays.through(self.sample_point(f64::from(x), f64::from(y)));
             let range = self.camera.depth_range();
             let nearer = (range.0, solid.map_or(range.1, |hit| hit.t));
             let is_blended =

@@ -134,7 +134,7 @@ impl Executor {
 
     /// Renders a picture.
     ///
-    /// `samples` is the CPU executor's; a device takes one sample a pixel.
+    /// `samples`: along each axis of a pixel.
     ///
     /// # Errors
     /// [`HarnessError`].
@@ -151,7 +151,9 @@ impl Executor {
     ) -> Result<Image, HarnessError> {
         match self {
             #[cfg(feature = "gpu")]
-            Self::Gpu(context) => Ok(gpu::render(context, scene, style, plan, camera, size, LineMethod::Auto)?),
+            Self::Gpu(context) => {
+                Ok(gpu::render(context, scene, style, plan, camera, size, samples, LineMethod::Auto)?)
+            }
             Self::Cpu { .. } => {
                 let options = CpuOptions { samples, ..Default::default() };
                 Ok(cpu::render(scene, style, plan, camera, size, &options, progress).image())

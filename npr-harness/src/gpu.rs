@@ -8,6 +8,7 @@ mod error;
 mod hatch;
 mod ink;
 mod light;
+mod mean;
 mod scene;
 mod shadow;
 mod surface;
@@ -28,7 +29,9 @@ use crate::shadow::{ShadowLines, ShadowMethod};
 use crate::style::{Lines, Style};
 use glam::DVec2;
 use light::LightOnDevice;
+use mean::MeanPass;
 use npr_outline::fin_pass::FinPass;
+use npr_outline::line_look::LineLook;
 use npr_outline::line_pass::{LineRecord, LineSource, LineTargets, line_records};
 use npr_outline::line_strokes::{LineStrokes, StrokeTargets};
 use npr_outline::normal_format::NormalFormat;
@@ -45,6 +48,7 @@ pub struct GpuRenderer<'a> {
     printed: OnceCell<FinPass>,
     ink: ink::InkPasses,
     shadows: ShadowPasses,
+    mean: MeanPass,
     scratch: RefCell<(Vec<u32>, Vec<LineRecord>)>,
 }
 
@@ -63,6 +67,7 @@ impl<'a> GpuRenderer<'a> {
             printed: OnceCell::new(),
             ink: Default::default(),
             shadows: Default::default(),
+            mean: Default::default(),
             scratch: Default::default(),
         }
     }
@@ -102,12 +107,22 @@ impl<'a> GpuRenderer<'a> {
         self.printed.get_or_init(|| FinPass::new(&self.context.device, targets::COLOR_FORMAT, NormalFormat::F32))
     }
 
-    /// Makes targets of a size.
+    /// Makes targets of a size, for one sample a pixel.
     ///
     /// # Errors
     /// [`GpuError::TooLarge`].
     pub fn targets(&self, width: u32, height: u32) -> Result<Targets, GpuError> {
-        Targets::new(self.context, width, height)
+        self.targets_of_samples(width, height, 1)
+    }
+
+    /// Makes targets of a size, for several samples along each axis of a pixel. What is drawn from surfaces and edges is
+    /// drawn as many times as large, with lines as much wider, and averaged; lines in the image are found and laid at the
+    /// picture's own size.
+    ///
+    /// # Errors
+    /// [`GpuError::TooLarge`].
+    pub fn targets_of_samples(&self, width: u32, height: u32, samples: u32) -> Result<Targets, GpuError> {
+        Targets::new(self.context, width, height, samples)
     }
 
     /// Submits a frame. It is done when [`GpuContext::wait`] returns.
@@ -124,7 +139,8 @@ impl<'a> GpuRenderer<'a> {
         targets: &Targets,
     ) -> Result<(), GpuError> {
         let device = &self.context.device;
-        let size_px = DVec2::new(f64::from(targets.width), f64::from(targets.height));
+        let canvas = targets.canvas();
+        let size_px = DVec2::new(f64::from(canvas.width), f64::from(canvas.height));
         let eye = camera.homogeneous_eye();
         let light = LightOnDevice::new(self.context, style, &lights_in_world(style, scene, camera))?;
         targets.begin();
@@ -138,7 +154,7 @@ impl<'a> GpuRenderer<'a> {
             let frame = ShadowFrame { plan: shadow, light: casting_light(style, scene, camera), camera, size };
             let mut draw_depth = |encoder: &mut wgpu::CommandEncoder, depth: &wgpu::TextureView| {
                 let size_px = DVec2::new(size.0.into(), size.1.into());
-                let drawn = SurfaceTargets { color: None, texels: None, depth, size_px };
+                let drawn = SurfaceTargets { color: None, texels: None, depth, size_px, samples: 1 };
                 self.surface.record(device, encoder, uploaded, scene, style, plan, camera, &light, None, &drawn)
             };
             let context = self.context;
@@ -147,18 +163,58 @@ impl<'a> GpuRenderer<'a> {
         // A picture that is left as paper shows nothing of shadows but by its lines.
         let one_pass = ink.as_ref().is_none_or(|(_, ink)| ink.depth.is_none());
         let shadow = if plan.painted || one_pass {
-            shadow_of(&mut encoder, (targets.width, targets.height), &targets.stencil)?
+            shadow_of(&mut encoder, (canvas.width, canvas.height), &canvas.stencil)?
         } else {
             None
         };
         let drawn = SurfaceTargets {
-            color: Some(&targets.color_view),
+            color: Some(&canvas.color_view),
             texels: ink.as_ref().filter(|(_, ink)| ink.depth.is_none()).map(|(_, ink)| &ink.texels),
-            depth: &targets.depth_view,
+            depth: &canvas.depth_view,
             size_px,
+            samples: targets.samples,
         };
         let shadow = shadow.as_ref();
         self.surface.record(device, &mut encoder, uploaded, scene, style, plan, camera, &light, shadow, &drawn)?;
+        let scale = targets.samples as f32;
+        if let (Some(Lines::Fins(look)), Some(contours)) = (&style.lines, &plan.contours) {
+            let mut scratch = self.scratch.borrow_mut();
+            let (lines, records) = &mut *scratch;
+            let source = match &uploaded.edges {
+                Some(edges) => LineSource::OnDevice(edges),
+                None => {
+                    contours.scan(eye, lines);
+                    line_records(contours, &scene.model.positions, lines, eye, records);
+                    LineSource::Records(records)
+                }
+            };
+            let look = &LineLook { width_px: look.width_px.map(|width_px| width_px * scale), ..*look };
+            let view = camera.line_view(size_px);
+            let buffers = if uploaded.strokes { canvas.stroke_buffers(device, self.strokes()) } else { None };
+            if let (LineSource::Records(records), Some(buffers)) = (source, buffers) {
+                let stroke_targets = StrokeTargets { picture: &canvas.color_view, depth: &canvas.depth_view, buffers };
+                self.strokes().record(device, &mut encoder, records, look, &view, &stroke_targets)?;
+            } else {
+                let line_targets = LineTargets {
+                    painted: &canvas.color_view,
+                    depth: &canvas.depth_view,
+                    inked: &canvas.inked_view,
+                    winner: &canvas.winner_view,
+                };
+                canvas.begin_ink(&mut encoder);
+                self.lines.record(device, &mut encoder, source, look, &view, eye, &line_targets)?;
+            }
+        }
+        if let (Some(Lines::Printed { width_px, ink }), Some(fins), Some(bounds)) =
+            (&style.lines, &uploaded.fins, scene.bounds())
+        {
+            let view = camera.fin_view(size_px, f64::from(*width_px * scale), bounds);
+            let ink = ink.extend(1.0).to_array();
+            self.printed().record(device, &mut encoder, fins, &view, ink, &canvas.color_view, &canvas.depth_view);
+        }
+        if targets.samples > 1 {
+            self.mean.record(device, &mut encoder, targets.samples, canvas.drawn(), &targets.color_view);
+        }
         if let Some((image, ink)) = &ink {
             if let Some(depth) = &ink.depth {
                 // Only lines are drawn here: without lines of shadows there is no need for them.
@@ -169,7 +225,7 @@ impl<'a> GpuRenderer<'a> {
                 };
                 let shadow = shadow.as_ref();
                 let size_px = DVec2::new(ink.size.0.into(), ink.size.1.into());
-                let drawn = SurfaceTargets { color: None, texels: Some(&ink.texels), depth, size_px };
+                let drawn = SurfaceTargets { color: None, texels: Some(&ink.texels), depth, size_px, samples: 1 };
                 self.surface.record(
                     device,
                     &mut encoder,
@@ -184,41 +240,6 @@ impl<'a> GpuRenderer<'a> {
                 )?;
             }
             self.ink.record(self.context, &mut encoder, scene.bounds(), image, camera, ink, targets)?;
-        }
-        if let (Some(Lines::Fins(look)), Some(contours)) = (&style.lines, &plan.contours) {
-            let mut scratch = self.scratch.borrow_mut();
-            let (lines, records) = &mut *scratch;
-            let source = match &uploaded.edges {
-                Some(edges) => LineSource::OnDevice(edges),
-                None => {
-                    contours.scan(eye, lines);
-                    line_records(contours, &scene.model.positions, lines, eye, records);
-                    LineSource::Records(records)
-                }
-            };
-            let view = camera.line_view(size_px);
-            let buffers = if uploaded.strokes { targets.stroke_buffers(device, self.strokes()) } else { None };
-            if let (LineSource::Records(records), Some(buffers)) = (source, buffers) {
-                let stroke_targets =
-                    StrokeTargets { picture: &targets.color_view, depth: &targets.depth_view, buffers };
-                self.strokes().record(device, &mut encoder, records, look, &view, &stroke_targets)?;
-            } else {
-                let line_targets = LineTargets {
-                    painted: &targets.color_view,
-                    depth: &targets.depth_view,
-                    inked: &targets.inked_view,
-                    winner: &targets.winner_view,
-                };
-                targets.begin_ink(&mut encoder);
-                self.lines.record(device, &mut encoder, source, look, &view, eye, &line_targets)?;
-            }
-        }
-        if let (Some(Lines::Printed { width_px, ink }), Some(fins), Some(bounds)) =
-            (&style.lines, &uploaded.fins, scene.bounds())
-        {
-            let view = camera.fin_view(size_px, f64::from(*width_px), bounds);
-            let ink = ink.extend(1.0).to_array();
-            self.printed().record(device, &mut encoder, fins, &view, ink, &targets.color_view, &targets.depth_view);
         }
         self.context.queue.submit([encoder.finish()]);
         Ok(())
@@ -256,10 +277,11 @@ impl<'a> GpuRenderer<'a> {
     }
 }
 
-/// Renders one picture: upload, draw, fetch.
+/// Renders one picture: upload, draw, fetch. `samples`: along each axis of a pixel.
 ///
 /// # Errors
 /// [`GpuError`].
+#[expect(clippy::too_many_arguments, reason = "each is a thing of its own; a struct would only rename them")]
 pub fn render(
     context: &GpuContext,
     scene: &Scene,
@@ -267,10 +289,11 @@ pub fn render(
     plan: &Plan,
     camera: &Camera,
     (width, height): (u32, u32),
+    samples: u32,
     method: LineMethod,
 ) -> Result<Image, GpuError> {
     let renderer = GpuRenderer::new(context);
-    let targets = renderer.targets(width, height)?;
+    let targets = renderer.targets_of_samples(width, height, samples)?;
     let uploaded = renderer.upload(scene, plan, method)?;
     renderer.draw(scene, &uploaded, style, plan, camera, &targets)?;
     renderer.read(&targets)

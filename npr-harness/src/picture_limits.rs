@@ -18,7 +18,7 @@ const SAMPLE_BYTES: u64 = 48;
 const MEAN_BYTES: u64 = 40;
 /// On the CPU per pixel: the picture, its copy while it grows, its file.
 const FILE_BYTES: u64 = 12;
-/// On a device per pixel: two colours, depth, the lines' winner, 12 of strokes, what is read back, the picture, its file.
+/// On a device per sample: two colours, depth, the lines' winner, 12 of strokes, what is read back, the picture, its file.
 const DEVICE_BYTES: u64 = 48;
 /// Per pixel of ink found in the image: texels 8, depth 4, ink and brush.
 const INK_BYTES: u64 = 20;
@@ -44,11 +44,14 @@ pub fn picture_bytes(style: &Style, (width, height): (u32, u32), samples: u32, o
         Some(ShadowMethod::Map { side }) => map = 4 * u64::from(side) * u64::from(side),
         None => {}
     }
+    let samples = u64::from(samples.max(1));
     let per_pixel = if on_device {
-        DEVICE_BYTES + ink + stencil
+        let sampled = (DEVICE_BYTES + stencil).saturating_mul(samples).saturating_mul(samples);
+        // Several are averaged into targets of the picture's own size, and the ink has surfaces of its own.
+        let own = if samples > 1 { DEVICE_BYTES + STENCIL_BYTES } else { 0 };
+        sampled.saturating_add(own + ink)
     } else {
         map = 0;
-        let samples = u64::from(samples.max(1));
         let mean = if samples > 1 { MEAN_BYTES } else { 0 };
         SAMPLE_BYTES.saturating_mul(samples).saturating_mul(samples).saturating_add(mean + FILE_BYTES + ink)
     };

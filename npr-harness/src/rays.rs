@@ -1,35 +1,59 @@
 //! Rays against triangles, in f64: what every other picture of a scene is measured against.
 //!
-//! A bounding volume hierarchy in f32 (obvhs, a binary one) only proposes triangles, from boxes that are padded by
-//! more than its rounding. Whether a triangle is hit, and where, is decided in f64 by the watertight test of Woop,
-//! Benthin & Wald 2013 ("Watertight Ray/Triangle Intersection", JCGT 2:1): the corners are moved and sheared so that
-//! the ray becomes the z axis, and the signs of three 2D edge functions decide. A sheared corner depends on the ray
-//! and that corner only, and the signs are exact for the sheared corners, so a ray through a shared edge or corner
-//! hits at least one of the faces there.
+//! A bounding volume hierarchy in f32 (built in `hierarchy.rs` and, where large faces pass through one another, in
+//! `cells.rs`; walked by obvhs) only proposes triangles, from boxes that are padded by more than its rounding. Whether a
+//! triangle is hit, and where, is decided in f64 by the watertight test of Woop, Benthin & Wald 2013 ("Watertight
+//! Ray/Triangle Intersection", JCGT 2:1): the corners are moved and sheared so that the ray becomes the z axis, and the
+//! signs of three 2D edge functions decide. A sheared corner depends on the ray and that corner only, and the signs are
+//! exact for the sheared corners, so a ray through a shared edge or corner hits at least one of the faces there.
 
+mod cells;
+mod hierarchy;
+
+use cells::{CELL, Cell, Content, Tree, Whole};
 use glam::{DVec3, Vec3};
 use npr_mesh::edges::has_zero_area;
-use obvhs::{BvhBuildParams, aabb::Aabb, bvh2::Bvh2, bvh2::builder::build_bvh2, fast_stack};
-use obvhs::{ray::Ray, ray::RayHit};
-use std::{ops::ControlFlow, time::Duration};
+use obvhs::{aabb::Aabb, fast_stack, ray::Ray, ray::RayHit};
+use std::collections::HashMap;
+use std::ops::ControlFlow;
 
-/// Finds the faces that a ray hits. It is read-only once made, so that several threads can share it.
+/// Finds the faces that a ray hits. Several threads can share it: what rays add to the hierarchy changes no answer.
 ///
 /// Distances are exact to a few units in the last place of f64 times the distance of the ray's origin, up to
 /// origins 10⁹ scene sizes away; farther off a face at a silhouette can be missed.
 pub struct RayCaster {
-    bvh: Bvh2,
-    /// In the order of the hierarchy's leaves, so that a leaf's triangles lie together in memory.
-    triangles: Vec<Triangle>,
+    tree: Tree,
     /// The hierarchy works on (position − centre) / half_size, which is within −1..1.
-    center: DVec3,
-    half_size: f64,
+    whole: Whole,
+    /// Faces that lie on one another and are wound alike, by number: one triangle stands for them, else a ray that hits
+    /// one would be tested against all.
+    alike: Vec<Vec<Alike>>,
 }
 
 #[derive(Clone, Copy)]
 struct Triangle {
     corners: [Vec3; 3],
+    /// The face's number; or, with the bit [`ALIKE`], which of [`RayCaster::alike`].
     face: u32,
+}
+
+/// Faces have fewer numbers.
+const ALIKE: u32 = 1 << 31;
+
+/// One of several faces with the same corners.
+#[derive(Clone, Copy)]
+struct Alike {
+    face: u32,
+    /// Which of the triangle's corners is the face's first.
+    first: usize,
+}
+
+/// What a visited hit leads to.
+struct Seen {
+    /// The largest t that still matters.
+    t_max: f64,
+    /// Whether further faces with the same corners do not.
+    enough: bool,
 }
 
 /// Where a ray meets a face.
@@ -61,16 +85,18 @@ impl RayCaster {
     ///   no ray hits them.
     ///
     /// # Panics
-    /// If a face names a vertex that is not there.
+    /// If a face names a vertex that is not there, or there are 2³¹ faces.
     pub fn new(positions: &[Vec3], faces: &[[u32; 3]]) -> Self {
+        assert!(faces.len() <= ALIKE as usize, "more faces than numbers");
         let triangles: Vec<Triangle> = (0u32..)
             .zip(faces)
             .map(|(number, face)| (number, face, face.map(|v| positions[v as usize])))
             .filter(|(_, face, corners)| corners.iter().all(|c| c.is_finite()) && !has_zero_area(positions, face))
             .map(|(face, _, corners)| Triangle { corners, face })
             .collect();
+        let (triangles, alike) = joined(triangles);
         let Some(first) = triangles.first() else {
-            return Self { bvh: Bvh2::default(), triangles, center: DVec3::ZERO, half_size: 1.0 };
+            return Self { tree: Tree::default(), whole: Whole::new(0, DVec3::ZERO, 1.0), alike };
         };
         let (low, high) = triangles
             .iter()
@@ -86,19 +112,19 @@ impl RayCaster {
                 max: ((a.max(*b).max(*c).as_dvec3() - center) / half_size + PADDING).as_vec3a(),
             })
             .collect();
-        let mut bvh = build_bvh2(&boxes, BvhBuildParams::fast_build(), &mut Duration::default());
-        let triangles = bvh.primitive_indices.iter().map(|&index| triangles[index as usize]).collect();
-        // obvhs sizes the traversal's stack by this, counts it before it has optimised the tree, and loses nodes
-        // where the stack is full.
-        bvh.max_depth = depth(&bvh) + 2;
-        Self { bvh, triangles, center, half_size }
+        let mut whole = Whole::new(triangles.len(), center, half_size);
+        let tree = Tree::new(&triangles, &boxes);
+        if !tree.cells.is_empty() {
+            whole.triangles = triangles;
+        }
+        Self { tree, whole, alike }
     }
 
     /// The nearest hit with t in `t_range` (both ends included) that `accept` takes; of several at equal t the one
     /// on the lowest-numbered face. `None` too where the origin or direction is not finite or the direction zero.
     ///
-    /// `direction` has any length; t is in its units. `accept` sees hits in no particular order and not all of
-    /// them, so its answer must depend on the hit only.
+    /// `direction` has any length; t is in its units. `accept` sees hits in no particular order, some more than
+    /// once and not all of them, so its answer must depend on the hit only.
     pub fn closest(
         &self,
         origin: DVec3,
@@ -108,10 +134,14 @@ impl RayCaster {
     ) -> Option<Hit> {
         let mut nearest: Option<Hit> = None;
         self.visit(origin, direction, t_range, |hit| {
-            if nearest.is_none_or(|n| hit.t < n.t || (hit.t == n.t && hit.face < n.face)) && accept(&hit) {
+            let nearer = nearest.is_none_or(|n| hit.t < n.t || (hit.t == n.t && hit.face < n.face));
+            let accepted = nearer && accept(&hit);
+            if accepted {
                 nearest = Some(hit);
             }
-            ControlFlow::Continue(nearest.map_or(t_range.1, |n| n.t))
+            // Of faces with the same corners those that follow have higher numbers.
+            let enough = accepted || !nearer;
+            ControlFlow::Continue(Seen { t_max: nearest.map_or(t_range.1, |n| n.t), enough })
         });
         nearest
     }
@@ -129,9 +159,10 @@ impl RayCaster {
             if accept(&hit) {
                 hits.push(hit);
             }
-            ControlFlow::Continue(t_range.1)
+            ControlFlow::Continue(Seen { t_max: t_range.1, enough: false })
         });
         hits.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.face.cmp(&b.face)));
+        hits.dedup_by_key(|hit| hit.face);
         hits
     }
 
@@ -146,18 +177,19 @@ impl RayCaster {
         let mut found = false;
         self.visit(origin, direction, t_range, |hit| {
             found = accept(&hit);
-            if found { ControlFlow::Break(()) } else { ControlFlow::Continue(t_range.1) }
+            if found { ControlFlow::Break(()) } else { ControlFlow::Continue(Seen { t_max: t_range.1, enough: false }) }
         });
         found
     }
 
-    /// Shows `visitor` the hits within `t_range`. It answers with the largest t that still matters.
+    /// Shows `visitor` the hits within `t_range`, those of faces with the same corners by ascending number. A face in
+    /// several cells may be shown several times, with the same hit.
     fn visit(
         &self,
         origin: DVec3,
         direction: DVec3,
-        (t_min, mut t_max): (f64, f64),
-        mut visitor: impl FnMut(Hit) -> ControlFlow<(), f64>,
+        (t_min, t_max): (f64, f64),
+        visitor: impl FnMut(Hit) -> ControlFlow<(), Seen>,
     ) {
         if !(origin.is_finite() && direction.is_finite()) || direction == DVec3::ZERO {
             return;
@@ -167,43 +199,138 @@ impl RayCaster {
         let length = (direction / largest).length();
         let unit = direction / largest / length;
         // The ray in the hierarchy's units, started near the scene: f32 has no precision to spend on the way there.
-        let start = (origin - self.center) / self.half_size;
-        let per_t = largest / self.half_size * length;
+        let start = (origin - self.whole.center) / self.whole.half_size;
+        let per_t = largest / self.whole.half_size * length;
         let middle = -start.dot(unit);
         if (start + middle * unit).length_squared() > REACH * REACH {
             return;
         }
         let enter = (t_min * per_t).max(middle - REACH);
-        let leave = |t: f64| ((t * per_t).min(middle + REACH) - enter) as f32 + PADDING as f32;
-        let t_max_f32 = leave(t_max);
+        let frame = Frame::new(origin, direction);
+        let mut walk =
+            Walk { caster: self, frame, t_min, t_max, per_t, enter, exit: middle + REACH, visitor, stopped: false };
         // Not `<`: a NaN in the range means no hit.
-        if !(t_min <= t_max && t_max_f32 >= 0.0) {
+        if !(t_min <= t_max && walk.leave() >= 0.0) {
             return;
         }
-        let ray = Ray::new((start + enter * unit).as_vec3a(), unit.as_vec3a(), 0.0, t_max_f32);
-        let frame = Frame::new(origin, direction);
+        let ray = Ray::new((start + enter * unit).as_vec3a(), unit.as_vec3a(), 0.0, walk.leave());
+        walk.through(&self.tree, ray);
+    }
+}
+
+/// A ray on its way through the hierarchy.
+struct Walk<'a, V> {
+    caster: &'a RayCaster,
+    frame: Frame,
+    t_min: f64,
+    /// The largest t that still matters.
+    t_max: f64,
+    /// The hierarchy's units in one of t, and where in them the ray enters the scene's surroundings and leaves them.
+    per_t: f64,
+    enter: f64,
+    exit: f64,
+    visitor: V,
+    /// The visitor wants no more.
+    stopped: bool,
+}
+
+impl<V: FnMut(Hit) -> ControlFlow<(), Seen>> Walk<'_, V> {
+    /// Where the ray in the hierarchy's units ends.
+    fn leave(&self) -> f32 {
+        ((self.t_max * self.per_t).min(self.exit) - self.enter) as f32 + PADDING as f32
+    }
+
+    fn through(&mut self, tree: &Tree, ray: Ray) {
         let mut in_leaf = |node: &obvhs::bvh2::node::Bvh2Node, ray: &mut Ray, _: &mut RayHit| {
             let first = node.first_index as usize;
-            for triangle in &self.triangles[first..first + node.prim_count as usize] {
-                let Some(hit) = frame.intersect(triangle) else { continue };
-                if !(t_min <= hit.t && hit.t <= t_max) {
-                    continue;
-                }
-                match visitor(hit) {
-                    ControlFlow::Break(()) => return false,
-                    ControlFlow::Continue(t) if t < t_max => {
-                        t_max = t;
-                        ray.tmax = leave(t);
-                    }
-                    ControlFlow::Continue(_) => {}
-                }
+            if node.prim_count == CELL {
+                self.through_cell(&tree.cells[first], *ray);
+                ray.tmax = self.leave();
+            } else {
+                self.over(&tree.triangles[first..first + node.prim_count as usize], ray);
             }
-            true
+            !self.stopped
         };
-        fast_stack!(u32, (96, 192), self.bvh.max_depth, stack, {
-            self.bvh.ray_traverse_dynamic(&mut stack, ray, &mut RayHit::none(), &mut in_leaf);
+        // A hierarchy is at most 3 · 31 + 3 deep.
+        fast_stack!(u32, (96), tree.bvh.max_depth, stack, {
+            tree.bvh.ray_traverse_dynamic(&mut stack, ray, &mut RayHit::none(), &mut in_leaf);
         });
     }
+
+    /// The nearer half first.
+    #[cold]
+    fn through_cell(&mut self, cell: &Cell, mut ray: Ray) {
+        let halves = cell.halves(&self.caster.whole);
+        let mut on_way = [0, 1].map(|half: usize| (halves[half].bounds.intersect_ray(&ray), &halves[half].content));
+        if on_way[0].0 > on_way[1].0 {
+            on_way.swap(0, 1);
+        }
+        for (t, content) in on_way {
+            if self.stopped || t >= ray.tmax {
+                break;
+            }
+            match content {
+                Content::Cell(cell) => self.through_cell(cell, ray),
+                Content::Tree(tree) => self.through(tree, ray),
+            }
+            ray.tmax = self.leave();
+        }
+    }
+
+    #[inline(always)]
+    fn over(&mut self, triangles: &[Triangle], ray: &mut Ray) {
+        for triangle in triangles {
+            let Some(hit) = self.frame.intersect(triangle) else { continue };
+            if !(self.t_min <= hit.t && hit.t <= self.t_max) {
+                continue;
+            }
+            let one = [Alike { face: triangle.face, first: 0 }];
+            let faces = match triangle.face & ALIKE {
+                0 => &one[..],
+                _ => &self.caster.alike[(triangle.face & !ALIKE) as usize],
+            };
+            for &Alike { face, first } in faces {
+                let [u, v, w] = hit.barycentric;
+                let barycentric = [[u, v, w], [v, w, u], [w, u, v]][first];
+                let ControlFlow::Continue(seen) = (self.visitor)(Hit { face, barycentric, ..hit }) else {
+                    self.stopped = true;
+                    return;
+                };
+                if seen.t_max < self.t_max {
+                    self.t_max = seen.t_max;
+                    ray.tmax = self.leave();
+                }
+                if seen.enough {
+                    break;
+                }
+            }
+        }
+    }
+}
+
+/// Joins triangles with the same corners in the same order, wherever it begins.
+fn joined(triangles: Vec<Triangle>) -> (Vec<Triangle>, Vec<Vec<Alike>>) {
+    let mut places: HashMap<[[u32; 3]; 3], usize> = HashMap::with_capacity(triangles.len());
+    let (mut kept, mut alike): (Vec<Triangle>, Vec<Vec<Alike>>) = (Vec::with_capacity(triangles.len()), Vec::new());
+    for triangle in triangles {
+        let mut key = triangle.corners.map(|corner| corner.to_array().map(f32::to_bits));
+        let lowest = (0..3).min_by_key(|&corner| key[corner]).unwrap_or(0);
+        key.rotate_left(lowest);
+        let place = *places.entry(key).or_insert(kept.len());
+        if place == kept.len() {
+            kept.push(triangle);
+            continue;
+        }
+        let same = &mut kept[place];
+        if same.face & ALIKE == 0 {
+            alike.push(vec![Alike { face: same.face, first: 0 }]);
+            same.face = ALIKE | (alike.len() - 1) as u32;
+        }
+        let first =
+            (0..3).find(|&corner| same.corners[corner].to_array() == triangle.corners[0].to_array()).unwrap_or(0);
+        alike[(same.face & !ALIKE) as usize].push(Alike { face: triangle.face, first });
+    }
+    (kept, alike)
 }
 
 /// The ray as the z axis: axes permuted so that its largest component is the third, without changing the handedness,
@@ -271,20 +398,6 @@ fn precise_cross(a: [f64; 3], b: [f64; 3]) -> f64 {
     let q = a[1] * b[0];
     let rounding = (-a[1]).mul_add(b[0], q);
     a[0].mul_add(b[1], -q) + rounding
-}
-
-/// The number of edges on the longest way from the root to a leaf.
-fn depth(bvh: &Bvh2) -> usize {
-    let mut deepest = 0;
-    let mut open: Vec<(u32, usize)> = if bvh.nodes.is_empty() { Vec::new() } else { vec![(0, 0)] };
-    while let Some((node, depth)) = open.pop() {
-        deepest = deepest.max(depth);
-        let node = &bvh.nodes[node as usize];
-        if !node.is_leaf() {
-            open.extend([(node.first_index, depth + 1), (node.first_index + 1, depth + 1)]);
-        }
-    }
-    deepest
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use crate::color::encode_rgb;
 use crate::error::HarnessError;
 use crate::rays::RayCaster;
+use crate::texture::MipMapped;
 use glam::{DVec3, DVec4, Vec3};
 use npr_hatch::HatchError;
 use npr_hatch::field::{FieldOptions, LineTensor, direction_field};
@@ -41,6 +42,7 @@ pub struct Scene {
     bounds: OnceLock<Option<(Vec3, Vec3)>>,
     directions: OnceLock<Vec<LineTensor>>,
     casters: OnceLock<ShadowCasters>,
+    mip_mapped: OnceLock<Vec<MipMapped>>,
 }
 
 impl Scene {
@@ -74,6 +76,7 @@ impl Scene {
             bounds: OnceLock::new(),
             directions: OnceLock::new(),
             casters: OnceLock::new(),
+            mip_mapped: OnceLock::new(),
         }
     }
 
@@ -121,6 +124,11 @@ impl Scene {
     /// The ray caster, built when it is first asked for.
     pub fn rays(&self) -> &RayCaster {
         self.rays.get_or_init(|| RayCaster::new(&self.model.positions, &self.model.faces))
+    }
+
+    /// The model's textures with their mip levels.
+    pub fn mip_mapped(&self) -> &[MipMapped] {
+        self.mip_mapped.get_or_init(|| self.model.textures.iter().map(MipMapped::new).collect())
     }
 
     /// Per face which of its sides no other face has: bit i for the side from corner i to the next.

@@ -3,7 +3,7 @@
 use crate::camera::{Camera, Framing, Projection};
 use crate::check::{ROUNDED_PX, SHIFT_PX};
 use crate::compare::Image;
-use crate::cpu::{self, CpuOptions};
+use crate::cpu::{self, CpuOptions, Seen, ShadowAt, Sight};
 use crate::error::HarnessError;
 #[cfg(feature = "gpu")]
 use crate::gpu::{GpuContext, GpuRenderer};
@@ -290,7 +290,7 @@ pub fn true_borders(
 ) -> Result<Vec<DVec2>, HarnessError> {
     let plan = Plan::new(scene, style, &shot.camera)?;
     let fine = (size.0 * samples, size.1 * samples);
-    let seen = cpu::seen_states(scene, style, &plan, &shot.camera, fine);
+    let seen = cpu::seen(&Sight::new(scene, &shot.camera, fine), style, &plan, &CpuOptions::default());
     let fine_px = DVec2::new(fine.0.into(), fine.1.into());
     let plane = |face: u32| {
         let [a, b, c] = scene.model.faces[face as usize].map(|v| scene.model.positions[v as usize].as_dvec3());
@@ -310,12 +310,18 @@ pub fn true_borders(
     let mut borders = Vec::new();
     for y in 0..fine.1 {
         for x in 0..fine.0 {
-            let Some((state, face, at)) = seen[(y * fine.0 + x) as usize] else { continue };
+            let Some(Seen { shadow: ShadowAt { state, .. }, face, at, .. }) = seen[(y * fine.0 + x) as usize] else {
+                continue;
+            };
             for (dx, dy) in [(1, 0), (0, 1)] {
                 if x + dx >= fine.0 || y + dy >= fine.1 {
                     continue;
                 }
-                let Some((other, of, there)) = seen[((y + dy) * fine.0 + x + dx) as usize] else { continue };
+                let Some(Seen { shadow: ShadowAt { state: other, .. }, face: of, at: there, .. }) =
+                    seen[((y + dy) * fine.0 + x + dx) as usize]
+                else {
+                    continue;
+                };
                 let pair = [state, other];
                 if !(pair.contains(&ShadowState::Lit) && pair.contains(&ShadowState::Cast)) {
                     continue;

@@ -7,8 +7,9 @@ mod common;
 use common::{Folder, cards, device, plain, shared_models, waves};
 use glam::{DVec2, Vec4};
 use npr_harness::camera::{Camera, Framing};
-use npr_harness::check::{self, Reference, SIZE, Shot, agrees, magnitude};
+use npr_harness::check::{self, PLACES, Reference, SIZE, Shot, agrees, magnitude};
 use npr_harness::compare::{Image, compare};
+use npr_harness::cpu::Sight;
 use npr_harness::executor::Executor;
 use npr_harness::gallery::still_life_camera;
 use npr_harness::image_ink::ImageInk;
@@ -64,7 +65,8 @@ fn lines_behind_a_ground_seen_from_below() {
     for (yaw_deg, pitch_deg, fov_y_rad) in [(10.0, -10.0, Some(0.6)), (280.0, -10.0, None), (120.0, -45.0, Some(0.6))] {
         let camera = framed(&scene, yaw_deg, pitch_deg, fov_y_rad);
         let plan = Plan::new(&scene, &style, &camera).expect("a good style");
-        let shot = Shot { scene: &scene, style: &style, plan: &plan, camera: &camera, size: SIZE };
+        let sight = Sight::new(&scene, &camera, SIZE);
+        let shot = Shot { sight: &sight, style: &style, plan: &plan, samples: 1 };
         let Reference { image, exempt, .. } = Reference::new(shot).expect("pictures");
         let actual = render(&executor, &scene, &style, &camera);
         let comparison = compare(&image, &actual, &exempt).expect("one size");
@@ -157,11 +159,12 @@ fn broken_pictures_do_not_pass() {
     let Some(executor) = device() else { return };
     let scene = Scene::new(embedded::scene());
     let camera = still_life_camera();
+    let sight = Sight::kept(&scene, &camera, SIZE, PLACES);
     for name in ["cartoon", "lines", "printed-fins", "ink-image", "ink-thick", "ink-fine"] {
         let style = style(name).expect("a style of the crate");
         let plan = Plan::new(&scene, &style, &camera).expect("a good style");
         let magnitude = magnitude(&plan);
-        let shot = Shot { scene: &scene, style: &style, plan: &plan, camera: &camera, size: SIZE };
+        let shot = Shot { sight: &sight, style: &style, plan: &plan, samples: 1 };
         let Reference { image, exempt, .. } = Reference::new(shot).expect("pictures");
         let is_fine = |actual: &Image| agrees(&compare(&image, actual, &exempt).expect("one size"), magnitude);
         let good = render(&executor, &scene, &style, &camera);

@@ -8,8 +8,9 @@ use common::{cards, device, plain, waves};
 use glam::{DVec3, Mat4, UVec2, Vec3, Vec4};
 use npr_gooch::{Gooch, Tones};
 use npr_harness::camera::{Camera, Framing, Projection};
-use npr_harness::check::{Reference, Shot, agrees, magnitude};
+use npr_harness::check::{PLACES, Reference, Shot, agrees, magnitude};
 use npr_harness::compare::{Image, compare};
+use npr_harness::cpu::Sight;
 use npr_harness::image_ink::ImageInk;
 use npr_harness::light::{LightFrame, StyleLight, lights_in_world};
 use npr_harness::plan::Plan;
@@ -189,6 +190,7 @@ fn the_same_on_both(cases: Vec<(&'static str, Shade, Vec<StyleLight>)>, shadow: 
     let scene = scene();
     for fov_y_rad in [Some(0.7), None] {
         let camera = camera(&scene, fov_y_rad);
+        let sight = Sight::kept(&scene, &camera, SIZE, PLACES);
         let mut before = None;
         for (number, (name, shade, lights)) in cases.clone().into_iter().enumerate() {
             // In a parallel view one use of normals, of half of the cases.
@@ -211,7 +213,7 @@ fn the_same_on_both(cases: Vec<(&'static str, Shade, Vec<StyleLight>)>, shadow: 
                 let style = Style { shadow, ..of(shade.clone(), lights.clone(), normals, lines) };
                 let plan = Plan::new(&scene, &style, &camera).expect("a plan");
                 let actual = executor.render(&scene, &style, &plan, &camera, SIZE, 1, &|_| {}).expect("a picture");
-                let shot = Shot { scene: &scene, style: &style, plan: &plan, camera: &camera, size: SIZE };
+                let shot = Shot { sight: &sight, style: &style, plan: &plan, samples: 1 };
                 let mut reference = Reference::new(shot).expect("pictures");
                 let magnitude = magnitude(&plan);
                 let against = |reference: &Reference<'_>, actual: &Image| {

@@ -3,13 +3,17 @@
 
 use glam::{DVec2, DVec3, Vec3};
 use npr_harness::camera::{Camera, Projection};
+use npr_harness::check::{Reference, Shot};
 use npr_harness::color::{encode_srgb, to_byte};
-use npr_harness::cpu::{CpuFrame, CpuOptions, render};
+use npr_harness::cpu::{CpuFrame, CpuOptions, Sight, render};
 use npr_harness::gallery::still_life_camera;
 use npr_harness::light::lights_in_world;
 use npr_harness::plan::Plan;
 use npr_harness::scene::Scene;
-use npr_harness::style::{Style, style};
+use npr_harness::shadow::ShadowLines;
+use npr_harness::style::{Lines, Style, style};
+use npr_imagespace::composite::Composite;
+use npr_imagespace::morphology::disc::Disc;
 use npr_mesh::{Model, embedded};
 use npr_outline::segment::outline_screen;
 use npr_toon::source::toon_to_light;
@@ -190,4 +194,45 @@ fn more_samples_converge() {
     println!("RMSE against 8 × 8 samples, with 1, 2 and 4 along each axis: {rmse:.5?}");
     assert!(rmse[0] > 1.5 * rmse[1] && rmse[1] > 1.5 * rmse[2] && rmse[2] > 0.0);
     assert!(rmse[0] < 0.1);
+}
+
+/// A fold too flat for a crease runs through the pixels of one column, within a thousandth of a pixel of their centres: one side of it is in the
+/// light, the other turned away. A device that rounds may find that column in any state, and lines beside it.
+#[test]
+fn a_fold_through_pixels_leaves_their_shadows_open_and_no_others() {
+    let corners = [(-1.0, -0.2), (-1.0, -0.2), (0.0, 0.0), (0.0, 0.0), (1.0, -0.2), (1.0, -0.2)];
+    let positions =
+        (0..6).map(|i| Vec3::new(corners[i].0, if i % 2 == 0 { -1.0 } else { 1.0 }, corners[i].1)).collect();
+    let faces = vec![[0, 2, 1], [1, 2, 3], [2, 4, 3], [3, 4, 5]];
+    let normals = [Vec3::new(-0.2, 0.0, 1.0), Vec3::new(0.2, 0.0, 1.0)].map(Vec3::normalize);
+    let mut model = Model { positions, faces, ..embedded::ground(1.0) };
+    // Hard: each side has its own vertices at the fold.
+    model.positions.extend_from_within(2..4);
+    model.faces[2] = [6, 4, 7];
+    model.faces[3] = [7, 4, 5];
+    model.normals = [0, 0, 0, 0, 1, 1, 1, 1].map(|side: usize| normals[side]).to_vec();
+    (model.uvs, model.colors) = (Vec::new(), Vec::new());
+    model.face_material = vec![0; 4];
+    model.face_mesh = vec![0; 4];
+    model.face_polygon = Vec::new();
+    let scene = Scene::new(model);
+    let camera = camera(DVec3::Z * 5.0, Projection::Orthographic { height: 2.0, far: 20.0 });
+    let mut style = named("shadow-lines");
+    style.lights[0].light = npr_toon::source::Light::directional(Vec3::X);
+    // Shadows' lines are wider than objects', so that it can be told which would be where.
+    let Some(Lines::Image(ink)) = &mut style.lines else { panic!("a style with lines in the image") };
+    let brush = Some(Disc { radius_px: 3.0, antialias: false });
+    ink.shadows = ShadowLines::Apart { composite: Composite::Over { color: Vec3::X, opacity: 1.0 }, brush };
+    // 33 columns: the fold at x = 0 is at the middle of the 17th.
+    let size = (33, 33);
+    let plan = Plan::new(&scene, &style, &camera).expect("a good style");
+    let sight = Sight::new(&scene, &camera, size);
+    let mut reference =
+        Reference::new(Shot { sight: &sight, style: &style, plan: &plan, samples: 1 }).expect("pictures");
+    reference.look_closer().expect("pictures");
+    let columns: Vec<u32> = (0..33).filter(|&x| reference.exempt[(16 * 33 + x) as usize]).collect();
+    assert!(columns.contains(&16), "the fold: {columns:?}");
+    assert!(columns.contains(&17), "a line of the object: {columns:?}");
+    assert!(columns.contains(&19), "a line that a cast shadow in the fold's column would have beside it: {columns:?}");
+    assert!(columns.iter().all(|x| (12..=20).contains(x)), "{columns:?}");
 }

@@ -9,12 +9,14 @@ use glam::DVec2;
 use npr_harness::check::SIZE as SIZE_OF_CHECK;
 use npr_harness::cpu::{self, CpuOptions};
 use npr_harness::executor::Executor;
+use npr_harness::gallery::still_life_camera;
 use npr_harness::plan::{LineMethod, Plan};
 use npr_harness::scene::Scene;
-use npr_harness::shadow::ShadowMethod;
+use npr_harness::shadow::{ShadowLines, ShadowMethod};
 use npr_harness::shadow_truth::{
     ShadowShot, States, eye_is_in_shadow, farthest_px, line_accuracy, shots, states_on_device, true_borders,
 };
+use npr_harness::style::{Lines, styles};
 use npr_imagespace::shadow::ShadowState;
 use npr_mesh::{Model, embedded};
 
@@ -104,8 +106,9 @@ fn table_of_masks_and_lines() {
         let scene = Scene::new(model);
         for shot in shots(&scene, aspect()) {
             let reference = States::by_rays(&scene, &shot, TABLE_SIZE, DVec2::ZERO).expect("a picture");
-            let volumes = on_device(&executor, &scene, &shot, ShadowMethod::Volumes, LineMethod::Auto, TABLE_SIZE)
-                .difference(&reference);
+            let actual = on_device(&executor, &scene, &shot, ShadowMethod::Volumes, LineMethod::Auto, TABLE_SIZE);
+            let volumes = actual.difference(&reference);
+            let farthest = farthest_px(&scene, &shot, &actual, &reference).expect("pictures");
             let style = shot.style(ShadowMethod::Volumes);
             let plan = Plan::new(&scene, &style, &shot.camera).expect("a plan");
             let picture =
@@ -113,10 +116,11 @@ fn table_of_masks_and_lines() {
             let borders = true_borders(&scene, &shot, &style, TABLE_SIZE, 4).expect("borders");
             let lines = line_accuracy(&picture, &borders, WITHIN_PX);
             println!(
-                "{name:22} {:16} volumes {:.4} %, {:.1} px{}; lines P {:.3} R {:.3} of {:?}",
+                "{name:22} {:16} volumes {:.4} %, {:.1} px, {:.1} away from contours{}; lines P {:.3} R {:.3} of {:?}",
                 shot.name,
                 volumes.share * 100.0,
                 volumes.farthest_px,
+                farthest,
                 if eye_is_in_shadow(&scene, &shot) { ", eye in shadow" } else { "" },
                 lines.precision,
                 lines.recall,
@@ -216,4 +220,34 @@ fn table_of_maps() {
             );
         }
     }
+}
+
+/// A frame in which no light casts is made of the same passes as if there were no shadows in this crate.
+#[test]
+fn where_no_light_casts_no_pass_is_planned_for_shadows() {
+    let scene = Scene::new(embedded::scene());
+    let camera = still_life_camera();
+    let mut casting = 0;
+    for mut style in styles() {
+        let of_shadows = |plan: &Plan| {
+            let passes = plan.passes.iter().map(|reason| reason.pass);
+            passes.filter(|pass| pass.contains("shadow") || pass.contains("before all")).count()
+        };
+        if style.shadow.is_some() {
+            let plan = Plan::new(&scene, &style, &camera).expect("a plan");
+            assert!(plan.shadow.is_some() && of_shadows(&plan) > 0, "{}: {:?}", style.name, plan.passes);
+            casting += 1;
+            style.shadow = None;
+            if let Some(Lines::Image(ink)) = &mut style.lines {
+                ink.shadows = ShadowLines::None;
+            }
+        }
+        let plan = Plan::new(&scene, &style, &camera).expect("a plan");
+        assert!(plan.shadow.is_none() && of_shadows(&plan) == 0, "{}: {:?}", style.name, plan.passes);
+        if let (Some(image), Some(Lines::Image(ink))) = (&plan.image, &style.lines) {
+            assert_eq!(image.passes().count(), 1, "{}", style.name);
+            assert_eq!(image.ink.shadows, ink.shadows);
+        }
+    }
+    assert!(casting >= 4, "{casting} styles cast shadows");
 }

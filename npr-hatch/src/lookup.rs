@@ -12,7 +12,8 @@
 //! is as much *ink* per area of the screen as on a surface seen straight on, and as many strokes; along the longer
 //! axis four samples are spread where one would alias. From [`HATCH_MAX_ANISOTROPY`] on coarser levels are taken.
 //!
-//! Every sample of every level has the mean tone that was asked for, so none of this changes the tone.
+//! Every sample of every level has the mean tone that was asked for, so none of this changes the tone. Where a map is but
+//! a few pixels there is no room for strokes, and what is left is its tone ([`hatch_flat`]).
 //!
 //! # Thresholds are compared before they are filtered
 //!
@@ -40,7 +41,7 @@ pub struct HatchFootprint {
 }
 
 /// The footprint of a pixel: of how texture coordinates change along x and along y, per px; `texels` a unit of them at
-/// level 0 (the map's side; less if texels are to be larger than pixels); and the coarsest level.
+/// level 0 (the map's side; n times that if texels are to be as large as n pixels); and the coarsest level.
 ///
 /// ```
 /// use glam::DVec2;
@@ -67,6 +68,20 @@ pub fn hatch_footprint(uv_dx: DVec2, uv_dy: DVec2, texels: f64, last_level: f64)
     let length = (longer - std::f64::consts::SQRT_2).max(0.0) * level.exp2() / texels;
     let axis = if half >= 0.0 { DVec2::new(half + apart, other) } else { DVec2::new(other, apart - half) };
     HatchFootprint { level, spread: if length > 0.0 { axis.normalize_or_zero() * length } else { DVec2::ZERO } }
+}
+
+/// How much of a hatching is drawn as its flat tone, 0..=1, at a level: all of it where the map's side has 8 texels and
+/// fewer, nothing where it has 16 and more.
+///
+/// A stroke is a few texels wide and many long, so in so small a map there is nothing to draw, and what is left of a tone
+/// is noise: 4 × 4 thresholds know 16 tones. `last_level`: that of a single texel.
+///
+/// ```
+/// use npr_hatch::lookup::hatch_flat;
+/// assert_eq!([3.0, 4.0, 4.25, 5.0, 8.0].map(|level| hatch_flat(level, 8.0)), [0.0, 0.0, 0.25, 1.0, 1.0]);
+/// ```
+pub fn hatch_flat(level: f64, last_level: f64) -> f64 {
+    (level - (last_level - 4.0)).clamp(0.0, 1.0)
 }
 
 /// How many samples a footprint asks for: one, or [`HATCH_SPREAD`].

@@ -27,28 +27,31 @@ pub fn bunny(change: impl Fn(&mut Model)) -> (Scene, Camera) {
     (scene, camera)
 }
 
+/// What is timed: its name, style, how its lines are made, and samples along each axis of a pixel.
+pub type Case<'a> = (&'a str, Style, LineMethod, u32);
+
 /// Prints minimum and median of interleaved rounds, and their ratios to those of the first case.
-pub fn compare(context: &GpuContext, scene: &Scene, camera: &Camera, cases: &[(&str, Style, LineMethod)]) {
+pub fn compare(context: &GpuContext, scene: &Scene, camera: &Camera, cases: &[Case<'_>]) {
     let renderer = GpuRenderer::new(context);
-    let targets = renderer.targets(SIZE.0, SIZE.1).expect("the size is within every device's limits");
     let prepared: Vec<_> = cases
         .iter()
-        .filter(|(.., method)| match method {
+        .filter(|(_, _, method, _)| match method {
             LineMethod::OnDevice => context.can_find_lines,
             LineMethod::Strokes => context.can_stroke,
             LineMethod::Auto | LineMethod::Rectangles => true,
         })
-        .map(|(name, style, method)| {
+        .map(|(name, style, method, samples)| {
             let plan = Plan::new(scene, style, camera).expect("the styles are valid");
             let uploaded = renderer.upload(scene, &plan, *method).expect("the scene fits");
-            (name, style, plan, uploaded)
+            let targets = renderer.targets_of_samples(SIZE.0, SIZE.1, *samples).expect("a size for every device");
+            (name, style, plan, uploaded, targets)
         })
         .collect();
     let mut times = vec![Vec::new(); prepared.len()];
     for round in 0..=ROUNDS {
-        for (times, (_, style, plan, uploaded)) in times.iter_mut().zip(&prepared) {
+        for (times, (_, style, plan, uploaded, targets)) in times.iter_mut().zip(&prepared) {
             let start = Instant::now();
-            renderer.draw(scene, uploaded, style, plan, camera, &targets).expect("the frame is drawn");
+            renderer.draw(scene, uploaded, style, plan, camera, targets).expect("the frame is drawn");
             context.wait().expect("the frame is drawn");
             // The first round makes the pipelines.
             if round > 0 {

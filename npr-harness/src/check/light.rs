@@ -24,7 +24,7 @@ impl Checker<'_> {
         camera: &Camera,
     ) -> Result<(), HarnessError> {
         let white = Scene::new(white(&scene.model));
-        let all = band_accuracy(&white, camera, BORDER_SIZE, &Bands::default())?;
+        let all = band_accuracy(&white, camera, BORDER_SIZE, &Bands::default(), 1)?;
         for (technique, found) in ["borders", "borders, no crease near"].into_iter().zip(all) {
             if found.pixels == 0 {
                 self.skipped.push(format!("{technique} of {model} ({view}): no pixel is near one"));

@@ -1,30 +1,31 @@
 //! The reference picture of a shot, and where it is sensitive.
 
 use super::{ROUNDED_PX, SHIFT_PX, magnitude};
-use crate::camera::Camera;
 use crate::compare::{Image, exempt_mask};
-use crate::cpu::{self, CpuFrame, CpuOptions};
+use crate::cpu::{self, Blot, CpuFrame, CpuOptions, ShadowAt, Sight};
 use crate::error::HarnessError;
 use crate::plan::Plan;
-use crate::scene::Scene;
+use crate::shadow::ShadowLines;
 use crate::style::{Shade, Style};
 use glam::DVec2;
+use npr_imagespace::shadow::ShadowState;
 use npr_outline::segment::MAX_SLOPE;
 
 /// What is rendered, whatever renders it.
 #[derive(Clone, Copy)]
 pub struct Shot<'a> {
-    /// What is shown.
-    pub scene: &'a Scene,
+    /// What is shown, from where, and how large.
+    pub sight: &'a Sight<'a>,
     /// How.
     pub style: &'a Style,
     /// Made of these.
     pub plan: &'a Plan,
-    /// From where.
-    pub camera: &'a Camera,
-    /// Px.
-    pub size: (u32, u32),
+    /// Along each axis of a pixel.
+    pub samples: u32,
 }
+
+/// In how many places a reference's samples lie, for [`Sight::kept`], but for a closer look.
+pub const PLACES: usize = 17;
 
 /// The reference picture of a shot, and the pixels in which it is sensitive to where its samples are: those in which its
 /// colour changes by more than the allowed difference, or, where surfaces are painted, its depth by more than a slope
@@ -61,7 +62,7 @@ impl<'a> Reference<'a> {
         if reference.plain.is_some() {
             for shift_px in around(ROUNDED_PX, 8) {
                 let moved = shot.reference(&CpuOptions { shift_px, ..Default::default() });
-                reference.exempt_where(&exempt_mask(&reference.image, &[moved.image()], magnitude)?);
+                join(&mut reference.exempt, &exempt_mask(&reference.image, &[moved.image()], magnitude)?);
             }
         }
         Ok(reference)
@@ -70,8 +71,8 @@ impl<'a> Reference<'a> {
     /// Moves samples by less than [`SHIFT_PX`] too, and in more directions, 64 renders: a sliver that is thinner than
     /// 1/100 px passes between the eight, and a rasteriser, whose corners lie on a grid of 1/256 px, hits it or not. One
     /// more render ends faces [`ROUNDED_PX`] before their boundaries: between two that touch and are not joined, no
-    /// sample of the reference falls, wherever it is moved, and one of a device may. For lines in the image 17 more say
-    /// what changes where a contour runs as close to a pixel's centre.
+    /// sample of the reference falls, wherever it is moved, and one of a device may. For shadows and for lines in the
+    /// image 16 more say what changes where an edge runs as close to a pixel's centre.
     ///
     /// # Errors
     /// None that can occur with pictures of one size.
@@ -80,37 +81,65 @@ impl<'a> Reference<'a> {
             self.exempt_where_moved(share * SHIFT_PX, 16)?;
         }
         self.exempt_changes(&CpuOptions { boundary_inset_px: ROUNDED_PX, ..Default::default() })?;
-        self.exempt_around_contours()
+        self.exempt_around_edges()
     }
 
-    /// Where a contour passes within [`ROUNDED_PX`] of a pixel's centre a rasteriser may show the face that turns away
-    /// there, whose normal no sample of the reference has. Lines in the image look at their neighbours: what changes
-    /// if such a pixel differs from all around it is sensitive.
-    fn exempt_around_contours(&mut self) -> Result<(), HarnessError> {
-        let Shot { scene, style, plan, camera, size } = self.shot;
-        if plan.image.is_none() {
+    /// Where an edge passes within [`ROUNDED_PX`] of a pixel's centre a device may show there what no sample of the
+    /// reference does: at a contour the face that turns away, and where shadows change at a fold light or shadow, whatever
+    /// is on both sides of it, since the volume that begins at that edge is as deep as the surface itself. Such a pixel is
+    /// exempt where shadows change. Lines in the image look at their neighbours: what would change if any one such pixel
+    /// showed something else is exempt too.
+    fn exempt_around_edges(&mut self) -> Result<(), HarnessError> {
+        let Shot { sight, style, plan, samples } = self.shot;
+        if plan.image.is_none() && plan.shadow.is_none() {
             return Ok(());
         }
-        let mut unsure = std::collections::BTreeSet::new();
-        for direction in 0..16u8 {
-            let shift_px = ROUNDED_PX * DVec2::from_angle(f64::from(direction) / 16.0 * std::f64::consts::TAU);
-            let moved = self.shot.reference(&CpuOptions { shift_px, ..Default::default() });
-            let other = |&pixel: &usize| self.shows_another_surface(&moved, pixel, ROUNDED_PX);
-            unsure.extend((0..self.exempt.len()).filter(other));
+        // One sample a pixel, as lines in the image have.
+        let seen = |options: &CpuOptions| -> (Vec<f64>, Vec<ShadowAt>) {
+            let seen = cpu::seen(sight, style, plan, options);
+            seen.iter().map(|seen| seen.map_or((0.0, ShadowAt::default()), |seen| (seen.depth, seen.shadow))).unzip()
+        };
+        let (depth, shadow) = seen(&CpuOptions::default());
+        let mut unsure = vec![false; depth.len()];
+        for shift_px in around(ROUNDED_PX, 16) {
+            let (moved_depth, moved_shadow) = seen(&CpuOptions { shift_px, ..Default::default() });
+            join(&mut unsure, &self.shows_another_surface(&depth, &moved_depth, ROUNDED_PX));
+            let changes: Vec<bool> = shadow.iter().zip(&moved_shadow).map(|(here, moved)| here != moved).collect();
+            join(&mut unsure, &changes);
+            join(&mut self.exempt, &changes);
         }
-        let unsure: Vec<usize> = unsure.into_iter().collect();
-        let blotted = cpu::render_unsure(scene, style, plan, camera, size, &CpuOptions::default(), &unsure, &|_| {});
-        self.exempt_where(&exempt_mask(&self.image, &[blotted.image()], self.magnitude)?);
+        let Some(image) = &plan.image else { return Ok(()) };
+        let states = [ShadowState::Lit, ShadowState::Cast, ShadowState::Turned].map(Blot::State);
+        let blots: &[Blot] = match image.ink.shadows {
+            ShadowLines::None | ShadowLines::Negated => &[],
+            ShadowLines::Lines | ShadowLines::Apart { .. } => &states,
+        };
+        let blank = cpu::without_ink(sight, style, plan, &CpuOptions { samples, ..Default::default() }, &|_| {});
+        // One of nine at a time: beside another one that differs too, one may differ from nothing.
+        let (width, _) = sight.size;
+        for group in 0..9 {
+            let is_of_group = |&pixel: &usize| {
+                let (x, y) = (pixel % width as usize, pixel / width as usize);
+                unsure[pixel] && y % 3 * 3 + x % 3 == group
+            };
+            let pixels: Vec<usize> = (0..unsure.len()).filter(is_of_group).collect();
+            for &blot in [Blot::Other].iter().chain(blots) {
+                let blotted = cpu::blotted(image, &blank, &pixels, blot).image();
+                join(&mut self.exempt, &exempt_mask(&self.image, &[blotted], self.magnitude)?);
+            }
+        }
         Ok(())
     }
 
-    /// Whether a pixel's depth changes by more than a slope explains when its sample is moved.
-    fn shows_another_surface(&self, moved: &CpuFrame, pixel: usize, by_px: f64) -> bool {
-        let (width, height) = self.shot.size;
-        let view = self.shot.camera.line_view(DVec2::new(f64::from(width), f64::from(height)));
-        let (here, moved) = (self.frame.depth[pixel], moved.depth[pixel]);
-        let per_px = here.max(moved) * view.depth_per_px.x + view.depth_per_px.y;
-        (here - moved).abs() > MAX_SLOPE * by_px * per_px
+    /// Per pixel whether its depth changes by more than a slope explains when its sample is moved.
+    fn shows_another_surface(&self, here: &[f64], moved: &[f64], by_px: f64) -> Vec<bool> {
+        let Sight { camera, size: (width, height), .. } = self.shot.sight;
+        let per_px = camera.line_view(DVec2::new(f64::from(*width), f64::from(*height))).depth_per_px;
+        let is_other = |(here, moved): (&f64, &f64)| {
+            let per_px = here.max(*moved) * per_px.x + per_px.y;
+            (here - moved).abs() > MAX_SLOPE * by_px * per_px
+        };
+        here.iter().zip(moved).map(is_other).collect()
     }
 
     fn exempt_where_moved(&mut self, by_px: f64, directions: u32) -> Result<(), HarnessError> {
@@ -120,25 +149,19 @@ impl<'a> Reference<'a> {
         Ok(())
     }
 
-    fn exempt_where(&mut self, changes: &[bool]) {
-        for (exempt, changes) in self.exempt.iter_mut().zip(changes) {
-            *exempt |= changes;
-        }
-    }
-
     /// Where the picture, or in plain light the same one, changes.
     fn exempt_changes(&mut self, options: &CpuOptions) -> Result<(), HarnessError> {
         let (moved, image) = match &self.plain {
             Some(plain) => (self.shot.in_light(plain).reference(options), &plain.image),
             None => (self.shot.reference(options), &self.image),
         };
-        self.exempt_where(&exempt_mask(image, &[moved.image()], self.magnitude)?);
+        let changes = exempt_mask(image, &[moved.image()], self.magnitude)?;
+        join(&mut self.exempt, &changes);
         if self.shot.plan.painted {
             // Another surface, even one that happens to have the same colour: a rasteriser may show a third one
             // there, turned away and hidden by exact arithmetic.
-            for pixel in 0..self.exempt.len() {
-                self.exempt[pixel] |= self.shows_another_surface(&moved, pixel, SHIFT_PX);
-            }
+            let other = self.shows_another_surface(&self.frame.depth, &moved.depth, SHIFT_PX);
+            join(&mut self.exempt, &other);
         }
         Ok(())
     }
@@ -154,10 +177,17 @@ struct Plain {
 impl Plain {
     fn new(shot: &Shot<'_>) -> Result<Self, HarnessError> {
         let style = Style { shade: Shade::Lambert { ambient: 0.2 }, ..shot.style.clone() };
-        let plan = Plan::new(shot.scene, &style, shot.camera)?;
+        let plan = Plan::new(shot.sight.scene, &style, shot.sight.camera)?;
         let lit = Shot { style: &style, plan: &plan, ..*shot };
         let image = lit.reference(&CpuOptions::default()).image();
         Ok(Self { style, plan, image })
+    }
+}
+
+/// What is in either.
+fn join(all: &mut [bool], more: &[bool]) {
+    for (all, more) in all.iter_mut().zip(more) {
+        *all |= more;
     }
 }
 
@@ -175,6 +205,7 @@ impl<'a> Shot<'a> {
 
 impl Shot<'_> {
     fn reference(&self, options: &CpuOptions) -> CpuFrame {
-        cpu::render(self.scene, self.style, self.plan, self.camera, self.size, options, &|_| {})
+        let options = CpuOptions { samples: self.samples, ..*options };
+        cpu::render_seen(self.sight, self.style, self.plan, &options, &|_| {})
     }
 }

@@ -6,7 +6,7 @@ use crate::hatch::{HatchPlan, HatchVertex};
 use crate::rays::Hit;
 use crate::style::{HatchGround, HatchMapping, HatchShade, HatchTransfer, six_tones};
 use glam::{DVec2, DVec3};
-use npr_hatch::lookup::{HatchFootprint, hatch_footprint, hatch_ink, hatch_texels};
+use npr_hatch::lookup::{HatchFootprint, hatch_flat, hatch_footprint, hatch_ink, hatch_texels};
 use npr_hatch::mapping::{
     HATCH_TURNS, hatch_doubled, hatch_moved, hatch_octave, hatch_plane, hatch_plane_weights, hatch_share, hatch_turn,
     hatch_turned,
@@ -53,7 +53,7 @@ impl<'a> Strokes<'a> {
             tam,
             thresholds,
             tones: six_tones(tam),
-            texels: f64::from(tam.side) / texel_px,
+            texels: f64::from(tam.side) * texel_px,
             at_vertices: normals == NormalUse::PerVertex && thresholds.is_none(),
         }
     }
@@ -76,11 +76,18 @@ impl<'a> Strokes<'a> {
 
     /// What one hatching leaves as paper.
     fn once(&self, uv: DVec2, footprint: HatchFootprint, tone: f64, weights: HatchWeights) -> f64 {
-        if let Some(thresholds) = self.thresholds {
-            return 1.0 - hatch_ink(thresholds, uv, footprint, tone, HatchShade::WIDTH);
-        }
-        let (light, dark) = hatch_texels(self.tam, uv, footprint);
-        hatch_blend(light, dark, weights)
+        let flat = hatch_flat(footprint.level, self.last_level());
+        let (strokes, mean) = if let Some(thresholds) = self.thresholds {
+            (1.0 - hatch_ink(thresholds, uv, footprint, tone, HatchShade::WIDTH), tone)
+        } else {
+            let (light, dark) = hatch_texels(self.tam, uv, footprint);
+            (hatch_blend(light, dark, weights), hatch_blend(self.tones.0, self.tones.1, weights))
+        };
+        strokes + (mean - strokes) * flat
+    }
+
+    fn last_level(&self) -> f64 {
+        (self.tam.levels() - 1) as f64
     }
 
     /// What a hatching leaves that counts for a share, along with what those before it left.
@@ -97,7 +104,7 @@ impl<'a> Strokes<'a> {
     }
 
     fn footprint(&self, uv_dx: DVec2, uv_dy: DVec2) -> HatchFootprint {
-        hatch_footprint(uv_dx, uv_dy, self.texels, (self.tam.levels() - 1) as f64)
+        hatch_footprint(uv_dx, uv_dy, self.texels, self.last_level())
     }
 
     fn by_coordinates(&self, asked: &Hatching, nothing: f64) -> f64 {

@@ -9,10 +9,13 @@ use crate::shadow::ShadowLines;
 use glam::{DMat3, DVec3, UVec2, Vec3};
 use npr_imagespace::artist::{LineKind, ink_artist_direction, ink_artist_index, ink_artist_texel};
 use npr_imagespace::composite::ink_composite;
-use npr_imagespace::format::texel::{BACKGROUND, TexelLayout, ink_fold_region, ink_narrow_pack, ink_wide_pack};
+use npr_imagespace::format::texel::{
+    BACKGROUND, TexelLayout, ink_fold_region, ink_narrow_pack, ink_narrow_tap, ink_narrow_word, ink_wide_pack,
+    ink_wide_tap, ink_wide_words,
+};
 use npr_imagespace::region::{ink_region_of_color, ink_region_pair};
 use npr_imagespace::resample::resample;
-use npr_imagespace::shadow::{ink_shadow_normal, ink_shadow_region};
+use npr_imagespace::shadow::{ShadowState, ink_shadow_normal, ink_shadow_region};
 
 impl FrameContext<'_> {
     /// What a geometry pass writes for a pixel.
@@ -51,7 +54,7 @@ impl FrameContext<'_> {
             }
         };
         let world_from_view = DMat3::from_cols_array_2d(&self.camera.axes().map(|axis| axis.to_array()));
-        let direction = self.camera.ray(self.sample_point(f64::from(x), f64::from(y)), self.size_px).1;
+        let direction = self.rays.through(self.sample_point(f64::from(x), f64::from(y))).1;
         let eye_to_point: Vec3 = (world_from_view.transpose() * direction).as_vec3();
         world_from_view * ink_artist_direction(index, eye_to_point).as_dvec3()
     }
@@ -64,27 +67,62 @@ impl FrameContext<'_> {
     }
 }
 
-/// Makes some of the picture's pixels differ from all around them: background where there is a surface, a surface where
-/// there is background.
-pub(super) fn blot(texels: &mut [[u32; 2]], size: (u32, u32), pixels: &[usize], picture: (u32, u32)) {
-    for &pixel in pixels {
-        let (x, y) = (pixel as u32 % picture.0, pixel as u32 / picture.0);
-        let along = |at: u32, of: u32, ink: u32| at * ink / of..((at + 1) * ink).div_ceil(of);
-        for row in along(y, picture.1, size.1) {
-            for column in along(x, picture.0, size.0) {
-                let texel = &mut texels[row as usize * size.0 as usize + column as usize];
-                *texel = if *texel == BACKGROUND { [u32::MAX; 2] } else { BACKGROUND };
+/// What a pixel may show instead, to a rasteriser that rounds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Blot {
+    /// What differs from all around it: background where there is a surface, a surface where there is background.
+    Other,
+    /// The same surface in another state of shadow.
+    State(ShadowState),
+}
+
+impl Blot {
+    fn on(self, texel: [u32; 2], layout: TexelLayout) -> [u32; 2] {
+        match self {
+            Self::Other if texel == BACKGROUND => [u32::MAX; 2],
+            Self::Other => BACKGROUND,
+            Self::State(_) if texel == BACKGROUND => BACKGROUND,
+            Self::State(state) => {
+                let shadowed = |region: u32| ink_shadow_region(region & !layout.shadow_bits(), state as u32, layout);
+                match layout {
+                    TexelLayout::Narrow => {
+                        let tap = ink_narrow_tap(texel[0]);
+                        [ink_narrow_word(tap.normal.as_vec3(), shadowed(tap.region), tap.depth as u32), 0]
+                    }
+                    TexelLayout::Wide => {
+                        let tap = ink_wide_tap(texel);
+                        ink_wide_words(tap.normal.as_vec3(), shadowed(tap.region), tap.depth as u32)
+                    }
+                }
             }
         }
     }
 }
 
-/// Draws the frame's lines over it, from texels of the ink's size.
-pub(super) fn draw_ink(image: &ImagePlan, texels: &[[u32; 2]], frame: &mut CpuFrame) {
+/// The frame's lines over it, were some of the picture's pixels blotted.
+pub(crate) fn blotted(image: &ImagePlan, blank: &CpuFrame, pixels: &[usize], blot: Blot) -> CpuFrame {
+    let mut frame = blank.clone();
+    let size = image.ink.scale.size((frame.width, frame.height));
+    for &pixel in pixels {
+        let (x, y) = (pixel as u32 % frame.width, pixel as u32 / frame.width);
+        let along = |at: u32, of: u32, ink: u32| at * ink / of..((at + 1) * ink).div_ceil(of);
+        for row in along(y, frame.height, size.1) {
+            for column in along(x, frame.width, size.0) {
+                let texel = &mut frame.texels[row as usize * size.0 as usize + column as usize];
+                *texel = blot.on(*texel, image.ink.layout);
+            }
+        }
+    }
+    draw_ink(image, &mut frame);
+    frame
+}
+
+/// Draws the frame's lines over it, from its texels.
+pub(super) fn draw_ink(image: &ImagePlan, frame: &mut CpuFrame) {
     let size = image.ink.scale.size((frame.width, frame.height));
     let picture = UVec2::new(frame.width, frame.height);
     for lines in image.passes() {
-        let ink = image.ink(lines, texels, size);
+        let ink = image.ink(lines, &frame.texels, size);
         let ink = if size == (frame.width, frame.height) {
             ink
         } else {

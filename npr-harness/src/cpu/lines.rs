@@ -49,9 +49,13 @@ fn line_coverage(context: &FrameContext<'_>, frame: &CpuFrame, look: &LineLook, 
             // Of the row what can be within reach: of a long slanted line that is little of its box.
             let (from, to) = row_reach(segment.ends_px, y as f64 + 0.5, reach);
             for x in (low.x.max(from).max(0.0) as i64)..=(high.x.min(to).min(last.0 as f64) as i64) {
+                let pixel = &mut coverage[(y * (last.0 + 1) + x) as usize];
+                // No line covers more.
+                if *pixel >= 1.0 {
+                    continue;
+                }
                 let point = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
                 let covered = outline_coverage(&segment, point, width_px);
-                let pixel = &mut coverage[(y * (last.0 + 1) + x) as usize];
                 if covered > *pixel
                     && outline_is_visible(&among_samples, segment.nearest(point), &view, cut_out, depth_at)
                 {

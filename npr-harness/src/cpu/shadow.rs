@@ -31,7 +31,7 @@ impl Casting {
 }
 
 /// What shadows make of a hit. As it stands in no light that casts by [`Default`].
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Default, PartialEq)]
 pub(crate) struct ShadowAt {
     /// For its light: in a cast shadow.
     pub(crate) dark: bool,

@@ -48,7 +48,7 @@ impl FrameContext<'_> {
     /// The weights of a face's corners where the ray through a point of the picture meets the face's plane. Outside the
     /// face too: that is what a rasteriser extrapolates to for its derivatives.
     fn extrapolated(&self, hit: &Hit, point_px: DVec2) -> [f64; 3] {
-        let (origin, direction) = self.camera.ray(point_px, self.size_px);
+        let (origin, direction) = self.rays.through(point_px);
         let [a, b, c] =
             self.scene.model.faces[hit.face as usize].map(|v| self.scene.model.positions[v as usize].as_dvec3());
         let (ab, ac, from_a) = (b - a, c - a, origin - a);

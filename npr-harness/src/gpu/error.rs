@@ -50,6 +50,15 @@ pub enum GpuError {
         /// How much is allowed.
         limit: u64,
     },
+    /// More draws than a software adapter has memory for: it keeps half a MiB for each until a picture is finished
+    /// (lavapipe, Mesa 22.3).
+    #[error("{draws} draws, one for each material or blended face: {limit} at most on a software adapter")]
+    TooManyDraws {
+        /// How many there would be.
+        draws: usize,
+        /// How many are made.
+        limit: usize,
+    },
     /// Shadow volumes in a parallel view, whose depth ends, on a device that cuts off what is farther.
     #[error("this device cannot draw shadow volumes in a parallel view (a shadow map, or the CPU, can)")]
     ParallelVolumes,
@@ -98,6 +107,7 @@ impl GpuError {
             | Self::TooLarge { .. }
             | Self::RampTooLarge { .. }
             | Self::BufferTooLarge { .. }
+            | Self::TooManyDraws { .. }
             | Self::ParallelVolumes
             | Self::Lost { .. }
             | Self::OutOfMemory { .. }

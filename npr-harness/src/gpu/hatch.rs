@@ -1,7 +1,7 @@
 //! Strokes on the device: what pipelines know of them, a uniform, and the map's textures.
 
-use super::GpuError;
 use super::light::uniform_buffer;
+use super::{GpuContext, GpuError};
 use crate::hatch::HatchPlan;
 use crate::style::{HatchEncoding, HatchGround, HatchMapping, HatchShade, HatchTransfer, Style, six_tones};
 use glam::DVec3;
@@ -25,7 +25,8 @@ pub(super) struct HatchUniform {
 }
 
 impl HatchUniform {
-    pub(super) fn new(style: &Style, shade: &HatchShade, plan: &HatchPlan) -> Result<Self, GpuError> {
+    /// `samples`: along each axis of a pixel.
+    pub(super) fn new(style: &Style, shade: &HatchShade, plan: &HatchPlan, samples: u32) -> Result<Self, GpuError> {
         let tam = plan.tam()?;
         let (light, dark) = six_tones(tam);
         let three = |of: DVec3| of.as_vec3().to_array();
@@ -35,7 +36,7 @@ impl HatchUniform {
         };
         Ok(Self {
             light_tones: three(light),
-            texels: tam.side as f32 / shade.texel_px,
+            texels: tam.side as f32 * shade.texel_px * samples as f32,
             dark_tones: three(dark),
             last_level: (tam.levels() - 1) as f32,
             ink: shade.ink.to_array(),
@@ -54,21 +55,23 @@ impl HatchUniform {
 pub(super) struct HatchVariant {
     mapping: HatchMapping,
     encoding: HatchEncoding,
+    loads: bool,
     listing_4: bool,
     ground: HatchGround,
 }
 
 impl HatchVariant {
-    pub(super) fn new(shade: &HatchShade, plan: &HatchPlan) -> Self {
+    pub(super) fn new(shade: &HatchShade, plan: &HatchPlan, textures: &HatchTextures) -> Self {
         Self {
             mapping: plan.mapping,
             encoding: shade.encoding,
+            loads: textures.loads,
             listing_4: matches!(shade.transfer, HatchTransfer::Listing4 { .. }),
             ground: shade.ground,
         }
     }
 
-    pub(super) fn constants(variant: Option<Self>) -> [(&'static str, f64); 4] {
+    pub(super) fn constants(variant: Option<Self>) -> [(&'static str, f64); 5] {
         let is = |test: &dyn Fn(&Self) -> bool| f64::from(u8::from(variant.as_ref().is_some_and(test)));
         let mapping = match variant.map(|variant| variant.mapping) {
             None | Some(HatchMapping::Coordinates) => 0.0,
@@ -78,6 +81,7 @@ impl HatchVariant {
         [
             ("surface_hatch_mapping", mapping),
             ("surface_hatch_thresholds", is(&|variant| variant.encoding == HatchEncoding::Thresholds)),
+            ("surface_hatch_loads", is(&|variant| variant.loads)),
             ("surface_hatch_listing_4", is(&|variant| variant.listing_4)),
             ("surface_hatch_over_surface", is(&|variant| variant.ground == HatchGround::Surface)),
         ]
@@ -89,6 +93,8 @@ pub(super) struct HatchTextures {
     pub(super) light: wgpu::TextureView,
     pub(super) dark: wgpu::TextureView,
     pub(super) sampler: wgpu::Sampler,
+    /// Whether six tones are filtered without it.
+    loads: bool,
     pub(super) thresholds: wgpu::TextureView,
     /// Nothing, where surfaces are not hatched.
     pub(super) blank: wgpu::Buffer,
@@ -113,13 +119,15 @@ impl HatchTextures {
             light: view(wgpu::TextureFormat::Rgba8Unorm),
             dark: view(wgpu::TextureFormat::Rgba8Unorm),
             sampler: hatch_sampler(device),
+            loads: false,
             thresholds: view(wgpu::TextureFormat::R16Uint),
             blank: uniform_buffer(device, &[0; size_of::<HatchUniform>()]),
         }
     }
 
-    pub(super) fn new(device: &wgpu::Device, queue: &wgpu::Queue, plan: &HatchPlan) -> Result<Self, GpuError> {
-        let mut textures = Self::blank(device);
+    pub(super) fn new(context: &GpuContext, plan: &HatchPlan) -> Result<Self, GpuError> {
+        let (device, queue) = (&context.device, &context.queue);
+        let mut textures = Self { loads: context.is_software(), ..Self::blank(device) };
         let view = |texture: wgpu::Texture| texture.create_view(&Default::default());
         match plan.drawn_thresholds()? {
             Some(thresholds) => textures.thresholds = view(upload_thresholds(device, queue, thresholds)?),

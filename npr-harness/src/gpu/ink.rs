@@ -76,7 +76,7 @@ impl InkPasses {
 
         let filter = &lines.filter;
         // Without a brush lines are laid as they are found, if they are found at the picture's size.
-        let found = ink.found.as_ref().filter(|_| lines.brush.is_some() || ink.depth.is_some());
+        let found = ink.found.as_ref().filter(|_| lines.brush.is_some() || ink.size != picture_size);
         if found.is_none() && by_strips(context) && serves(filter, &lines.composite) {
             let mut strips = self.strips.borrow_mut();
             let pass = strips

@@ -12,12 +12,16 @@ use bytemuck::Zeroable;
 use glam::Vec4;
 use npr_mesh::{AlphaMode, Texture, Wrap};
 use npr_outline::filled_buffer::filled_buffer;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 use wgpu::util::DeviceExt;
 
-/// Faces of one material, drawn by one call.
+/// On a software adapter, see [`GpuError::TooManyDraws`].
+const SOFTWARE_DRAWS: usize = 2048;
+
+/// Faces of one material, or of several that look alike, drawn by one call.
 pub(super) struct Batch {
+    /// The first of them.
     pub(super) material: usize,
     pub(super) indices: Range<u32>,
 }
@@ -35,8 +39,9 @@ pub struct GpuScene {
     pub(super) batches: Vec<Batch>,
     /// Faces that are blended; sorted anew for each view.
     pub(super) blended_faces: Vec<u32>,
-    /// Per material: its bind group.
-    pub(super) materials: Vec<wgpu::BindGroup>,
+    pub(super) materials: Materials,
+    /// How many draws a pass may take.
+    pub(super) most_draws: usize,
     /// Edges, where lines are found on the device.
     pub(super) edges: Option<npr_outline::line_pass::EdgesOnDevice>,
     /// Whether lines that are found on the CPU are drawn by compute shaders.
@@ -49,6 +54,25 @@ pub struct GpuScene {
     pub(super) hatch: Option<(wgpu::Buffer, HatchTextures)>,
 }
 
+/// What surfaces are made of. A bind group of its own for each material would take what a device's driver keeps for each,
+/// which with 40,000 of them is gigabytes.
+pub(super) struct Materials {
+    /// Per material the first one that looks the same.
+    pub(super) alike: Vec<usize>,
+    /// Per texture, and last for none, with all materials in the uniform buffer.
+    groups: Vec<wgpu::BindGroup>,
+    /// Per material its group, and where it lies in the uniform buffer, bytes.
+    places: Vec<(usize, u32)>,
+}
+
+impl Materials {
+    /// Binds a material's for the following draws.
+    pub(super) fn bind(&self, pass: &mut wgpu::RenderPass<'_>, material: usize) {
+        let (group, offset) = self.places[material];
+        pass.set_bind_group(1, &self.groups[group], &[offset]);
+    }
+}
+
 /// Whether a material's colour differs from pixel to pixel, or its alpha decides.
 pub(super) fn is_looked_up(scene: &Scene, material: usize) -> bool {
     let m = &scene.model.materials[material];
@@ -58,13 +82,7 @@ pub(super) fn is_looked_up(scene: &Scene, material: usize) -> bool {
 impl GpuScene {
     pub(super) fn new(context: &GpuContext, pass: &SurfacePass, scene: &Scene, plan: &Plan) -> Result<Self, GpuError> {
         let model = &scene.model;
-        let buffer = |what: &'static str, contents: &[u8], usage| {
-            let (bytes, limit) = (contents.len() as u64, context.device.limits().max_buffer_size);
-            if bytes > limit {
-                return Err(GpuError::BufferTooLarge { what, bytes, limit });
-            }
-            Ok(filled_buffer(&context.device, what, contents, usage))
-        };
+        let buffer = |what, contents: &[u8], usage| buffer(context, what, contents, usage);
         let split =
             plan.image.as_ref().map(|image| split_by_region(&model.faces, &image.face_region, model.positions.len()));
         let more: &[u32] = split.as_ref().map_or(&[], |split| &split.more);
@@ -99,18 +117,18 @@ impl GpuScene {
                 let vertex = |i: usize| hatch.vertices.get(i).copied().unwrap_or(HatchVertex::zeroed());
                 let vertices: Vec<HatchVertex> = sources().map(vertex).collect();
                 let vertices = buffer("strokes", bytemuck::cast_slice(&vertices), wgpu::BufferUsages::VERTEX)?;
-                Some((vertices, HatchTextures::new(&context.device, &context.queue, hatch)?))
+                Some((vertices, HatchTextures::new(context, hatch)?))
             }
             None => None,
         };
         let faces = split.as_ref().map_or(&model.faces, |split| &split.faces);
-        let (indices, batches, blended_faces) = batches(scene, faces);
+        let materials = materials(context, pass, scene, plan)?;
+        let (indices, batches, blended_faces) = batches(scene, faces, &materials.alike);
         let indices = if indices.is_empty() {
             None
         } else {
             Some(buffer("faces", bytemuck::cast_slice(&indices), wgpu::BufferUsages::INDEX)?)
         };
-        let materials = materials(context, pass, scene, plan);
         Ok(Self {
             vertices,
             lookups,
@@ -119,6 +137,7 @@ impl GpuScene {
             batches,
             blended_faces,
             materials,
+            most_draws: if context.is_software() { SOFTWARE_DRAWS } else { usize::MAX },
             edges: None,
             strokes: false,
             fins: None,
@@ -126,6 +145,19 @@ impl GpuScene {
             hatch,
         })
     }
+}
+
+fn buffer(
+    context: &GpuContext,
+    what: &'static str,
+    contents: &[u8],
+    usage: wgpu::BufferUsages,
+) -> Result<wgpu::Buffer, GpuError> {
+    let (bytes, limit) = (contents.len() as u64, context.device.limits().max_buffer_size);
+    if bytes > limit {
+        return Err(GpuError::BufferTooLarge { what, bytes, limit });
+    }
+    Ok(filled_buffer(&context.device, what, contents, usage))
 }
 
 /// Faces whose vertices are each in one region.
@@ -163,17 +195,28 @@ fn split_by_region(faces: &[[u32; 3]], face_region: &[u32], vertices: usize) -> 
     split
 }
 
-fn batches(scene: &Scene, faces: &[[u32; 3]]) -> (Vec<u32>, Vec<Batch>, Vec<u32>) {
+fn batches(scene: &Scene, faces: &[[u32; 3]], alike: &[usize]) -> (Vec<u32>, Vec<Batch>, Vec<u32>) {
     let model = &scene.model;
+    let alike = |face: u32| alike[model.face_material[face as usize] as usize];
     let is_blended =
         |face: u32| model.materials[model.face_material[face as usize] as usize].alpha_mode == AlphaMode::Blend;
     let (blended, mut solid): (Vec<u32>, Vec<u32>) = (0..model.faces.len() as u32).partition(|&f| is_blended(f));
     // Stable, so that the faces of a material keep the order of the file, whose neighbours share vertices.
-    solid.sort_by_key(|&face| model.face_material[face as usize]);
+    solid.sort_by_key(|&face| alike(face));
+    // Behind a face with the same corners, drawn before, none passes the depth test; a file with half a million of them
+    // is to be drawn all the same. Where alpha cuts out, the first may leave the second to be seen.
+    if !scene.edges.further_faces.is_empty() || scene.edges.skipped.iter().any(|&skipped| skipped) {
+        let mut seen = HashSet::new();
+        solid.retain(|&face| {
+            let corners = model.faces[face as usize].map(|v| scene.edges.representative[v as usize]);
+            let material = alike(face);
+            matches!(model.materials[material].alpha_mode, AlphaMode::Mask { .. }) || seen.insert((material, corners))
+        });
+    }
     let mut batches: Vec<Batch> = Vec::new();
     let mut indices = Vec::with_capacity(3 * solid.len());
     for face in solid {
-        let material = model.face_material[face as usize] as usize;
+        let material = alike(face);
         let start = indices.len() as u32;
         indices.extend(faces[face as usize]);
         match batches.last_mut() {
@@ -184,47 +227,66 @@ fn batches(scene: &Scene, faces: &[[u32; 3]]) -> (Vec<u32>, Vec<Batch>, Vec<u32>
     (indices, batches, blended)
 }
 
-fn materials(context: &GpuContext, pass: &SurfacePass, scene: &Scene, plan: &Plan) -> Vec<wgpu::BindGroup> {
-    let textures: Vec<_> = if plan.looks_up() {
-        scene.model.textures.iter().map(|texture| upload_texture(context, texture)).collect()
-    } else {
-        Vec::new()
+fn materials(context: &GpuContext, pass: &SurfacePass, scene: &Scene, plan: &Plan) -> Result<Materials, GpuError> {
+    let white = Texture {
+        name: "white".into(),
+        width: 1,
+        height: 1,
+        rgba8: vec![255; 4],
+        wrap: [Wrap::Clamp; 2],
+        smooth: true,
     };
-    let white = upload_texture(
-        context,
-        &Texture {
-            name: "white".into(),
-            width: 1,
-            height: 1,
-            rgba8: vec![255; 4],
-            wrap: [Wrap::Clamp; 2],
-            smooth: true,
-        },
-    );
-    (0..scene.model.materials.len())
-        .map(|number| {
-            let material = &scene.model.materials[number];
-            let (view, sampler, size, levels) =
-                material.texture.and_then(|t| textures.get(t as usize)).unwrap_or(&white);
-            let cutoff = if let AlphaMode::Mask { cutoff } = material.alpha_mode { cutoff } else { f32::MIN };
-            let base_color = if is_looked_up(scene, number) {
-                material.base_color
-            } else {
-                scene.material_colors[number].as_vec3().extend(material.base_color.w)
-            };
-            let uniform = MaterialUniform {
-                base_color: base_color.to_array(),
-                texture_size: *size,
-                last_level: (*levels - 1) as f32,
-                cutoff,
-                wrap: material
-                    .texture
-                    .map_or([0; 2], |t| scene.model.textures[t as usize].wrap.map(|wrap| wrap as u32)),
-                padding: [0; 2],
-            };
-            pass.material_group(&context.device, &uniform, view, sampler)
-        })
-        .collect()
+    let of_model: &[Texture] = if plan.looks_up() { &scene.model.textures } else { &[] };
+    let textures: Vec<_> = of_model.iter().chain([&white]).map(|texture| upload_texture(context, texture)).collect();
+    // A uniform's dynamic offset is a multiple of this.
+    let stride = size_of::<MaterialUniform>()
+        .next_multiple_of(context.device.limits().min_uniform_buffer_offset_alignment as usize);
+    let mut uniforms: Vec<u8> = Vec::new();
+    let mut first: HashMap<_, usize> = HashMap::new();
+    let (mut alike, mut places) = (Vec::new(), Vec::new());
+    for (number, material) in scene.model.materials.iter().enumerate() {
+        let group = material.texture.map(|t| t as usize).filter(|&t| t < of_model.len()).unwrap_or(of_model.len());
+        let (_, _, size, levels) = &textures[group];
+        let cutoff = if let AlphaMode::Mask { cutoff } = material.alpha_mode { cutoff } else { f32::MIN };
+        let base_color = if is_looked_up(scene, number) {
+            material.base_color
+        } else {
+            scene.material_colors[number].as_vec3().extend(material.base_color.w)
+        };
+        let uniform = MaterialUniform {
+            base_color: base_color.to_array(),
+            texture_size: *size,
+            last_level: (*levels - 1) as f32,
+            cutoff,
+            wrap: material.texture.map_or([0; 2], |t| scene.model.textures[t as usize].wrap.map(|wrap| wrap as u32)),
+            padding: [0; 2],
+        };
+        let bytes: [u8; size_of::<MaterialUniform>()] = bytemuck::cast(uniform);
+        // What a draw's pipeline depends on besides.
+        let line_kind = plan.image.as_ref().and_then(|image| image.line_kinds.get(number)).map(|&kind| kind as u32);
+        let is_blended = material.alpha_mode == AlphaMode::Blend;
+        let look = (bytes, material.texture, material.double_sided, is_looked_up(scene, number), is_blended, line_kind);
+        let same = *first.entry(look).or_insert(number);
+        alike.push(same);
+        if same == number {
+            let offset = u32::try_from(uniforms.len()).map_err(|_| GpuError::BufferTooLarge {
+                what: "materials",
+                bytes: uniforms.len() as u64,
+                limit: u32::MAX.into(),
+            })?;
+            places.push((group, offset));
+            uniforms.extend(bytes);
+            uniforms.resize(uniforms.len().next_multiple_of(stride), 0);
+        } else {
+            places.push(places[same]);
+        }
+    }
+    if uniforms.is_empty() {
+        uniforms.resize(stride, 0);
+    }
+    let uniforms = buffer(context, "materials", &uniforms, wgpu::BufferUsages::UNIFORM)?;
+    let group = |(view, sampler, _, _): &_| pass.material_group(&context.device, &uniforms, view, sampler);
+    Ok(Materials { alike, groups: textures.iter().map(group).collect(), places })
 }
 
 fn upload_texture(context: &GpuContext, texture: &Texture) -> (wgpu::TextureView, wgpu::Sampler, [f32; 2], u32) {

@@ -108,6 +108,8 @@ pub(super) struct SurfaceTargets<'a> {
     pub(super) texels: Option<&'a wgpu::TextureView>,
     pub(super) depth: &'a wgpu::TextureView,
     pub(super) size_px: DVec2,
+    /// How many of these pixels, along each axis, are one of the picture.
+    pub(super) samples: u32,
 }
 
 /// What tells one pipeline from another.
@@ -185,16 +187,17 @@ pub fn wgsl() -> String {
 impl SurfacePass {
     pub(super) fn new(device: &wgpu::Device) -> Self {
         let both = wgpu::ShaderStages::VERTEX_FRAGMENT;
-        let uniform = |binding| wgpu::BindGroupLayoutEntry {
+        let one_of = |binding, has_dynamic_offset| wgpu::BindGroupLayoutEntry {
             binding,
             visibility: both,
             ty: wgpu::BindingType::Buffer {
                 ty: wgpu::BufferBindingType::Uniform,
-                has_dynamic_offset: false,
+                has_dynamic_offset,
                 min_binding_size: None,
             },
             count: None,
         };
+        let uniform = |binding| one_of(binding, false);
         let fragment = |binding, ty| wgpu::BindGroupLayoutEntry {
             binding,
             visibility: wgpu::ShaderStages::FRAGMENT,
@@ -241,7 +244,8 @@ impl SurfacePass {
                 fragment(15, depth),
             ],
         );
-        let material_layout = layout("surface material", &[uniform(0), fragment(1, texture), fragment(2, sampler)]);
+        let material_layout =
+            layout("surface material", &[one_of(0, true), fragment(1, texture), fragment(2, sampler)]);
         Self {
             module: device.create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: Some("surface"),
@@ -261,20 +265,22 @@ impl SurfacePass {
         }
     }
 
+    /// `uniforms`: of all materials, each where an offset says that is given when the group is bound.
     pub(super) fn material_group(
         &self,
         device: &wgpu::Device,
-        uniform: &MaterialUniform,
+        uniforms: &wgpu::Buffer,
         texture: &wgpu::TextureView,
         sampler: &wgpu::Sampler,
     ) -> wgpu::BindGroup {
-        let uniform = uniform_buffer(device, bytemuck::bytes_of(uniform));
         let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
+        let size = wgpu::BufferSize::new(size_of::<MaterialUniform>() as u64);
+        let uniform = wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer: uniforms, offset: 0, size });
         device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("material"),
             layout: &self.material_layout,
             entries: &[
-                entry(0, uniform.as_entire_binding()),
+                entry(0, uniform),
                 entry(1, wgpu::BindingResource::TextureView(texture)),
                 entry(2, wgpu::BindingResource::Sampler(sampler)),
             ],
@@ -305,9 +311,10 @@ impl SurfacePass {
             _ => None,
         };
         let hatch_uniform = match hatch {
-            Some((shade, plan)) => {
-                Some(uniform_buffer(device, bytemuck::bytes_of(&HatchUniform::new(style, shade, plan)?)))
-            }
+            Some((shade, plan)) => Some(uniform_buffer(
+                device,
+                bytemuck::bytes_of(&HatchUniform::new(style, shade, plan, targets.samples)?),
+            )),
             None => None,
         };
         let strokes = uploaded.hatch.as_ref().map_or(&self.no_strokes, |(_, textures)| textures);
@@ -352,6 +359,13 @@ impl SurfacePass {
         } else {
             Vec::new()
         };
+        let alike = &uploaded.materials.alike;
+        let material_of = |face: &u32| alike[scene.model.face_material[*face as usize] as usize];
+        let blended_runs: Vec<&[u32]> = blended.chunk_by(|a, b| material_of(a) == material_of(b)).collect();
+        let (draws, limit) = (uploaded.batches.len() + blended_runs.len(), uploaded.most_draws);
+        if draws > limit {
+            return Err(GpuError::TooManyDraws { draws, limit });
+        }
         let blended_indices = (!blended.is_empty()).then(|| {
             let faces: Vec<_> = blended.iter().map(|f| scene.model.faces[*f as usize]).collect();
             filled_buffer(device, "blended faces", bytemuck::cast_slice(&faces), wgpu::BufferUsages::INDEX)
@@ -391,6 +405,7 @@ impl SurfacePass {
         if let Some((vertices, _)) = &uploaded.hatch {
             pass.set_vertex_buffer(3, vertices.slice(..));
         }
+        let mut set = None;
         let mut draw = |batch: &Batch, blended: bool| {
             let material = &scene.model.materials[batch.material];
             let double_sided = material.double_sided;
@@ -415,19 +430,24 @@ impl SurfacePass {
                 // No shadow is known of what is blended: it is not what the stencil was counted against.
                 shadow: if blended { ShadowVariant::default() } else { ShadowVariant::new(plan, shadow) },
                 depth: targets.depth.texture().format(),
-                hatch: hatch.filter(|_| paint == Paint::Hatched).map(|(shade, plan)| HatchVariant::new(shade, plan)),
+                hatch: hatch
+                    .filter(|_| paint == Paint::Hatched)
+                    .map(|(shade, plan)| HatchVariant::new(shade, plan, strokes)),
                 colored: targets.color.is_some(),
                 clipped: scene.clip.is_some(),
                 inking,
             };
-            let mut pipelines = self.pipelines.borrow_mut();
-            let pipeline = pipelines.entry(variant).or_insert_with(|| self.pipeline(device, variant));
-            pass.set_pipeline(pipeline);
-            pass.set_bind_group(1, &uploaded.materials[batch.material], &[]);
-            if let Some(indices) = if blended { blended_indices.as_ref() } else { uploaded.indices.as_ref() } {
+            let Some(indices) = (if blended { blended_indices.as_ref() } else { uploaded.indices.as_ref() }) else {
+                return;
+            };
+            if set != Some(variant) {
+                let mut pipelines = self.pipelines.borrow_mut();
+                pass.set_pipeline(pipelines.entry(variant).or_insert_with(|| self.pipeline(device, variant)));
                 pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
-                pass.draw_indexed(batch.indices.clone(), 0, 0..1);
+                set = Some(variant);
             }
+            uploaded.materials.bind(&mut pass, batch.material);
+            pass.draw_indexed(batch.indices.clone(), 0, 0..1);
         };
         // Lines in the image that are found at another size hide nothing behind what the picture itself has.
         let needed =
@@ -435,11 +455,10 @@ impl SurfacePass {
         for batch in uploaded.batches.iter().filter(|_| needed) {
             draw(batch, false);
         }
-        let material_of = |face: &u32| scene.model.face_material[*face as usize];
         let mut start = 0;
-        for run in blended.chunk_by(|a, b| material_of(a) == material_of(b)) {
+        for run in blended_runs {
             let end = start + 3 * run.len() as u32;
-            draw(&Batch { material: material_of(&run[0]) as usize, indices: start..end }, true);
+            draw(&Batch { material: material_of(&run[0]), indices: start..end }, true);
             start = end;
         }
         Ok(())

@@ -7,6 +7,8 @@ const HATCH_BY_FORM: u32 = 2u;
 override surface_hatch_mapping: u32 = HATCH_BY_COORDINATES;
 // Whether thresholds are looked up, else six tones.
 override surface_hatch_thresholds: bool = false;
+// Whether six tones are loaded and filtered here, else by a sampler.
+override surface_hatch_loads: bool = false;
 // Whether the tone is what listing 4 makes of the light, else it is in proportion to it.
 override surface_hatch_listing_4: bool = false;
 // Whether strokes are drawn over the surface's own colour, else over paper.
@@ -15,7 +17,7 @@ override surface_hatch_over_surface: bool = false;
 struct SurfaceHatch {
     // The map's mean tones, the lightest first.
     light_tones: vec3<f32>,
-    // Texels for the side of the map, made less where they are to be larger than pixels.
+    // Texels for the side of the map, as many times more as they are to be larger than pixels.
     texels: f32,
     dark_tones: vec3<f32>,
     last_level: f32,
@@ -110,11 +112,18 @@ fn vs_hatched(
 
 // What one hatching leaves as paper.
 fn hatched_once(uv: vec2<f32>, footprint: HatchFootprint, tone: f32, weights: HatchWeights) -> f32 {
+    let flat = hatch_flat(footprint.level, hatch.last_level);
     if surface_hatch_thresholds {
-        return 1.0 - hatch_ink(hatch_map, uv, footprint, tone, hatch.width);
+        return mix(1.0 - hatch_ink(hatch_map, uv, footprint, tone, hatch.width), tone, flat);
     }
-    let texels = hatch_texels(hatch_light, hatch_dark, hatch_trilinear, uv, footprint);
-    return hatch_blend(texels.light, texels.dark, weights);
+    var texels: HatchTexels;
+    if surface_hatch_loads {
+        texels = hatch_texels_loaded(hatch_light, hatch_dark, uv, footprint);
+    } else {
+        texels = hatch_texels(hatch_light, hatch_dark, hatch_trilinear, uv, footprint);
+    }
+    let mean = hatch_blend(hatch.light_tones, hatch.dark_tones, weights);
+    return mix(hatch_blend(texels.light, texels.dark, weights), mean, flat);
 }
 
 // Hatchings that meet at a pixel, as many as there are: they are listed and then looked up in one loop, since software

@@ -23,6 +23,10 @@ pub struct Targets {
     pub width: u32,
     /// Px.
     pub height: u32,
+    /// Samples along each axis of a pixel.
+    pub samples: u32,
+    /// Of several samples: where the picture is drawn as many times as large, before it is averaged here.
+    fine: Option<Box<Targets>>,
     color: wgpu::Texture,
     pub(super) color_view: wgpu::TextureView,
     pub(super) depth_view: wgpu::TextureView,
@@ -46,9 +50,9 @@ pub(super) struct InkTargets {
     kind: (TexelLayout, InkScale, bool),
     pub(super) size: (u32, u32),
     pub(super) texels: wgpu::TextureView,
-    /// Where the ink has another size than the picture.
+    /// Where the ink has another size than what the picture is drawn into, and its surfaces are drawn for it.
     pub(super) depth: Option<wgpu::TextureView>,
-    /// Where shadow volumes are counted if the ink has another size.
+    /// Where shadow volumes are counted for these.
     pub(super) stencil: StencilTarget,
     /// Ink as it is found, where it is not laid at once.
     pub(super) found: Option<wgpu::TextureView>,
@@ -59,7 +63,14 @@ pub(super) struct InkTargets {
 }
 
 impl InkTargets {
-    fn new(context: &GpuContext, ink: &ImageInk, brushed: bool, picture: (u32, u32)) -> Result<Self, GpuError> {
+    /// `apart`: the picture's own surfaces are not of its size.
+    fn new(
+        context: &GpuContext,
+        ink: &ImageInk,
+        brushed: bool,
+        picture: (u32, u32),
+        apart: bool,
+    ) -> Result<Self, GpuError> {
         let size = ink.scale.size(picture);
         check_size(context, size)?;
         let view = |label, format, usage| texture(context, label, format, usage, size).create_view(&Default::default());
@@ -69,7 +80,7 @@ impl InkTargets {
             kind: (ink.layout, ink.scale, brushed),
             size,
             texels: view("normal, region and depth", texel_format(ink.layout), read | wgpu::TextureUsages::COPY_SRC),
-            depth: scaled.then(|| view("depth of the ink", DEPTH_FORMAT, wgpu::TextureUsages::empty())),
+            depth: (scaled || apart).then(|| view("depth of the ink", DEPTH_FORMAT, wgpu::TextureUsages::empty())),
             stencil: StencilTarget::default(),
             found: (scaled || brushed).then(|| view("ink", INK_FORMAT, read)),
             brush: brushed.then(|| DiscScratch::new(&context.device, size.into())),
@@ -106,8 +117,13 @@ fn texture(
 }
 
 impl Targets {
-    pub(super) fn new(context: &GpuContext, width: u32, height: u32) -> Result<Self, GpuError> {
+    pub(super) fn new(context: &GpuContext, width: u32, height: u32, samples: u32) -> Result<Self, GpuError> {
         check_size(context, (width, height))?;
+        let samples = samples.max(1);
+        let fine = match samples {
+            1 => None,
+            _ => Some(Box::new(Self::new(context, width.saturating_mul(samples), height.saturating_mul(samples), 1)?)),
+        };
         let texture = |label, format, usage| texture(context, label, format, usage, (width, height));
         let view = |texture: &wgpu::Texture| texture.create_view(&Default::default());
         let read = wgpu::TextureUsages::TEXTURE_BINDING;
@@ -115,10 +131,12 @@ impl Targets {
             if context.can_stroke { wgpu::TextureUsages::STORAGE_BINDING } else { wgpu::TextureUsages::empty() };
         let color = texture("colour", COLOR_FORMAT, read | stored | wgpu::TextureUsages::COPY_SRC);
         let copied = wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::COPY_DST;
-        let inked = texture("colour and lines", COLOR_FORMAT, copied);
+        let inked = texture("colour and lines", COLOR_FORMAT, read | copied);
         Ok(Self {
             width,
             height,
+            samples,
+            fine,
             color_view: view(&color),
             color,
             depth_view: view(&texture("depth", DEPTH_FORMAT, read)),
@@ -141,14 +159,28 @@ impl Targets {
         let kind = (ink.layout, ink.scale, brushed);
         let is_for = |targets: &InkTargets| targets.kind == kind;
         if !self.ink.borrow().as_ref().is_some_and(is_for) {
-            *self.ink.borrow_mut() = Some(InkTargets::new(context, ink, brushed, (self.width, self.height))?);
+            *self.ink.borrow_mut() =
+                Some(InkTargets::new(context, ink, brushed, (self.width, self.height), self.fine.is_some())?);
         }
         Ok(Ref::map(self.ink.borrow(), |targets| targets.as_ref().expect("it was just made")))
+    }
+
+    /// What surfaces, and lines from edges, are drawn into.
+    pub(super) fn canvas(&self) -> &Self {
+        self.fine.as_deref().unwrap_or(self)
     }
 
     /// Says that the frame ends in the painted picture.
     pub(super) fn begin(&self) {
         self.is_inked.set(false);
+        if let Some(fine) = &self.fine {
+            fine.begin();
+        }
+    }
+
+    /// What the frame ends in.
+    pub(super) fn drawn(&self) -> &wgpu::TextureView {
+        if self.is_inked.get() { &self.inked_view } else { &self.color_view }
     }
 
     pub(super) fn stroke_buffers(&self, device: &wgpu::Device, strokes: &LineStrokes) -> Option<&StrokeBuffers> {

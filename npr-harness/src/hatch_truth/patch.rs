@@ -120,7 +120,7 @@ pub fn patch_tones(
         let plan = Plan::new(&scene, &style, &camera)?;
         let textures = textures(&scene, &plan);
         let options = CpuOptions::default();
-        let mut context = FrameContext::new(&scene, &style, &plan, &camera, (size, size), &options, &textures);
+        let mut context = FrameContext::new(&scene, &style, &plan, &camera, (size, size), &options, textures);
         let (mut sum, mut pixels) = (0.0, 0usize);
         let [left, top, width, height] = camera.area(scene.bounds().expect("it has faces"), (size, size), 1);
         let of_one = f64::from(width * height) * 0.75 * 0.75;

@@ -1,13 +1,13 @@
 use super::*;
 use std::collections::HashMap;
 
-const EVERYWHERE: (f64, f64) = (0.0, f64::INFINITY);
+pub(super) const EVERYWHERE: (f64, f64) = (0.0, f64::INFINITY);
 
 /// SplitMix64 (Steele, Lea & Flood 2014).
-struct Random(u64);
+pub(super) struct Random(pub(super) u64);
 
 impl Random {
-    fn bits(&mut self) -> u64 {
+    pub(super) fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
@@ -15,15 +15,15 @@ impl Random {
     }
 
     /// In −1..1.
-    fn signed(&mut self) -> f64 {
+    pub(super) fn signed(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
 
-    fn vector(&mut self) -> DVec3 {
+    pub(super) fn vector(&mut self) -> DVec3 {
         DVec3::new(self.signed(), self.signed(), self.signed())
     }
 
-    fn unit(&mut self) -> DVec3 {
+    pub(super) fn unit(&mut self) -> DVec3 {
         loop {
             let v = self.vector();
             if (0.01..1.0).contains(&v.length_squared()) {
@@ -34,7 +34,7 @@ impl Random {
 }
 
 /// A unit sphere of 20 · 4^`levels` faces, its corners shared and counter-clockwise seen from outside.
-fn icosphere(levels: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+pub(super) fn icosphere(levels: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let g = (1.0 + 5f64.sqrt()) / 2.0;
     let corner = |x: f64, y: f64, z: f64| DVec3::new(x, y, z).normalize().as_vec3();
     let mut positions = Vec::new();
@@ -80,16 +80,16 @@ fn cube() -> (Vec<Vec3>, Vec<[u32; 3]>) {
     (positions, quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect())
 }
 
-fn edges(faces: &[[u32; 3]]) -> impl Iterator<Item = (u32, u32)> {
+pub(super) fn edges(faces: &[[u32; 3]]) -> impl Iterator<Item = (u32, u32)> {
     faces.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)])
 }
 
-fn any_hit(_: &Hit) -> bool {
+pub(super) fn any_hit(_: &Hit) -> bool {
     true
 }
 
 /// What [`RayCaster::closest`] must answer: the same test on every face.
-fn closest_of_all(
+pub(super) fn closest_of_all(
     positions: &[Vec3],
     faces: &[[u32; 3]],
     origin: DVec3,
@@ -377,7 +377,13 @@ fn of_faces_on_each_other_the_first_is_hit() {
     // Enough copies that the hierarchy puts them in many leaves, the second half wound the other way.
     let copies = 500u32;
     let many: Vec<[u32; 3]> = (0..copies)
-        .flat_map(|copy| faces.iter().map(move |&[a, b, c]| if copy >= copies / 2 { [a, c, b] } else { [b, c, a] }))
+        .flat_map(|copy| {
+            faces.iter().map(move |&[a, b, c]| {
+                let mut face = if copy >= copies / 2 { [a, c, b] } else { [b, c, a] };
+                face.rotate_left(copy as usize % 3);
+                face
+            })
+        })
         .collect();
     let one = RayCaster::new(&positions, &faces);
     let caster = RayCaster::new(&positions, &many);
@@ -389,6 +395,13 @@ fn of_faces_on_each_other_the_first_is_hit() {
         assert_eq!(of_many.len(), one.all(origin, direction, EVERYWHERE, any_hit).len() * copies as usize);
         assert_eq!(caster.closest(origin, direction, EVERYWHERE, any_hit), of_many.first().copied());
         assert_eq!(of_many.first().map(|hit| hit.face % 12), first.map(|hit| hit.face));
+        for hit in of_many {
+            let corners = many[hit.face as usize].map(|corner| positions[corner as usize].as_dvec3());
+            let at: DVec3 = corners.into_iter().zip(hit.barycentric).map(|(corner, weight)| corner * weight).sum();
+            assert!(at.distance(origin + direction * hit.t) < 1e-12, "{hit:?}");
+            let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+            assert_eq!(hit.front, normal.dot(direction) < 0.0);
+        }
     }
     // Exactly representable weights: all copies are at one t.
     let hit = caster.closest(DVec3::new(0.25, -0.25, 4.0), -DVec3::Z, EVERYWHERE, any_hit);
@@ -404,4 +417,49 @@ fn of_faces_on_each_other_the_first_is_hit() {
 fn threads_can_share_a_caster() {
     fn shared<T: Send + Sync>() {}
     shared::<RayCaster>();
+}
+
+#[test]
+fn faces_on_or_within_one_another_take_no_quadratic_time() {
+    let mut random = Random(9);
+    for kind in 0..4 {
+        let corners: Vec<[Vec3; 3]> = (0..40_000)
+            .map(|number| {
+                let size = match kind {
+                    0 => 1.0,
+                    1 => 0.2 + 2e-5 * number as f32,
+                    2 => (number as f32 * -0.003).exp2(),
+                    _ => random.signed() as f32 * 1e-3,
+                };
+                let place = if kind == 3 { random.vector().as_vec3() } else { Vec3::ZERO };
+                [Vec3::new(-1.0, -1.0, 0.0), Vec3::new(1.0, -1.0, 0.1), Vec3::new(0.0, 1.0, -0.1)]
+                    .map(|corner| place + size * corner)
+            })
+            .collect();
+        let faces: Vec<[u32; 3]> = (0..corners.len() as u32).map(|n| [3 * n, 3 * n + 1, 3 * n + 2]).collect();
+        let start = std::time::Instant::now();
+        let caster = RayCaster::new(corners.as_flattened(), &faces);
+        assert!(start.elapsed().as_secs() < 10, "kind {kind}: {:?}", start.elapsed());
+        let seen = faces.iter().filter(|face| !has_zero_area(corners.as_flattened(), face)).count();
+        assert_eq!(caster.tree.count().0, seen - caster.alike.iter().map(|same| same.len() - 1).sum::<usize>());
+        let bvh = &caster.tree.bvh;
+        assert!(bvh.max_depth <= 3 * faces.len().ilog2() as usize + 3, "kind {kind}: {} deep", bvh.max_depth);
+        let mut indices = bvh.primitive_indices.clone();
+        indices.sort_unstable();
+        assert!(indices.windows(2).all(|pair| pair[0] < pair[1]) && indices.len() == caster.tree.triangles.len());
+        let mut depth = vec![0; bvh.nodes.len()];
+        for (number, node) in bvh.nodes.iter().enumerate() {
+            assert!(node.prim_count <= 8 || node.prim_count == CELL);
+            if !node.is_leaf() {
+                for child in [node.first_index as usize, node.first_index as usize + 1] {
+                    depth[child] = depth[number] + 1;
+                    assert_eq!(node.aabb().union(bvh.nodes[child].aabb()), *node.aabb());
+                }
+            }
+        }
+        assert_eq!(depth.into_iter().max(), Some(bvh.max_depth));
+
+        let hits = caster.all(DVec3::new(0.0, 0.0, 2.0), DVec3::NEG_Z, EVERYWHERE, any_hit).len();
+        assert!(kind == 3 || hits == faces.len(), "kind {kind}: {hits}");
+    }
 }

@@ -3,7 +3,9 @@
 use crate::check::{Allowed, Check, Given, MODELS, SMALL, compare};
 use crate::random::{Random, with};
 use glam::{DVec2, DVec3, DVec4, Vec2, Vec3, Vec4};
-use npr_hatch::lookup::{HatchFootprint, HatchTaps, hatch_footprint, hatch_samples, hatch_softened, hatch_taps};
+use npr_hatch::lookup::{
+    HatchFootprint, HatchTaps, hatch_flat, hatch_footprint, hatch_samples, hatch_softened, hatch_taps,
+};
 use npr_hatch::mapping::{
     HatchStep, hatch_doubled, hatch_moved, hatch_octave, hatch_plane, hatch_plane_weights, hatch_share, hatch_turn,
     hatch_turned,
@@ -295,6 +297,17 @@ const CHECKS: &[Check<()>] = &[
             [Vec4::new(texel, tone, width, 0.0); 4]
         },
         rust: |(), g| DVec4::splat(hatch_threshold(x(g[0]), f64::from(g[0].y), f64::from(g[0].z))),
+        allowed: small,
+    },
+    Check {
+        name: "hatch_flat",
+        wgsl: "vec4(hatch_flat(a.x, a.y))",
+        given: |random, ()| {
+            let last_level = random.pick(&[2.0, 8.0, 12.0]);
+            let level = random.pick(&[last_level, random.range(0.0, last_level), last_level - random.range(2.5, 4.5)]);
+            [Vec4::new(level, last_level, 0.0, 0.0); 4]
+        },
+        rust: |(), g| DVec4::splat(hatch_flat(x(g[0]), f64::from(g[0].y))),
         allowed: small,
     },
     Check {

@@ -140,6 +140,12 @@ fn texels_bound(_: &Arc<Tam>, _: &Given) -> Allowed {
     Allowed::Within(4.0 / 255.0)
 }
 
+/// Only places are rounded: by 2^-24 of up to 128 texels of the largest map, times a level's full range between two texels, along
+/// both axes; and what is mixed.
+fn loaded_bound(_: &Arc<Tam>, _: &Given) -> Allowed {
+    Allowed::Within(1e-4)
+}
+
 const TONES: &str = "
     @group(0) @binding(2) var light: texture_2d<f32>;
     @group(0) @binding(3) var dark: texture_2d<f32>;
@@ -149,6 +155,12 @@ const TONES: &str = "
     }
     fn texels_at(a: vec4<f32>, b: vec4<f32>) -> HatchTexels {
         return hatch_texels_at(light, dark, trilinear, a.xy, b.x);
+    }
+    fn texels_of_level(a: vec4<f32>, b: vec4<f32>) -> HatchTexels {
+        return hatch_texels_of_level(light, dark, a.xy, i32(b.x));
+    }
+    fn texels_loaded(a: vec4<f32>, b: vec4<f32>) -> HatchTexels {
+        return hatch_texels_loaded(light, dark, a.xy, HatchFootprint(b.x, a.zw));
     }";
 
 const TEXELS: &[Check<Arc<Tam>>] = &[
@@ -172,6 +184,30 @@ const TEXELS: &[Check<Arc<Tam>>] = &[
         given: sampled,
         rust: |tam, g| hatch_texels(tam, uv(g), HatchFootprint { spread: DVec2::ZERO, ..footprint(g) }).0.extend(0.0),
         allowed: texels_bound,
+    },
+    Check {
+        name: "hatch_texels_loaded, lighter",
+        wgsl: "vec4(texels_loaded(a, b).light, 0.0)",
+        given: sampled,
+        rust: |tam, g| hatch_texels(tam, uv(g), footprint(g)).0.extend(0.0),
+        allowed: loaded_bound,
+    },
+    Check {
+        name: "hatch_texels_loaded, darker",
+        wgsl: "vec4(texels_loaded(a, b).dark, 0.0)",
+        given: sampled,
+        rust: |tam, g| hatch_texels(tam, uv(g), footprint(g)).1.extend(0.0),
+        allowed: loaded_bound,
+    },
+    Check {
+        name: "hatch_texels_of_level, darker",
+        wgsl: "vec4(texels_of_level(a, b).dark, 0.0)",
+        given: sampled,
+        rust: |tam, g| {
+            let level = footprint(g).level.floor();
+            hatch_texels(tam, uv(g), HatchFootprint { level, spread: DVec2::ZERO }).1.extend(0.0)
+        },
+        allowed: loaded_bound,
     },
 ];
 

@@ -105,7 +105,7 @@ struct Render {
     /// A parallel view.
     #[arg(long)]
     ortho: bool,
-    /// Samples per pixel along each axis; more than 1 renders on the CPU.
+    /// Samples per pixel along each axis: 2 or more smooth what has no line on it.
     #[arg(long, default_value_t = 1)]
     samples: u32,
     /// What the picture may take of memory while it is made, GiB.
@@ -267,10 +267,10 @@ fn run_render(options: &Render) -> Result<bool, HarnessError> {
     };
     let style = known_style(&options.style)?;
     check_output(&options.output, &[&options.input, Path::new(&options.style)])?;
-    let backend = match (options.backend, samples) {
-        (BackendName::Auto, 1) => Backend::Auto,
-        (BackendName::Gpu, _) => Backend::Gpu,
-        _ => Backend::Cpu,
+    let backend = match options.backend {
+        BackendName::Auto => Backend::Auto,
+        BackendName::Gpu => Backend::Gpu,
+        BackendName::Cpu => Backend::Cpu,
     };
     let mut executor = Executor::choose(backend)?;
     let check = |executor: &Executor| check_picture(&style, options.size, samples, !executor.is_cpu(), memory as u64);
