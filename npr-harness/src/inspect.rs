@@ -66,7 +66,7 @@ pub struct Inspection {
 /// # Panics
 /// If a face names a vertex that is not there, or a per-face array has another length than stated in [`Model`].
 pub fn inspect(name: &str, model: &Model, warnings: Vec<String>) -> Inspection {
-    let options = EdgeOptions { weld_tolerance: 0.0, skip_redundant: false };
+    let options = EdgeOptions { skip_redundant: false, ..EdgeOptions::default() };
     let found = edges::find(&model.positions, &model.faces, &model.face_polygon, &model.face_material, &options);
     let of_kind = |kind| found.edges.iter().filter(|edge| edge.kind() == kind).count();
     let (boundary_edges, nonmanifold_edges) = (of_kind(EdgeKind::Boundary), of_kind(EdgeKind::NonManifold));

@@ -7,13 +7,14 @@
 //!
 //! Boundaries and non-manifold edges always, two-face edges where exactly one face is turned towards the eye or where
 //! the surface turns by more than the crease angle. As for drawing ([`npr_outline::contour`]): a polygon is classified
-//! by its Newell normal through the mean of its corners, a face wound oppositely is turned round, a face of zero area
+//! by its Newell normal through the mean of its corners, but the triangles of a folded one by their own where the question
+//! is which way they are turned, and then the folds between them can be silhouettes; a face wound oppositely is turned round, a face of zero area
 //! has the plane of its neighbour over its longest edge, and a face seen exactly edge-on is turned towards the eye.
 //!
 //! # What counts as seen
 //!
 //! A point of an edge is seen when nothing solid lies between it and the eye (in a parallel view: the near plane).
-//! Left out are the edge's own faces, with the other triangles of their polygons: they touch the ray at the point
+//! Left out are the edge's own faces, with the other triangles of their polygons, but of folded ones: they touch the ray at the point
 //! itself, and where one is seen edge-on even the rounding of the point puts it in front or behind. So is all that is
 //! nearer to the point than [`BEHIND`] of its distance. The other faces around the edge's ends count: at a
 //! cusp they are what hides the line.
@@ -30,7 +31,7 @@ use crate::rays::Hit;
 use crate::scene::Scene;
 use glam::{DVec2, DVec3, DVec4};
 use npr_mesh::AlphaMode;
-use npr_mesh::edges::{Edge, EdgeKind, NO_FACE};
+use npr_mesh::edges::{Edge, EdgeKind, Edges, NO_FACE};
 use npr_outline::LineKind;
 use std::collections::HashMap;
 
@@ -56,7 +57,8 @@ pub struct TrueSegment {
     pub ends_px: [DVec2; 2],
     /// Why it is a line.
     pub kind: LineKind,
-    /// Which of the scene's edges; [`NO_EDGE`] where two faces pass through each other.
+    /// Which of the scene's edges, or after those of its folds ([`scene_edge`]); [`NO_EDGE`] where two faces pass through
+    /// each other.
     pub edge: u32,
 }
 
@@ -125,15 +127,17 @@ pub fn true_lines_of_steps(
 ) -> TrueLines {
     let planes = face_planes(scene);
     let eye = camera.homogeneous_eye();
-    let lines: Vec<(u32, LineKind)> = (0u32..)
-        .zip(&scene.edges.edges)
-        .filter_map(|(number, edge)| Some((number, line_kind(edge, &planes, eye, crease_angle_rad)?)))
+    let numbers = 0..(scene.edges.edges.len() + scene.edges.folds.len()) as u32;
+    let lines: Vec<(u32, LineKind)> = numbers
+        .filter_map(|number| Some((number, line_kind(scene, number, &planes, eye, crease_angle_rad)?)))
         .collect();
-    let size_px = DVec2::new(size.0.into(), size.1.into());
-    let sight = Sight { scene, camera, size_px };
+    let sight = Sight::new(scene, camera, size);
     let step_of = |number: u32, kind: LineKind| {
-        let edge = &scene.edges.edges[number as usize];
-        if kind == LineKind::Boundary || !is_crease(edge, &planes, crease_angle_rad) { least_step } else { 0.0 }
+        if kind == LineKind::Boundary || !is_crease(scene, number, &planes, crease_angle_rad) {
+            least_step
+        } else {
+            0.0
+        }
     };
     // Built before the threads ask for it, so that they do not wait for each other.
     scene.rays();
@@ -150,8 +154,15 @@ pub fn true_lines_of_steps(
     TrueLines { segments, size_px: size }
 }
 
-/// Per face its plane; the normal is zero where no neighbour lends one.
-fn face_planes(scene: &Scene) -> Vec<Plane> {
+/// Per face, the normal zero where no neighbour lends one.
+struct FacePlanes {
+    /// Of the polygon: whose edges are creases.
+    of_polygons: Vec<Plane>,
+    /// The same but for the triangles of folded polygons, which have their own: whose edges are silhouettes.
+    of_sides: Vec<Plane>,
+}
+
+fn face_planes(scene: &Scene) -> FacePlanes {
     let model = &scene.model;
     let own: Vec<Plane> = model
         .faces
@@ -176,7 +187,13 @@ fn face_planes(scene: &Scene) -> Vec<Plane> {
     if planes.iter().any(|plane| plane.normal == DVec3::ZERO) {
         borrow_planes(scene, &mut planes);
     }
-    planes
+    let mut of_sides = planes.clone();
+    for face in scene.edges.folds.iter().flat_map(Edge::faces).map(|face| face as usize) {
+        if own[face].normal != DVec3::ZERO {
+            of_sides[face] = own[face];
+        }
+    }
+    FacePlanes { of_polygons: planes, of_sides }
 }
 
 /// Gives faces of zero area the plane of the neighbour over their longest edge, turned to be wound like the face.
@@ -216,16 +233,23 @@ fn borrow_planes(scene: &Scene, planes: &mut [Plane]) {
 }
 
 /// Why an edge is a line for an eye, if it is.
-fn line_kind(edge: &Edge, planes: &[Plane], eye: DVec4, crease_angle_rad: f64) -> Option<LineKind> {
+fn line_kind(scene: &Scene, number: u32, planes: &FacePlanes, eye: DVec4, crease_angle_rad: f64) -> Option<LineKind> {
+    let edge = scene_edge(scene, number);
     let [first, second] = edge.faces();
     if second == NO_FACE {
         return Some(LineKind::Boundary);
     }
-    let [plane0, plane1] = wound_alike(edge, planes, [first, second]);
+    let [plane0, plane1] = wound_alike(edge, &planes.of_sides, [first, second]);
     if plane0.faces(eye) != plane1.faces(eye) {
         return Some(LineKind::Silhouette);
     }
-    is_crease(edge, planes, crease_angle_rad).then_some(LineKind::Crease)
+    is_crease(scene, number, planes, crease_angle_rad).then_some(LineKind::Crease)
+}
+
+/// An edge of the scene, or after those a fold.
+pub fn scene_edge(scene: &Scene, number: u32) -> &Edge {
+    let Edges { edges, folds, .. } = &scene.edges;
+    edges.get(number as usize).unwrap_or_else(|| &folds[number as usize - edges.len()])
 }
 
 /// The planes of an edge's two faces, the second turned to be wound like the first.
@@ -238,12 +262,13 @@ fn wound_alike(edge: &Edge, planes: &[Plane], [first, second]: [u32; 2]) -> [Pla
 }
 
 /// Whether the surface turns by more than an angle at an edge, or a third face begins there.
-fn is_crease(edge: &Edge, planes: &[Plane], crease_angle_rad: f64) -> bool {
+fn is_crease(scene: &Scene, number: u32, planes: &FacePlanes, crease_angle_rad: f64) -> bool {
+    let edge = scene_edge(scene, number);
     let faces = edge.faces();
-    if faces[1] == NO_FACE {
+    if faces[1] == NO_FACE || number as usize >= scene.edges.edges.len() {
         return false;
     }
-    let [plane0, plane1] = wound_alike(edge, planes, faces);
+    let [plane0, plane1] = wound_alike(edge, &planes.of_polygons, faces);
     // Well conditioned at any angle, and 0 where there is no normal.
     let turn_rad = plane0.normal.cross(plane1.normal).length().atan2(plane0.normal.dot(plane1.normal));
     edge.kind() == EdgeKind::NonManifold || turn_rad > crease_angle_rad
@@ -254,11 +279,19 @@ struct Sight<'a> {
     scene: &'a Scene,
     camera: &'a Camera,
     size_px: DVec2,
+    /// Of all folded polygons, ascending.
+    folded_faces: Vec<u32>,
 }
 
-impl Sight<'_> {
+impl<'a> Sight<'a> {
+    fn new(scene: &'a Scene, camera: &'a Camera, size: (u32, u32)) -> Self {
+        let mut folded_faces: Vec<u32> = scene.edges.folds.iter().flat_map(Edge::faces).collect();
+        folded_faces.sort_unstable();
+        Self { scene, camera, size_px: DVec2::new(size.0.into(), size.1.into()), folded_faces }
+    }
+
     fn visible_pieces(&self, number: u32, kind: LineKind, least_step: f64) -> Vec<TrueSegment> {
-        let edge = &self.scene.edges.edges[number as usize];
+        let edge = scene_edge(self.scene, number);
         let ends = edge.ends.map(|v| self.scene.model.positions[v as usize].as_dvec3());
         let own = |face: u32| self.is_own(face, edge);
         let seen =
@@ -374,12 +407,14 @@ impl Sight<'_> {
         a == b || (!of.is_empty() && of[a as usize] == of[b as usize])
     }
 
-    /// Whether a face has the edge, or is of the polygon of one that has.
+    /// Whether a face has the edge, or is of the polygon of one that has and not folded.
     fn is_own(&self, face: u32, edge: &Edge) -> bool {
         let model = &self.scene.model;
         let corners = model.faces[face as usize].map(|v| self.scene.edges.representative[v as usize]);
         edge.ends.iter().all(|end| corners.contains(end))
-            || edge.faces().iter().any(|&own| own != NO_FACE && self.same_polygon(own, face))
+            || edge.faces().iter().any(|&own| {
+                own != NO_FACE && self.same_polygon(own, face) && self.folded_faces.binary_search(&face).is_err()
+            })
     }
 }
 

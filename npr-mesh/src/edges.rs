@@ -4,7 +4,9 @@
 //!
 //! - Vertices at exactly equal positions are one vertex ([`crate::weld`]).
 //! - A diagonal that triangulation added (an edge between two faces of one polygon) is no edge, and a polygon's
-//!   faces all have the polygon's Newell normal.
+//!   faces all have the polygon's Newell normal. Where a polygon is *folded* along its diagonals, though, by more than
+//!   [`EdgeOptions::fold_rad`], some of its triangles can be turned towards an eye and others away. Its diagonals are
+//!   never creases, but its contour may run along them, so they are listed apart ([`Edges::folds`]).
 //! - An edge with one face is a *boundary*, with two a *two-face* edge, with more *non-manifold*. A face that runs
 //!   over one edge twice (two of its corners are at one place) counts twice there.
 //! - Two faces that run over their edge in the same direction are wound oppositely; the dihedral angle is that of
@@ -15,11 +17,12 @@
 //!   would make edges non-manifold that are not.
 
 mod diagonals;
+mod folds;
 mod normal;
 mod redundant;
 mod unique;
 
-pub use normal::{face_normals, has_zero_area};
+pub use normal::{face_normals, has_zero_area, triangle_normal};
 
 use crate::weld;
 use glam::Vec3;
@@ -38,11 +41,22 @@ pub struct EdgeOptions {
     /// Leave out faces that lie exactly on another one or have two corners at one place. For drawing this is right;
     /// for counting what a file holds it is not.
     pub skip_redundant: bool,
+    /// A polygon that turns by more than this at one of its diagonals, or lacks more than this of folding back, is
+    /// folded: all of its diagonals are listed in [`Edges::folds`]. From π/2 on none is.
+    pub fold_rad: f32,
 }
+
+/// [`EdgeOptions::fold_rad`] by default: 2°.
+///
+/// Of a polygon that is turned as a whole and stands out less, the contour strays by a quarter of its breadth times the
+/// sine of the angle at most, half a pixel where it is 60 px broad. With 1° quads that are all but flat and seen edge-on
+/// get a second line within a pixel of the first; with 5° the outlines of a smooth model made of quads already lose
+/// pieces.
+pub const FOLD_RAD: f32 = 0.035;
 
 impl Default for EdgeOptions {
     fn default() -> Self {
-        Self { weld_tolerance: 0.0, skip_redundant: true }
+        Self { weld_tolerance: 0.0, skip_redundant: true, fold_rad: FOLD_RAD }
     }
 }
 
@@ -123,6 +137,9 @@ pub struct Edges {
     pub further_faces: Vec<(u32, u32)>,
     /// Per face whether it was left out as redundant; empty if none was.
     pub skipped: Vec<bool>,
+    /// The diagonals of folded polygons, each with its two triangles. Apart from
+    /// [`Edges::edges`]: for counting what a file holds they are no edges, and for drawing they are silhouettes or nothing.
+    pub folds: Vec<Edge>,
 }
 
 impl Edges {
@@ -174,7 +191,7 @@ impl Edges {
 ///
 /// The edges come in the order in which the faces show them, and each one's faces in ascending order.
 ///
-/// Memory: 16 bytes an edge, 12 a face and 4 a vertex for what is returned; on the way 12 bytes a vertex, the weld's (at
+/// Memory: 16 bytes an edge and a fold, 12 a face and 4 a vertex for what is returned; on the way 12 bytes a vertex, the weld's (at
 /// most 24 a vertex), and 20 bytes for each face that is too much at its edge. At most `3 * faces.len()` edges. Linear
 /// in faces and vertices; n log n in the faces around vertices where many separate patches of faces meet.
 ///
@@ -202,11 +219,13 @@ pub fn find(
         }
     }
     let unique::Unique { mut edges, mut further_faces, .. } = found;
+    let mut folds = Vec::new();
     if !face_polygon.is_empty() {
-        diagonals::drop_diagonals(&mut edges, &mut further_faces, faces, &representative, face_polygon);
+        folds = diagonals::drop_diagonals(&mut edges, &mut further_faces, faces, &representative, face_polygon);
+        folds::keep_folded(&mut folds, positions, faces, face_polygon, options.fold_rad);
     }
     mark_materials(&mut edges, &further_faces, face_material);
-    Edges { edges, face_normals, representative, further_faces, skipped }
+    Edges { edges, face_normals, representative, further_faces, skipped, folds }
 }
 
 fn mark_materials(edges: &mut [Edge], further_faces: &[(u32, u32)], face_material: &[u32]) {

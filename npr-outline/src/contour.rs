@@ -19,7 +19,7 @@
 
 use crate::OutlineError;
 use glam::{DVec3, DVec4, Vec3, Vec4};
-use npr_mesh::edges::{EdgeKind, Edges, NO_FACE};
+use npr_mesh::edges::{Edge, EdgeKind, Edges, NO_FACE, triangle_normal};
 use npr_mesh::{AlphaMode, Model};
 use std::collections::HashMap;
 
@@ -103,6 +103,9 @@ pub const TRAIT_CUT_OUT: u32 = 1 << 9;
 /// A face of zero area borrows the plane of its neighbour over its longest edge, so that a sliver between two
 /// faces passes their silhouette and their crease on instead of swallowing them.
 ///
+/// A folded polygon's triangles ([`Edges::folds`]) each have their own plane, so that the contour is closed where some of
+/// them are turned away; whether its edges are creases, its Newell normal tells.
+///
 /// # Errors
 /// [`OutlineError::CreaseAngle`].
 pub fn contour_edges(model: &Model, edges: &Edges, options: &ContourOptions) -> Result<ContourEdges, OutlineError> {
@@ -116,38 +119,49 @@ pub fn contour_edges(model: &Model, edges: &Edges, options: &ContourOptions) -> 
     let turned = turned_faces(edges, &model.face_polygon);
     let is_turned = |face: u32| turned.get(face as usize) == Some(&true);
     let cut_out: Vec<bool> = model.materials.iter().map(|m| matches!(m.alpha_mode, AlphaMode::Mask { .. })).collect();
+    let wound = |normal: Vec3, face: u32| if is_turned(face) { -normal } else { normal };
     let normal_of = |face: u32| {
         let own = edges.face_normals[face as usize];
-        let normal = if own == Vec3::ZERO { lent.get(&face).copied().unwrap_or(Vec3::ZERO) } else { own };
-        if is_turned(face) { -normal } else { normal }
+        wound(if own == Vec3::ZERO { lent.get(&face).copied().unwrap_or(Vec3::ZERO) } else { own }, face)
     };
     let points = plane_points(model);
+    let folded = folded_normals(model, edges);
+    let plane_of = |face: u32, fits: bool| {
+        let (normal, on) = match folded.get(&face) {
+            Some(&own) => (wound(own, face), first_corner(model, face)),
+            None => (normal_of(face), points.get(face as usize).copied().unwrap_or_else(|| first_corner(model, face))),
+        };
+        let normal = if fits { normal } else { -normal };
+        normal.extend(-normal.as_dvec3().dot(on - origin.as_dvec3()) as f32).to_array()
+    };
     let mut contours = ContourEdges { origin, ..Default::default() };
-    contours.planes.reserve_exact(edges.edges.len());
-    contours.ends.reserve_exact(edges.edges.len());
-    contours.traits.reserve_exact(edges.edges.len());
-    contours.first_face.reserve_exact(edges.edges.len());
+    let most = edges.edges.len() + edges.folds.len();
+    contours.planes.reserve_exact(most);
+    contours.ends.reserve_exact(most);
+    contours.traits.reserve_exact(most);
+    contours.first_face.reserve_exact(most);
     for want_always in [true, false] {
-        for edge in &edges.edges {
+        let folds = edges.folds.iter().map(|fold| (fold, true));
+        for (edge, is_fold) in edges.edges.iter().map(|edge| (edge, false)).chain(folds) {
             let [first, second] = edge.faces();
-            let n0 = normal_of(first);
-            let (line, n1) = match edge.kind() {
-                EdgeKind::Boundary => (Some(LineKind::Boundary), -n0),
-                EdgeKind::NonManifold => (Some(LineKind::Crease), normal_of(second)),
+            let mut fits = true;
+            let line = match edge.kind() {
+                EdgeKind::Boundary => Some(LineKind::Boundary),
+                EdgeKind::NonManifold => Some(LineKind::Crease),
+                EdgeKind::TwoFace if is_fold => None,
                 EdgeKind::TwoFace => {
                     // Only on a surface with one side are two faces left that do not fit.
-                    let fits = edge.wound_oppositely() == (is_turned(first) != is_turned(second));
-                    let n1 = if fits { normal_of(second) } else { -normal_of(second) };
-                    let cos = edges.cos_dihedral(edge).unwrap_or_else(|| n0.dot(n1));
+                    fits = edge.wound_oppositely() == (is_turned(first) != is_turned(second));
+                    let (n0, n1) = (normal_of(first), normal_of(second));
+                    let cos = edges.cos_dihedral(edge).unwrap_or_else(|| if fits { n0.dot(n1) } else { -n0.dot(n1) });
                     let borrowed_nothing = n0 == Vec3::ZERO || n1 == Vec3::ZERO;
-                    let line = if cos < cos_crease && !borrowed_nothing {
+                    if cos < cos_crease && !borrowed_nothing {
                         Some(LineKind::Crease)
                     } else if options.material_borders && edge.joins_two_materials() {
                         Some(LineKind::MaterialBorder)
                     } else {
                         None
-                    };
-                    (line, n1)
+                    }
                 }
             };
             if line.is_some() != want_always {
@@ -158,13 +172,8 @@ pub fn contour_edges(model: &Model, edges: &Edges, options: &ContourOptions) -> 
             if is_cut_out(first) && is_cut_out(second) {
                 flags |= TRAIT_CUT_OUT;
             }
-            let plane = |normal: Vec3, face: u32| {
-                let on = points.get(face as usize).copied().unwrap_or_else(|| first_corner(model, face));
-                let on = on - origin.as_dvec3();
-                normal.extend(-normal.as_dvec3().dot(on) as f32).to_array()
-            };
-            let plane0 = plane(n0, first);
-            let plane1 = if second == NO_FACE { plane0.map(|x| -x) } else { plane(n1, second) };
+            let plane0 = plane_of(first, true);
+            let plane1 = if second == NO_FACE { plane0.map(|x| -x) } else { plane_of(second, fits) };
             contours.planes.push(EdgePlanes { plane0, plane1 });
             let [from, to] = edge.ends;
             contours.ends.push(if is_turned(first) { [to, from] } else { [from, to] });
@@ -176,6 +185,13 @@ pub fn contour_edges(model: &Model, edges: &Edges, options: &ContourOptions) -> 
         }
     }
     Ok(contours)
+}
+
+/// The normals of those triangles of folded polygons that have one: the others keep their polygon's plane.
+fn folded_normals(model: &Model, edges: &Edges) -> HashMap<u32, Vec3> {
+    let faces = edges.folds.iter().flat_map(Edge::faces);
+    let normals = faces.map(|face| (face, triangle_normal(&model.positions, &model.faces[face as usize])));
+    normals.filter(|(_, normal)| *normal != Vec3::ZERO).collect()
 }
 
 fn first_corner(model: &Model, face: u32) -> DVec3 {

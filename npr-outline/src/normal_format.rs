@@ -18,7 +18,7 @@ use crate::contour::{contour_edges, facing_exact, outline_is_silhouette};
 use crate::{ContourOptions, OutlineError};
 use glam::{DVec2, DVec3, Vec2, Vec3};
 use npr_mesh::Model;
-use npr_mesh::edges::{Edge, EdgeKind, Edges};
+use npr_mesh::edges::{Edge, EdgeKind, Edges, triangle_normal};
 use std::collections::HashMap;
 
 /// WGSL decoders: no bindings, no entry points.
@@ -185,6 +185,18 @@ fn true_sides(model: &Model, eye: DVec3) -> Vec<bool> {
     sides
 }
 
+/// As [`true_sides`], but the triangles of folded polygons by themselves.
+fn true_sides_with_folds(model: &Model, edges: &Edges, eye: DVec3) -> Vec<bool> {
+    let mut sides = true_sides(model, eye);
+    for face in edges.folds.iter().flat_map(Edge::faces) {
+        let corners = model.faces[face as usize].map(|v| model.positions[v as usize]);
+        if triangle_normal(&model.positions, &model.faces[face as usize]) != Vec3::ZERO {
+            sides[face as usize] = facing_exact(corners, eye.extend(1.0)) >= 0.0;
+        }
+    }
+    sides
+}
+
 fn truly_silhouette(edge: &Edge, sides: &[bool]) -> bool {
     let [first, second] = edge.faces().map(|face| sides[face as usize]);
     (first != second) != edge.wound_oppositely()
@@ -220,23 +232,26 @@ pub fn misclassified_share(model: &Model, edges: &Edges, format: NormalFormat, v
     wrong as f64 / pairs.max(1) as f64
 }
 
-/// As [`misclassified_share`], of the plane records and the test of [`crate::contour`].
+/// As [`misclassified_share`], of the plane records and the test of [`crate::contour`], folds included.
 ///
 /// # Errors
 /// None that the input could cause; those of [`contour_edges`].
 pub fn misclassified_share_of_planes(model: &Model, edges: &Edges, views: usize) -> Result<f64, OutlineError> {
     let contours = contour_edges(model, edges, &ContourOptions::default())?;
-    let sorted = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
-    let judged: HashMap<[u32; 2], &Edge> = judged(edges).map(|edge| (sorted(edge.ends), edge)).collect();
+    // Two polygons can be folded along one diagonal.
+    let key = |[a, b]: [u32; 2], first_face: u32| (a.min(b), a.max(b), first_face);
+    let judged = judged(edges).chain(&edges.folds);
+    let judged: HashMap<_, &Edge> = judged.map(|edge| (key(edge.ends, edge.faces()[0]), edge)).collect();
     let records: Vec<_> = contours
         .ends
         .iter()
+        .zip(&contours.first_face)
         .zip(&contours.planes)
-        .filter_map(|(&ends, planes)| Some((*judged.get(&sorted(ends))?, planes)))
+        .filter_map(|((&ends, &first), planes)| Some((*judged.get(&key(ends, first))?, planes)))
         .collect();
     let (mut wrong, mut pairs) = (0usize, 0usize);
     for eye in eyes(model, views) {
-        let sides = true_sides(model, eye);
+        let sides = true_sides_with_folds(model, edges, eye);
         let local_eye = contours.local_eye(eye.extend(1.0));
         for (edge, planes) in &records {
             wrong += usize::from(outline_is_silhouette(planes, local_eye) != truly_silhouette(edge, &sides));

@@ -11,8 +11,8 @@ use crate::cpu::{self, CpuOptions};
 use crate::error::HarnessError;
 use crate::image_ink::{ImageInk, Regions};
 use crate::line_truth::{
-    MOST_FACES_MEETING, TrueLines, TrueSegment, accuracy, drawn_centreline, true_lines, true_lines_of_steps,
-    true_meetings,
+    MOST_FACES_MEETING, TrueLines, TrueSegment, accuracy, drawn_centreline, scene_edge, true_lines,
+    true_lines_of_steps, true_meetings,
 };
 use crate::plan::Plan;
 use crate::scene::Scene;
@@ -158,7 +158,7 @@ fn printed_ink(
 fn uncarried_share(scene: &Scene, lines: &TrueLines, plan: &Plan) -> f64 {
     let Some(image) = &plan.image else { return 0.0 };
     let is_uncarried = |segment: &&TrueSegment| {
-        let [first, second] = scene.edges.edges[segment.edge as usize].faces();
+        let [first, second] = scene_edge(scene, segment.edge).faces();
         segment.kind == LineKind::Crease
             && image.face_region.get(first as usize) == image.face_region.get(second as usize)
     };

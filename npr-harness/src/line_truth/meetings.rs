@@ -6,7 +6,7 @@
 use super::{NO_EDGE, Sight, TrueLines, TrueSegment};
 use crate::camera::Camera;
 use crate::scene::Scene;
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 use npr_outline::LineKind;
 
 /// Models with more faces are not searched, for the time it takes.
@@ -23,7 +23,7 @@ struct Meeting {
 ///
 /// None of models with more than [`MOST_FACES_MEETING`] faces.
 pub fn true_meetings(scene: &Scene, camera: &Camera, size: (u32, u32), least_angle_rad: f64) -> TrueLines {
-    let sight = Sight { scene, camera, size_px: DVec2::new(size.0.into(), size.1.into()) };
+    let sight = Sight::new(scene, camera, size);
     let eye = camera.homogeneous_eye();
     let is_sharp = |meeting: &Meeting| {
         let [a, b] = meeting.faces.map(|face| {

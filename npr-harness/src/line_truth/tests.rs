@@ -314,6 +314,29 @@ fn the_reference_draws_the_still_life_as_it_is() {
 }
 
 /// The rims of the solids lie 0.001 above it.
+/// A cube whose sides are warped: of some, a diagonal is the outline.
+#[test]
+fn warped_quads_have_all_of_their_outline() {
+    let mut model = cube();
+    let turn = Mat4::from_rotation_y(60f32.to_radians());
+    for position in model.positions.iter_mut().filter(|position| position.y > 0.0) {
+        *position = turn.transform_point3(*position);
+    }
+    let of_triangles = Scene::new(Model { face_polygon: Vec::new(), ..model.clone() });
+    let scene = Scene::new(model);
+    for (yaw, pitch) in [(0.0, 0.0), (20.0, 10.0), (45.0, 30.0), (200.0, -20.0)] {
+        let camera = framed(&scene, yaw, pitch);
+        let found = measure(&format!("twisted cube {yaw} {pitch}"), &scene, &camera);
+        assert!(found.precision >= 0.99 && found.recall >= 0.999, "{yaw} {pitch}: {found:?}");
+        let silhouettes = |scene: &Scene| -> f64 {
+            let lines = true_lines(scene, &camera, SIZE, CREASE_RAD);
+            let silhouettes = lines.segments.iter().filter(|segment| segment.kind == LineKind::Silhouette);
+            silhouettes.map(|segment| segment.ends_px[0].distance(segment.ends_px[1])).sum()
+        };
+        assert!((silhouettes(&scene) / silhouettes(&of_triangles) - 1.0).abs() < 0.01);
+    }
+}
+
 #[test]
 fn the_ground_seen_from_below_does_not_let_rims_through() {
     let scene = Scene::new(still_life());

@@ -6,18 +6,19 @@ use super::{Edge, EdgeKind, NO_FACE};
 /// Takes pairs of faces of one polygon out of each edge: between those, the edge is a diagonal. Two polygons side by
 /// side can be cut along the same one, which then has four faces and is still no line.
 ///
-/// `further_faces`: sorted by edge, and so left.
+/// `further_faces`: sorted by edge, and so left. Returns the diagonals, each with its two faces.
 pub(super) fn drop_diagonals(
     edges: &mut Vec<Edge>,
     further_faces: &mut Vec<(u32, u32)>,
     faces: &[[u32; 3]],
     representative: &[u32],
     face_polygon: &[u32],
-) {
+) -> Vec<Edge> {
     let polygon = |face: u32| face_polygon[face as usize];
     let mut kept_further = Vec::new();
     let mut further = further_faces.iter().copied().peekable();
     let (mut old_number, mut new_number) = (0, 0);
+    let mut diagonals = Vec::new();
     edges.retain_mut(|edge| {
         let number = old_number;
         old_number += 1;
@@ -25,26 +26,32 @@ pub(super) fn drop_diagonals(
         if edge.kind() != EdgeKind::NonManifold {
             let diagonal = second != NO_FACE && first != second && polygon(first) == polygon(second);
             new_number += u32::from(!diagonal);
+            if diagonal {
+                diagonals.push(*edge);
+            }
             return !diagonal;
         }
         let mut all = vec![first, second];
         all.extend(std::iter::from_fn(|| further.next_if(|f| f.0 == number)).map(|(_, face)| face));
-        let before = all.len();
-        let left = without_pairs(&all, polygon);
+        let (low, high) = (edge.ends[0].min(edge.ends[1]), edge.ends[0].max(edge.ends[1]));
+        let edge_between = |met: &[u32]| {
+            let run = |&face: &u32| (face, runs_over(faces, representative, face, low, high));
+            edge_of(low, high, &met.iter().map(run).collect::<Vec<_>>())
+        };
+        let (left, pairs) = without_pairs(&all, polygon);
+        diagonals.extend(pairs.iter().map(|pair| edge_between(pair)));
         if left.is_empty() {
             return false;
         }
-        if left.len() < before {
-            let (low, high) = (edge.ends[0].min(edge.ends[1]), edge.ends[0].max(edge.ends[1]));
-            let met: Vec<(u32, bool)> =
-                left.iter().map(|&face| (face, runs_over(faces, representative, face, low, high))).collect();
-            *edge = edge_of(low, high, &met);
+        if !pairs.is_empty() {
+            *edge = edge_between(&left);
         }
         kept_further.extend(left.iter().skip(2).map(|&face| (new_number, face)));
         new_number += 1;
         true
     });
     *further_faces = kept_further;
+    diagonals
 }
 
 /// Whether the face runs over the edge in this direction.
@@ -53,20 +60,21 @@ fn runs_over(faces: &[[u32; 3]], representative: &[u32], face: u32, from: u32, t
     [(a, b), (b, c), (c, a)].contains(&(from, to))
 }
 
-/// What is left of ascending faces when two different ones of a polygon go, and again as long as there are two.
-fn without_pairs(faces: &[u32], polygon: impl Fn(u32) -> u32) -> Vec<u32> {
-    let mut left = Vec::new();
+/// What is left of ascending faces when two different ones of a polygon go, and again as long as there are two; and the
+/// pairs.
+fn without_pairs(faces: &[u32], polygon: impl Fn(u32) -> u32) -> (Vec<u32>, Vec<[u32; 2]>) {
+    let (mut left, mut pairs) = (Vec::new(), Vec::new());
     // A polygon's faces stand next to each other.
     for of_polygon in faces.chunk_by(|&a, &b| polygon(a) == polygon(b)) {
         // From here on one face, as often as it runs over the edge.
         let begin = left.len();
         for &face in of_polygon {
             if left.get(begin).is_some_and(|waiting| *waiting != face) {
-                left.remove(begin);
+                pairs.push([left.remove(begin), face]);
             } else {
                 left.push(face);
             }
         }
     }
-    left
+    (left, pairs)
 }

@@ -16,6 +16,11 @@ pub fn face_normals(positions: &[Vec3], faces: &[[u32; 3]], face_polygon: &[u32]
     normals
 }
 
+/// The unit normal of one face by itself, computed in f64; zero where its area is zero.
+pub fn triangle_normal(positions: &[Vec3], face: &[u32; 3]) -> Vec3 {
+    unit_or_zero(area_vector(positions, face))
+}
+
 /// In blocks: all vectors first, then all lengths, so that no square root waits for the next face's corners. On a
 /// million faces this takes two thirds of the time of one face after the other.
 fn triangle_normals(positions: &[Vec3], faces: &[[u32; 3]]) -> Vec<Vec3> {

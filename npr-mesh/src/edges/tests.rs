@@ -57,6 +57,40 @@ fn a_warped_quad_has_one_normal() {
 }
 
 #[test]
+fn the_diagonals_of_a_polygon_are_folds_where_it_is_warped() {
+    let lifted = |z: f32| [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, z), Vec3::Y];
+    let folds = |positions: &[Vec3], faces: &[[u32; 3]], fold_rad: f32| {
+        let polygons = vec![3; faces.len()];
+        let options = EdgeOptions { fold_rad, ..Default::default() };
+        let found = find(positions, faces, &polygons, &[], &options);
+        assert_eq!(count(&found, EdgeKind::Boundary), found.edges.len());
+        found.folds.iter().map(|fold| (sorted(fold.ends), fold.faces())).collect::<Vec<_>>()
+    };
+    let quad = [[0, 1, 3], [1, 2, 3]];
+    // With the corner lifted by z the normals are Z and (-z, -z, 1).
+    let turn_rad = |z: f32| (z * 2f32.sqrt()).atan();
+    for z in [0.01, 0.03, 0.4, 20.0] {
+        assert_eq!(folds(&lifted(z), &quad, 1.01 * turn_rad(z)), [], "{z}");
+        assert_eq!(folds(&lifted(z), &quad, 0.99 * turn_rad(z)), [([1, 3], [0, 1])], "{z}");
+    }
+    assert_eq!(folds(&lifted(0.0), &quad, 0.0), []);
+    // All of a polygon's, flat ones too.
+    let five = [lifted(0.4).as_slice(), &[Vec3::new(-1.0, 0.5, 0.0)]].concat();
+    let faces = [[0, 1, 3], [1, 2, 3], [3, 4, 0]];
+    assert_eq!(folds(&five, &faces, FOLD_RAD), [([1, 3], [0, 1]), ([0, 3], [0, 2])]);
+}
+
+#[test]
+fn a_flat_outline_that_crosses_itself_has_no_folds() {
+    // A bow: the second triangle lies with its back up.
+    let positions = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::new(0.8, 0.9, 0.0)];
+    let found = find(&positions, &[[0, 1, 2], [0, 2, 3]], &[0, 0], &[], &EdgeOptions::default());
+    let back = |face: &[u32; 3]| triangle_normal(&positions, face).z;
+    assert_eq!((back(&[0, 1, 2]), back(&[0, 2, 3])), (1.0, -1.0));
+    assert_eq!(found.folds, []);
+}
+
+#[test]
 fn a_diagonal_that_two_polygons_share_is_no_line() {
     // A roof of two quads over the corners 0 and 2, both cut along 0-2.
     let positions = [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0), Vec3::Y, Vec3::new(0.0, 1.0, 1.0)];

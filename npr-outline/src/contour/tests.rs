@@ -204,6 +204,65 @@ fn a_sliver_between_two_faces_passes_silhouette_and_crease_on() {
     assert!(along_ridge(lines_of_kind(&contours, point(DVec3::Y * 9.0), LineKind::Crease)));
 }
 
+/// A cube whose top is turned by 40° against its bottom, which warps its sides.
+fn twisted_cube() -> Model {
+    let mut model = embedded::cube();
+    let turn = Mat4::from_rotation_y(40f32.to_radians());
+    for position in model.positions.iter_mut().filter(|position| position.y > 0.0) {
+        *position = turn.transform_point3(*position);
+    }
+    model
+}
+
+#[test]
+fn the_contour_of_warped_quads_is_that_of_their_triangles() {
+    let model = twisted_cube();
+    let triangles = Model { face_polygon: Vec::new(), ..model.clone() };
+    let (by_quads, by_triangles) = (contours_of(&model, &NO_CREASES), contours_of(&triangles, &NO_CREASES));
+    assert_eq!(edges_of(&model).folds.len(), 4);
+    let mut along_folds = 0;
+    for (i, direction) in crate::normal_format::fibonacci_sphere(500).enumerate() {
+        let eye = point(direction * (2.0 + 0.02 * i as f64));
+        for eye in [eye, direction.extend(0.0)] {
+            let lines = lines_of_kind(&by_quads, eye, LineKind::Silhouette);
+            assert_eq!(lines, lines_of_kind(&by_triangles, eye, LineKind::Silhouette), "{eye}");
+            assert!(all_loops_closed(&by_quads, eye));
+            along_folds += edges_of(&model).folds.iter().filter(|fold| lines.contains(&sorted(fold.ends))).count();
+        }
+    }
+    assert!(along_folds > 100, "{along_folds}");
+}
+
+#[test]
+fn a_fold_is_no_crease_however_sharp() {
+    let model = twisted_cube();
+    let edges = edges_of(&model);
+    for crease_angle_rad in [0.0, 0.3, 3.0] {
+        let contours = contours_of(&model, &smooth(crease_angle_rad));
+        assert!(contours.always <= edges.edges.len());
+        for fold in &edges.folds {
+            assert!(!contours.ends[..contours.always].contains(&fold.ends));
+        }
+    }
+    // The quads' own edges are creases or not by the normal of the whole quad.
+    assert_eq!(contours_of(&model, &smooth(1.2)).always, 12);
+}
+
+#[test]
+fn a_warped_quad_wound_the_other_way_changes_nothing() {
+    let model = twisted_cube();
+    for polygon in 0..6 {
+        let mut turned = model.clone();
+        turned.faces[2 * polygon..2 * polygon + 2].iter_mut().for_each(|face| face.swap(1, 2));
+        let (expected, found) = (contours_of(&model, &NO_CREASES), contours_of(&turned, &NO_CREASES));
+        for direction in crate::normal_format::fibonacci_sphere(100) {
+            let eye = point(4.0 * direction);
+            let of = |contours| lines_of_kind(contours, eye, LineKind::Silhouette);
+            assert_eq!(of(&found), of(&expected), "polygon {polygon}, {eye}");
+        }
+    }
+}
+
 #[test]
 fn a_parallel_view_is_the_limit_of_a_distant_eye() {
     for model in [embedded::sphere(24), embedded::torus(1.0, 0.4, 32, 16)] {

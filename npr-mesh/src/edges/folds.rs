@@ -1,0 +1,32 @@
+//! Polygons that are not flat.
+
+use super::Edge;
+use super::triangle_normal;
+use glam::Vec3;
+use std::f32::consts::PI;
+
+/// Leaves of the diagonals of all polygons those of folded ones: of polygons that turn by more than `fold_rad` at one
+/// of theirs.
+///
+/// A face of zero area has no normal and folds nothing. Where an outline crosses itself there are triangles that lie with
+/// their backs up in the plane of the others: that is no fold, either, unless it is one by the same measure.
+pub(super) fn keep_folded(
+    diagonals: &mut Vec<Edge>,
+    positions: &[Vec3],
+    faces: &[[u32; 3]],
+    face_polygon: &[u32],
+    fold_rad: f32,
+) {
+    let turns = |edge: &&Edge| {
+        let [n0, n1] = edge.faces().map(|face| triangle_normal(positions, &faces[face as usize]));
+        // Well conditioned at any angle, and 0 where there is no normal.
+        let turn_rad = n0.cross(n1).length().atan2(n0.dot(n1));
+        turn_rad > fold_rad && turn_rad < PI - fold_rad
+    };
+    let polygon = |edge: &Edge| face_polygon[edge.faces()[0] as usize];
+    let mut folded: Vec<u32> = diagonals.iter().filter(turns).map(polygon).collect();
+    folded.sort_unstable();
+    folded.dedup();
+    diagonals.retain(|edge| folded.binary_search(&polygon(edge)).is_ok());
+    diagonals.shrink_to_fit();
+}
