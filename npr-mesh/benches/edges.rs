@@ -63,4 +63,8 @@ fn main() {
     bench(name, &model, 30);
     let fine = subdivide_midpoint(&subdivide_midpoint(&model));
     bench(&format!("{name}, subdivided twice"), &fine, 7);
+    // In steps of a prime that is no divisor of their number.
+    let count = fine.faces.len() as u64;
+    let shuffled = (0..count).map(|i| fine.faces[(i * 2_654_435_761 % count) as usize]).collect();
+    bench("the same, faces shuffled", &Model { faces: shuffled, ..fine }, 5);
 }

@@ -189,11 +189,12 @@ impl Edges {
 /// - `face_polygon`: as [`crate::Model::face_polygon`], empty or per face.
 /// - `face_material`: per face, or empty where materials do not matter.
 ///
-/// The edges come in the order in which the faces show them, and each one's faces in ascending order.
+/// The edges are sorted by their lower ends, those of one by their upper ends, and each one's faces come in ascending
+/// order.
 ///
-/// Memory: 16 bytes an edge and a fold, 12 a face and 4 a vertex for what is returned; on the way 12 bytes a vertex, the weld's (at
-/// most 24 a vertex), and 20 bytes for each face that is too much at its edge. At most `3 * faces.len()` edges. Linear
-/// in faces and vertices; n log n in the faces around vertices where many separate patches of faces meet.
+/// Memory: 16 bytes an edge and a fold, 12 a face and 4 a vertex for what is returned; on the way the weld's, at most 24
+/// bytes a vertex, and then 24 bytes a face and 4 a vertex. At most `3 * faces.len()` edges. Linear in faces and vertices;
+/// n log n in the faces around a vertex that has many.
 ///
 /// # Panics
 /// If a face names a vertex that is not there, a per-face array has another length than stated, or there are more than
