@@ -196,11 +196,11 @@ fn gather(low: u32, sides: &mut [Side], found: &mut Unique, corners: impl Fn(u32
         found.edges.push(edge_of(low, high, &met));
         found.further_faces.extend(met.iter().skip(2).map(|&(face, _)| (number, face)));
         if met.len() > 1 {
-            // Of each set of corners at an edge, all faces but the first are redundant.
+            // Of each set of corners at an edge, all faces but the first are redundant; and a face that is there twice, which
+            // has two corners at one place.
             crowd.clear();
             crowd.extend(met.iter().map(|&(face, _)| (ascending(corners(face)), face)));
             crowd.sort_unstable();
-            crowd.dedup();
             let twins = crowd.windows(2).filter(|pair| pair[0].0 == pair[1].0);
             found.redundant.extend(twins.map(|pair| pair[1].1));
         }
