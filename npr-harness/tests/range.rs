@@ -19,15 +19,16 @@ fn picture(executor: &Drawing<'_>, scene: &Scene, style: &Style, fov_y_rad: Opti
     let framing = Framing { fov_y_rad, ..Framing::default() };
     let camera = Camera::framed(scene.corners(), f64::from(SIZE.0) / f64::from(SIZE.1), &framing);
     let plan = Plan::new(scene, style, &camera).expect("a good style");
-    #[cfg(feature = "gpu")]
-    if let Drawing::Device(renderer, _) = executor {
-        let targets = renderer.targets(SIZE.0, SIZE.1).expect("targets");
-        let uploaded = renderer.upload(scene, &plan, Default::default()).expect("an upload");
-        renderer.draw(scene, &uploaded, style, &plan, &camera, &targets).expect("drawn");
-        return renderer.read(&targets).expect("a picture");
+    match executor {
+        Drawing::Rays(executor) => executor.render(scene, style, &plan, &camera, SIZE, 1, &|_| {}).expect("a picture"),
+        #[cfg(feature = "gpu")]
+        Drawing::Device(renderer, _) => {
+            let targets = renderer.targets(SIZE.0, SIZE.1).expect("targets");
+            let uploaded = renderer.upload(scene, &plan, Default::default()).expect("an upload");
+            renderer.draw(scene, &uploaded, style, &plan, &camera, &targets).expect("drawn");
+            renderer.read(&targets).expect("a picture")
+        }
     }
-    let Drawing::Rays(executor) = executor else { unreachable!("the device has drawn") };
-    executor.render(scene, style, &plan, &camera, SIZE, 1, &|_| {}).expect("a picture")
 }
 
 /// An executor that keeps its pipelines from picture to picture.

@@ -12,12 +12,14 @@ use std::sync::atomic::{AtomicU32, Ordering};
 /// # Panics
 /// If `NPR_GPU=required` and there is no adapter.
 pub fn device() -> Option<Executor> {
-    let executor = Executor::choose(Backend::Auto).unwrap_or_else(|error| panic!("{error}"));
-    if let Executor::Cpu { why } = &executor {
-        println!("skipped: {}", why.as_deref().unwrap_or("no device"));
-        return None;
+    match Executor::choose(Backend::Auto).unwrap_or_else(|error| panic!("{error}")) {
+        Executor::Cpu { why } => {
+            println!("skipped: {}", why.as_deref().unwrap_or("no device"));
+            None
+        }
+        #[cfg(feature = "gpu")]
+        executor => Some(executor),
     }
-    Some(executor)
 }
 
 /// A fresh folder that goes when the test is over.
