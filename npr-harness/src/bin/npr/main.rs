@@ -323,15 +323,19 @@ fn run_render(options: &Render) -> Result<bool, HarnessError> {
             json!({
                 "input": options.input, "output": options.output, "style": style.name,
                 "width": width, "height": height, "executor": executor.describe(),
-                "faces": scene.model.faces.len(), "edges": scene.edges.edges.len(),
+                "faces": scene.model.faces.len(), "edges": scene.edges.edges.len(), "folds": scene.edges.folds.len(),
                 "lines": {"silhouette": counts[0], "boundary": counts[1], "crease": counts[2], "material_border": counts[3]},
                 "load_ms": loaded_ms, "prepare_ms": prepared_ms, "render_ms": drawn_ms,
                 "passes": passes, "left_out": left_out, "warnings": warnings,
             })
         );
     } else {
+        let folds = match scene.edges.folds.len() {
+            0 => String::new(),
+            folds => format!(" and {folds} folds of polygons"),
+        };
         println!(
-            "{}: {width} × {height} px, {} faces, {} lines of {} edges, {:.0} ms to load, {:.0} ms to prepare, {:.0} ms to render, on {}",
+            "{}: {width} × {height} px, {} faces, {} lines of {} edges{folds}, {:.0} ms to load, {:.0} ms to prepare, {:.0} ms to render, on {}",
             options.output.display(),
             scene.model.faces.len(),
             counts.iter().sum::<usize>(),
