@@ -7,17 +7,18 @@
 //!
 //! Boundaries and non-manifold edges always, two-face edges where exactly one face is turned towards the eye or where
 //! the surface turns by more than the crease angle. As for drawing ([`npr_outline::contour`]): a polygon is classified
-//! by its Newell normal through the mean of its corners, but the triangles of a folded one by their own where the question
-//! is which way they are turned, and then the folds between them can be silhouettes; a face wound oppositely is turned round, a face of zero area
+//! by its Newell normal through the mean of its corners, a face wound oppositely is turned round, a face of zero area
 //! has the plane of its neighbour over its longest edge, and a face seen exactly edge-on is turned towards the eye.
+//! Which way the triangles of a folded polygon are turned, their own normals say, so that the folds between them can be
+//! silhouettes; creases they are not.
 //!
 //! # What counts as seen
 //!
 //! A point of an edge is seen when nothing solid lies between it and the eye (in a parallel view: the near plane).
-//! Left out are the edge's own faces, with the other triangles of their polygons, but of folded ones: they touch the ray at the point
-//! itself, and where one is seen edge-on even the rounding of the point puts it in front or behind. So is all that is
-//! nearer to the point than [`BEHIND`] of its distance. The other faces around the edge's ends count: at a
-//! cusp they are what hides the line.
+//! Left out are the edge's own faces, with the other triangles of their polygons if those are not folded: they touch the
+//! ray at the point itself, and where one is seen edge-on even the rounding of the point puts it in front or behind. So
+//! is all that is nearer to the point than [`BEHIND`] of its distance. The other faces around the edge's ends count: at
+//! a cusp they are what hides the line.
 //!
 //! Solid is what hides in a picture: not a blended face, and not the back of a single-sided one. Faces cut out by alpha
 //! count as whole. An edge is seen or hidden whatever its own faces are made of.

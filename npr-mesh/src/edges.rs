@@ -137,8 +137,8 @@ pub struct Edges {
     pub further_faces: Vec<(u32, u32)>,
     /// Per face whether it was left out as redundant; empty if none was.
     pub skipped: Vec<bool>,
-    /// The diagonals of folded polygons, each with its two triangles. Apart from
-    /// [`Edges::edges`]: for counting what a file holds they are no edges, and for drawing they are silhouettes or nothing.
+    /// The diagonals of folded polygons, each with its two triangles. Apart from [`Edges::edges`]: for counting what a
+    /// file holds they are no edges, and for drawing they are silhouettes or nothing.
     pub folds: Vec<Edge>,
 }
 

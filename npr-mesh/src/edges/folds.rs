@@ -8,8 +8,8 @@ use std::f32::consts::PI;
 /// Leaves of the diagonals of all polygons those of folded ones: of polygons that turn by more than `fold_rad` at one
 /// of theirs.
 ///
-/// A face of zero area has no normal and folds nothing. Where an outline crosses itself there are triangles that lie with
-/// their backs up in the plane of the others: that is no fold, either, unless it is one by the same measure.
+/// A face of zero area has no normal and folds nothing. Where a flat outline crosses itself there are triangles with
+/// their backs up in the plane of the others: they fold nothing, either.
 pub(super) fn keep_folded(
     diagonals: &mut Vec<Edge>,
     positions: &[Vec3],
