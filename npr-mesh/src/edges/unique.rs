@@ -74,9 +74,9 @@ fn search(
     skipped: impl Fn(u32) -> bool,
     corners: impl Fn([u32; 3]) -> [u32; 3],
 ) -> Unique {
-    // How many sides have each vertex as their lower end, then where those of the next vertex begin, in the end where its
-    // own do.
-    let mut starts = vec![0u32; vertices + 1];
+    // How many sides have each vertex as their lower end, then where those begin, in the end where those of the next
+    // vertex do.
+    let mut starts = vec![0u32; vertices];
     for (number, &face) in (0u32..).zip(faces) {
         if !skipped(number) {
             let [low, middle, _] = ascending(corners(face));
@@ -86,14 +86,11 @@ fn search(
     }
     let mut total = 0;
     for start in &mut starts {
-        total += *start;
-        *start = total;
+        total += std::mem::replace(start, total);
     }
     let mut sides = vec![0; total as usize];
     let mut redundant = Vec::new();
-    // From the last face to the first, so that each vertex's come in the order of the faces.
-    for (number, &face) in faces.iter().enumerate().rev() {
-        let number = number as u32;
+    for (number, &face) in (0u32..).zip(faces) {
         if skipped(number) {
             continue;
         }
@@ -105,19 +102,21 @@ fn search(
         // Whether it runs from the lowest corner to the middle one and on to the highest.
         let up = u32::from(a < b) + u32::from(b < c) + u32::from(c < a) == 2;
         let start = &mut starts[low as usize];
-        *start -= 2;
         let at = *start as usize;
+        *start += 2;
         sides[at..at + 2].copy_from_slice(&[side(middle, number, up), side(high, number, !up)]);
         let start = &mut starts[middle as usize];
-        *start -= 1;
         sides[*start as usize] = side(high, number, up);
+        *start += 1;
     }
 
     // A closed surface has three edges for two faces.
     let edges = Vec::with_capacity(faces.len() + faces.len() / 2 + faces.len() / 32 + 16);
     let mut found = Unique { edges, further_faces: Vec::new(), redundant };
-    for (low, range) in (0u32..).zip(starts.windows(2)) {
-        let sides = &mut sides[range[0] as usize..range[1] as usize];
+    let mut begin = 0;
+    for (low, end) in (0u32..).zip(starts) {
+        let sides = &mut sides[begin..end as usize];
+        begin = end as usize;
         if !pair(low, sides, &mut found) {
             gather(low, sides, &mut found, |face| corners(faces[face as usize]));
         }
