@@ -23,8 +23,9 @@ const DEVICE_BYTES: u64 = 48;
 /// Per pixel of ink found in the image: texels 8, depth 4, ink and brush.
 const INK_BYTES: u64 = 20;
 
-/// On a device per pixel of the picture, and of the ink where that has another size: depth and the stencil of shadows.
-const STENCIL_BYTES: u64 = 8;
+/// On a device per pixel of the picture, and of the ink where that has another size: depth, the stencil of shadows, and
+/// the mask that is made of it.
+const STENCIL_BYTES: u64 = 9;
 
 /// About how many bytes of memory a picture takes while it is made, besides the scene: as a rule a little less.
 /// A software adapter's memory is the machine's, too.

@@ -48,7 +48,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let adapter = pollster::block_on(instance.request_adapter(&Default::default()))?;
     let (device, queue) = pollster::block_on(adapter.request_device(&Default::default()))?;
     let tam = draw(&TamParameters::default(), None)?.tam;
-    let map = upload_tam(&device, &queue, &tam)?;
+    let map = upload_tam(&device, &queue, &tam, Default::default())?;
     // The libraries, the tones that this map has, and what uses them.
     let [a, b, c, d, e, f] = tam.tones[..] else { return Err("the map has six tones".into()) };
     let tones =

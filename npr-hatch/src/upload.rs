@@ -1,9 +1,21 @@
 //! Maps as textures on wgpu, for `LOOKUP_WGSL`.
 
 use crate::{HatchError, Tam, Thresholds};
+use half::f16;
 use wgpu::util::{DeviceExt, TextureDataOrder};
 
-/// A map of six tones as the two textures that listing 5 reads, `Rgba8Unorm` with all levels.
+/// What a channel of a map's textures is stored in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum TamChannels {
+    /// `Rgba8Unorm`: the map's own bytes.
+    #[default]
+    Bytes,
+    /// `Rgba16Float`, twice the memory: the same numbers, which software rasterisers filter in floating point, while they
+    /// filter bytes in 8 bits and err by up to 2 of 255.
+    HalfFloats,
+}
+
+/// A map of six tones as the two textures that listing 5 reads, with all levels.
 #[derive(Clone, Debug)]
 pub struct TamOnDevice {
     /// The three lighter tones, in red, green and blue.
@@ -16,23 +28,37 @@ pub struct TamOnDevice {
 ///
 /// # Errors
 /// [`HatchError::PackTones`], [`HatchError::TooLarge`], and those of [`Tam::validate`].
-pub fn upload_tam(device: &wgpu::Device, queue: &wgpu::Queue, tam: &Tam) -> Result<TamOnDevice, HatchError> {
+pub fn upload_tam(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    tam: &Tam,
+    channels: TamChannels,
+) -> Result<TamOnDevice, HatchError> {
     tam.validate()?;
     let mut texels = [Vec::new(), Vec::new()];
     for level in 0..tam.levels() {
         for (texels, packed) in texels.iter_mut().zip(tam.pack_tones(level)?) {
-            texels.extend(packed.iter().flat_map(|&[r, g, b]| [r, g, b, 255]));
+            let bytes = packed.iter().flat_map(|&[r, g, b]| [r, g, b, 255]);
+            match channels {
+                TamChannels::Bytes => texels.extend(bytes),
+                TamChannels::HalfFloats => {
+                    texels.extend(bytes.flat_map(|byte| f16::from_f32(f32::from(byte) / 255.0).to_le_bytes()));
+                }
+            }
         }
     }
     let [light, dark] = texels;
-    let format = wgpu::TextureFormat::Rgba8Unorm;
+    let format = match channels {
+        TamChannels::Bytes => wgpu::TextureFormat::Rgba8Unorm,
+        TamChannels::HalfFloats => wgpu::TextureFormat::Rgba16Float,
+    };
     Ok(TamOnDevice {
         light: upload(device, queue, "the lighter tones", tam.side, format, &light)?,
         dark: upload(device, queue, "the darker tones", tam.side, format, &dark)?,
     })
 }
 
-/// Uploads thresholds as `R16Uint` with all levels.
+/// Uploads thresholds as `Rg8Unorm` with all levels: the higher byte of each in red, the lower in green.
 ///
 /// # Errors
 /// [`HatchError::TooLarge`], [`HatchError::ImageSize`].
@@ -47,8 +73,8 @@ pub fn upload_thresholds(
             return Err(HatchError::ImageSize { image: level, texels: texels.len(), expected });
         }
     }
-    let bytes: Vec<u8> = map.levels.iter().flatten().flat_map(|threshold| threshold.to_le_bytes()).collect();
-    upload(device, queue, "thresholds", map.side, wgpu::TextureFormat::R16Uint, &bytes)
+    let bytes: Vec<u8> = map.levels.iter().flatten().flat_map(|threshold| threshold.to_be_bytes()).collect();
+    upload(device, queue, "thresholds", map.side, wgpu::TextureFormat::Rg8Unorm, &bytes)
 }
 
 /// What `hatch_texels` reads a map of six tones with: it repeats, and filters texels and levels.
@@ -62,6 +88,11 @@ pub fn hatch_sampler(device: &wgpu::Device) -> wgpu::Sampler {
         mipmap_filter: wgpu::MipmapFilterMode::Linear,
         ..Default::default()
     })
+}
+
+/// What `hatch_ink` reads thresholds with: it takes the nearest texel of the nearest level.
+pub fn hatch_threshold_sampler(device: &wgpu::Device) -> wgpu::Sampler {
+    device.create_sampler(&wgpu::SamplerDescriptor { label: Some("thresholds"), ..Default::default() })
 }
 
 fn upload(

@@ -95,7 +95,8 @@ fn lookups_serve_a_fragment_shader() {
         @group(0) @binding(0) var lighter: texture_2d<f32>;
         @group(0) @binding(1) var darker: texture_2d<f32>;
         @group(0) @binding(2) var trilinear: sampler;
-        @group(0) @binding(3) var thresholds: texture_2d<u32>;
+        @group(0) @binding(3) var thresholds: texture_2d<f32>;
+        @group(0) @binding(4) var nearest: sampler;
         @fragment
         fn hatched(@location(0) tone: f32, @location(1) uv: vec2<f32>) -> @location(0) vec4<f32> {
             let footprint = hatch_footprint(dpdx(uv), dpdy(uv), 256.0, 8.0);
@@ -105,7 +106,7 @@ fn lookups_serve_a_fragment_shader() {
         @fragment
         fn fine(@location(0) tone: f32, @location(1) uv: vec2<f32>) -> @location(0) vec4<f32> {
             let footprint = hatch_footprint(dpdx(uv), dpdy(uv), 256.0, 8.0);
-            return vec4(1.0 - hatch_ink(thresholds, uv, footprint, tone, 0.05));
+            return vec4(1.0 - hatch_ink(thresholds, nearest, uv, footprint, tone, 0.05));
         }";
     assert_eq!(validated(&[WGSL, LOOKUP_WGSL, shader].concat()).entry_points.len(), 2);
 }

@@ -27,7 +27,7 @@
 //! to be measured against. [`normal_format`] has their face normals in f32, i16, i8 and octahedral records.
 //!
 //! Seen from a light, the same edges bound the model's shadows: [`shadow_volume`], which `shadow_pass` counts in a stencil
-//! buffer.
+//! buffer, and `shadow_mask` turns the counts into a texture that every device can read.
 //!
 //! Formulas stand here twice, in Rust (f64, the reference) and in WGSL under the same names.
 //!
@@ -52,6 +52,8 @@ pub mod line_pass;
 pub mod line_strokes;
 pub mod normal_format;
 pub mod segment;
+#[cfg(feature = "wgpu")]
+pub mod shadow_mask;
 #[cfg(feature = "wgpu")]
 pub mod shadow_pass;
 pub mod shadow_volume;

@@ -2,12 +2,17 @@
 
 @group(0) @binding(0) var<uniform> view: OutlineView;
 
-@group(1) @binding(0) var scene_depth: texture_depth_2d;
+// A depth buffer, bound as floats and read through a sampler: GLSL cannot load single texels of a depth texture, and in
+// GLSL ES 3.00 such a texture is complete only with a sampler that does not filter.
+@group(1) @binding(0) var scene_depth: texture_2d<f32>;
 // The picture without lines.
 @group(1) @binding(1) var painted: texture_2d<f32>;
+// Nearest, clamped to the edge.
+@group(1) @binding(2) var nearest: sampler;
 
+// The depth at a pixel; outside the picture that of its border.
 fn ink_depth(pixel: vec2<i32>) -> f32 {
-    return textureLoad(scene_depth, clamp(pixel, vec2<i32>(0), vec2<i32>(view.viewport_px) - 1), 0);
+    return textureSampleLevel(scene_depth, nearest, (vec2<f32>(pixel) + 0.5) / view.viewport_px, 0.0).x;
 }
 
 // Whether the surface around a line's point is in front of it by more than rounding and its own bends explain.

@@ -120,6 +120,7 @@ pub struct LineTargets<'a> {
 pub struct LinePass {
     view_layout: wgpu::BindGroupLayout,
     picture_layout: wgpu::BindGroupLayout,
+    nearest: wgpu::Sampler,
     record_pipeline: wgpu::RenderPipeline,
     on_device: Option<OnDevicePipelines>,
 }
@@ -155,26 +156,24 @@ impl LinePass {
         let layout = |label, entries: &[wgpu::BindGroupLayoutEntry]| {
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
         };
-        let all_stages = wgpu::ShaderStages::VERTEX | wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE;
-        let view_layout = layout("outline view", &[buffer_entry(0, all_stages, wgpu::BufferBindingType::Uniform)]);
-        let unfilterable = wgpu::TextureSampleType::Float { filterable: false };
-        let picture_layout = layout(
-            "outline picture",
-            &[texture_entry(0, wgpu::TextureSampleType::Depth), texture_entry(1, unfilterable)],
-        );
-        let pipeline = |module: &wgpu::ShaderModule, vertex: (&str, &wgpu::VertexBufferLayout<'_>), pulled: &[_]| {
-            let groups = [&[Some(&view_layout), Some(&picture_layout)], pulled].concat();
-            line_pipeline(device, module, vertex, &groups, color_format)
-        };
+        let mut stages = wgpu::ShaderStages::VERTEX_FRAGMENT;
+        stages.set(wgpu::ShaderStages::COMPUTE, on_device);
+        let view_layout = layout("outline view", &[buffer_entry(0, stages, wgpu::BufferBindingType::Uniform)]);
+        let picture_layout = picture_layout(device, wgpu::ShaderStages::FRAGMENT);
+        let pipeline =
+            |module: &wgpu::ShaderModule, vertex: (&str, &wgpu::VertexBufferLayout<'_>), pulled: Option<&_>| {
+                let groups = [Some(&view_layout), Some(&picture_layout), pulled];
+                line_pipeline(device, module, vertex, &groups[..2 + usize::from(pulled.is_some())], color_format)
+            };
         let module = shader(device, "outline lines", &[WGSL, INK_WGSL, PASS_WGSL]);
-        let record_pipeline = pipeline(&module, ("vs_record", &RECORD_LAYOUT), &[]);
-        let read = wgpu::BufferBindingType::Storage { read_only: true };
-        let vertex = wgpu::ShaderStages::VERTEX;
-        let pulled_layout = layout(
-            "outline edges",
-            &[buffer_entry(0, vertex, read), buffer_entry(1, vertex, read), buffer_entry(2, vertex, read)],
-        );
+        let record_pipeline = pipeline(&module, ("vs_record", &RECORD_LAYOUT), None);
         let on_device = on_device.then(|| {
+            let read = wgpu::BufferBindingType::Storage { read_only: true };
+            let vertex = wgpu::ShaderStages::VERTEX;
+            let pulled_layout = layout(
+                "outline edges",
+                &[buffer_entry(0, vertex, read), buffer_entry(1, vertex, read), buffer_entry(2, vertex, read)],
+            );
             let write = wgpu::BufferBindingType::Storage { read_only: false };
             let compute = wgpu::ShaderStages::COMPUTE;
             let compaction_layout = layout(
@@ -182,7 +181,7 @@ impl LinePass {
                 &[buffer_entry(0, compute, read), buffer_entry(1, compute, write), buffer_entry(2, compute, write)],
             );
             let module = shader(device, "outline pulled lines", &[WGSL, INK_WGSL, PASS_WGSL, PULLED_WGSL]);
-            let pulled_pipeline = pipeline(&module, ("vs_pulled", &EDGE_NUMBER_LAYOUT), &[Some(&pulled_layout)]);
+            let pulled_pipeline = pipeline(&module, ("vs_pulled", &EDGE_NUMBER_LAYOUT), Some(&pulled_layout));
             let compaction = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
                 label: Some("outline compaction"),
                 layout: Some(&device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -195,9 +194,9 @@ impl LinePass {
                 compilation_options: Default::default(),
                 cache: None,
             });
-            OnDevicePipelines { pulled_layout: pulled_layout.clone(), compaction_layout, compaction, pulled_pipeline }
+            OnDevicePipelines { pulled_layout, compaction_layout, compaction, pulled_pipeline }
         });
-        Self { view_layout, picture_layout, record_pipeline, on_device }
+        Self { view_layout, picture_layout, nearest: nearest_sampler(device), record_pipeline, on_device }
     }
 
     /// Sends a model's edges to the device: 52 bytes an edge and 12 a position.
@@ -286,8 +285,7 @@ impl LinePass {
         let uniform = filled_buffer(device, "outline view", bytemuck::bytes_of(&uniform), wgpu::BufferUsages::UNIFORM);
         let group = |layout, resources: &[_]| bind_group(device, "outline", layout, resources);
         let view_group = group(&self.view_layout, &[uniform.as_entire_binding()]);
-        let picture = [targets.depth, targets.painted].map(wgpu::BindingResource::TextureView);
-        let picture_group = group(&self.picture_layout, &picture);
+        let picture_group = picture_group(device, &self.picture_layout, targets.depth, targets.painted, &self.nearest);
         let records = match source {
             LineSource::Records([]) => None,
             LineSource::Records(records) => {
@@ -442,17 +440,40 @@ pub(crate) fn buffer_entry(
     wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None }
 }
 
-pub(crate) fn texture_entry(binding: u32, sample_type: wgpu::TextureSampleType) -> wgpu::BindGroupLayoutEntry {
-    wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE,
-        ty: wgpu::BindingType::Texture {
-            sample_type,
-            view_dimension: wgpu::TextureViewDimension::D2,
-            multisampled: false,
-        },
-        count: None,
-    }
+/// Group 1 of `line_ink.wgsl`: depth and picture, read texel by texel, and the sampler for depth.
+pub(crate) fn picture_layout(device: &wgpu::Device, visibility: wgpu::ShaderStages) -> wgpu::BindGroupLayout {
+    let texture = wgpu::BindingType::Texture {
+        sample_type: wgpu::TextureSampleType::Float { filterable: false },
+        view_dimension: wgpu::TextureViewDimension::D2,
+        multisampled: false,
+    };
+    let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::NonFiltering);
+    let entry = |binding, ty| wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None };
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("outline picture"),
+        entries: &[entry(0, texture), entry(1, texture), entry(2, sampler)],
+    })
+}
+
+/// What [`picture_layout`] is for.
+pub(crate) fn picture_group(
+    device: &wgpu::Device,
+    layout: &wgpu::BindGroupLayout,
+    depth: &wgpu::TextureView,
+    picture: &wgpu::TextureView,
+    nearest: &wgpu::Sampler,
+) -> wgpu::BindGroup {
+    let resources = [
+        wgpu::BindingResource::TextureView(depth),
+        wgpu::BindingResource::TextureView(picture),
+        wgpu::BindingResource::Sampler(nearest),
+    ];
+    bind_group(device, "outline picture", layout, &resources)
+}
+
+/// Filters nothing, and repeats the border outside of a texture.
+pub(crate) fn nearest_sampler(device: &wgpu::Device) -> wgpu::Sampler {
+    device.create_sampler(&wgpu::SamplerDescriptor { label: Some("nearest"), ..Default::default() })
 }
 
 fn line_pipeline(

@@ -14,8 +14,8 @@ use crate::OutlineError;
 use crate::filled_buffer::filled_buffer;
 use crate::line_look::LineLook;
 use crate::line_pass::{
-    INK_WGSL, LineRecord, OutlineUniform, WGSL, bind_group, buffer_entry, shader, storage_limit, texture_entry,
-    workgroups,
+    INK_WGSL, LineRecord, OutlineUniform, WGSL, bind_group, buffer_entry, nearest_sampler, picture_group,
+    picture_layout, shader, storage_limit, workgroups,
 };
 use crate::segment::LineView;
 
@@ -54,6 +54,7 @@ pub struct LineStrokes {
     read_layout: wgpu::BindGroupLayout,
     lines_layout: wgpu::BindGroupLayout,
     write_layout: wgpu::BindGroupLayout,
+    nearest: wgpu::Sampler,
     stroke: wgpu::ComputePipeline,
     mix_ink: wgpu::ComputePipeline,
     lay_ink: wgpu::ComputePipeline,
@@ -68,11 +69,7 @@ impl LineStrokes {
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
         };
         let view_layout = layout("stroke view", &[buffer_entry(0, compute, wgpu::BufferBindingType::Uniform)]);
-        let unfilterable = wgpu::TextureSampleType::Float { filterable: false };
-        let read_layout = layout(
-            "stroke picture, read",
-            &[texture_entry(0, wgpu::TextureSampleType::Depth), texture_entry(1, unfilterable)],
-        );
+        let read_layout = picture_layout(device, compute);
         let [read, write] = [true, false].map(|read_only| wgpu::BufferBindingType::Storage { read_only });
         let lines_layout = layout(
             "strokes",
@@ -114,7 +111,8 @@ impl LineStrokes {
         let stroke = pipeline("stroke", &[Some(&view_layout), Some(&read_layout), Some(&lines_layout)]);
         let mix_ink = pipeline("mix_ink", &[Some(&view_layout), Some(&read_layout), Some(&lines_layout)]);
         let lay_ink = pipeline("lay_ink", &[Some(&view_layout), None, Some(&lines_layout), Some(&write_layout)]);
-        Self { view_layout, read_layout, lines_layout, write_layout, stroke, mix_ink, lay_ink }
+        let nearest = nearest_sampler(device);
+        Self { view_layout, read_layout, lines_layout, write_layout, nearest, stroke, mix_ink, lay_ink }
     }
 
     /// Makes the buffers for pictures of a size in px.
@@ -179,8 +177,7 @@ impl LineStrokes {
         let records = buffer("stroke records", bytemuck::cast_slice(records), wgpu::BufferUsages::STORAGE);
         let group = |layout, resources: &[_]| bind_group(device, "strokes", layout, resources);
         let view_group = group(&self.view_layout, &[uniform.as_entire_binding()]);
-        let read_group =
-            group(&self.read_layout, &[targets.depth, targets.picture].map(wgpu::BindingResource::TextureView));
+        let read_group = picture_group(device, &self.read_layout, targets.depth, targets.picture, &self.nearest);
         let lines_group =
             group(&self.lines_layout, &[&records, greatest, inked, inked_count].map(wgpu::Buffer::as_entire_binding));
         let write_group = group(&self.write_layout, &[wgpu::BindingResource::TextureView(targets.picture)]);

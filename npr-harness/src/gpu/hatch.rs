@@ -5,7 +5,7 @@ use super::{GpuContext, GpuError};
 use crate::hatch::HatchPlan;
 use crate::style::{HatchEncoding, HatchGround, HatchMapping, HatchShade, HatchTransfer, Style, six_tones};
 use glam::DVec3;
-use npr_hatch::upload::{hatch_sampler, upload_tam, upload_thresholds};
+use npr_hatch::upload::{TamChannels, hatch_sampler, hatch_threshold_sampler, upload_tam, upload_thresholds};
 
 /// `SurfaceHatch` of `surface_hatch.wgsl`.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
@@ -55,23 +55,21 @@ impl HatchUniform {
 pub(super) struct HatchVariant {
     mapping: HatchMapping,
     encoding: HatchEncoding,
-    loads: bool,
     listing_4: bool,
     ground: HatchGround,
 }
 
 impl HatchVariant {
-    pub(super) fn new(shade: &HatchShade, plan: &HatchPlan, textures: &HatchTextures) -> Self {
+    pub(super) fn new(shade: &HatchShade, plan: &HatchPlan) -> Self {
         Self {
             mapping: plan.mapping,
             encoding: shade.encoding,
-            loads: textures.loads,
             listing_4: matches!(shade.transfer, HatchTransfer::Listing4 { .. }),
             ground: shade.ground,
         }
     }
 
-    pub(super) fn constants(variant: Option<Self>) -> [(&'static str, f64); 5] {
+    pub(super) fn constants(variant: Option<Self>) -> [(&'static str, f64); 4] {
         let is = |test: &dyn Fn(&Self) -> bool| f64::from(u8::from(variant.as_ref().is_some_and(test)));
         let mapping = match variant.map(|variant| variant.mapping) {
             None | Some(HatchMapping::Coordinates) => 0.0,
@@ -81,7 +79,6 @@ impl HatchVariant {
         [
             ("surface_hatch_mapping", mapping),
             ("surface_hatch_thresholds", is(&|variant| variant.encoding == HatchEncoding::Thresholds)),
-            ("surface_hatch_loads", is(&|variant| variant.loads)),
             ("surface_hatch_listing_4", is(&|variant| variant.listing_4)),
             ("surface_hatch_over_surface", is(&|variant| variant.ground == HatchGround::Surface)),
         ]
@@ -93,8 +90,6 @@ pub(super) struct HatchTextures {
     pub(super) light: wgpu::TextureView,
     pub(super) dark: wgpu::TextureView,
     pub(super) sampler: wgpu::Sampler,
-    /// Whether six tones are filtered without it.
-    loads: bool,
     pub(super) thresholds: wgpu::TextureView,
     /// Nothing, where surfaces are not hatched.
     pub(super) blank: wgpu::Buffer,
@@ -119,20 +114,23 @@ impl HatchTextures {
             light: view(wgpu::TextureFormat::Rgba8Unorm),
             dark: view(wgpu::TextureFormat::Rgba8Unorm),
             sampler: hatch_sampler(device),
-            loads: false,
-            thresholds: view(wgpu::TextureFormat::R16Uint),
+            thresholds: view(wgpu::TextureFormat::Rg8Unorm),
             blank: uniform_buffer(device, &[0; size_of::<HatchUniform>()]),
         }
     }
 
     pub(super) fn new(context: &GpuContext, plan: &HatchPlan) -> Result<Self, GpuError> {
         let (device, queue) = (&context.device, &context.queue);
-        let mut textures = Self { loads: context.is_software(), ..Self::blank(device) };
+        let mut textures = Self::blank(device);
         let view = |texture: wgpu::Texture| texture.create_view(&Default::default());
         match plan.drawn_thresholds()? {
-            Some(thresholds) => textures.thresholds = view(upload_thresholds(device, queue, thresholds)?),
+            Some(thresholds) => {
+                textures.thresholds = view(upload_thresholds(device, queue, thresholds)?);
+                textures.sampler = hatch_threshold_sampler(device);
+            }
             None => {
-                let tam = upload_tam(device, queue, plan.tam()?)?;
+                let channels = if context.is_software() { TamChannels::HalfFloats } else { TamChannels::Bytes };
+                let tam = upload_tam(device, queue, plan.tam()?, channels)?;
                 (textures.light, textures.dark) = (view(tam.light), view(tam.dark));
             }
         }

@@ -7,6 +7,7 @@ use crate::camera::{Camera, Projection};
 use crate::scene::Scene;
 use crate::shadow::{ShadowMethod, ShadowPlan};
 use glam::{DMat4, DVec2, DVec3, DVec4};
+use npr_outline::shadow_mask::{MASK_FORMAT, ShadowMaskPass};
 use npr_outline::shadow_pass::{CastersOnDevice, ShadowPass};
 use npr_outline::shadow_volume::ShadowCasters;
 use std::cell::{OnceCell, Ref, RefCell};
@@ -28,7 +29,7 @@ pub(super) struct ShadowUniform {
 /// What the geometry pass binds.
 pub(super) struct ShadowOnDevice {
     pub(super) uniform: wgpu::Buffer,
-    /// The stencil, of the picture's size.
+    /// Which pixels of the picture are in shadow, [`MASK_FORMAT`].
     pub(super) mask: Option<wgpu::TextureView>,
     /// The map.
     pub(super) map: Option<wgpu::TextureView>,
@@ -39,13 +40,16 @@ pub(super) struct BlankShadow {
     pub(super) uniform: wgpu::Buffer,
     pub(super) mask: wgpu::TextureView,
     pub(super) map: wgpu::TextureView,
+    /// What the map is read with, blank or not.
+    pub(super) nearest: wgpu::Sampler,
 }
 
 impl BlankShadow {
     pub(super) fn new(device: &wgpu::Device) -> Self {
         let uniform = uniform_buffer(device, &[0; size_of::<ShadowUniform>()]);
         let view = |format| texture(device, "no shadow", format, (1, 1)).create_view(&Default::default());
-        Self { uniform, mask: view(wgpu::TextureFormat::R8Uint), map: view(MAP_FORMAT) }
+        let nearest = device.create_sampler(&wgpu::SamplerDescriptor { label: Some("nearest"), ..Default::default() });
+        Self { uniform, mask: view(MASK_FORMAT), map: view(MAP_FORMAT), nearest }
     }
 }
 
@@ -73,23 +77,18 @@ fn texture(device: &wgpu::Device, label: &str, format: wgpu::TextureFormat, size
     })
 }
 
-/// Depth and stencil of one size, made when first needed.
+/// Depth and stencil, and the mask that is made of them, of one size, made when first needed.
 #[derive(Default)]
 pub(super) struct StencilTarget {
     views: OnceCell<(wgpu::TextureView, wgpu::TextureView)>,
 }
 
 impl StencilTarget {
-    /// All of it, and the stencil alone, to be read.
+    /// Depth and stencil, and the mask.
     fn views(&self, device: &wgpu::Device, size: (u32, u32)) -> &(wgpu::TextureView, wgpu::TextureView) {
         self.views.get_or_init(|| {
-            let texture = texture(device, "shadow stencil", stencil_format(device), size);
-            let stencil = wgpu::TextureViewDescriptor {
-                aspect: wgpu::TextureAspect::StencilOnly,
-                usage: Some(wgpu::TextureUsages::TEXTURE_BINDING),
-                ..Default::default()
-            };
-            (texture.create_view(&Default::default()), texture.create_view(&stencil))
+            let view = |label, format| texture(device, label, format, size).create_view(&Default::default());
+            (view("shadow stencil", stencil_format(device)), view("shadow mask", MASK_FORMAT))
         })
     }
 }
@@ -107,6 +106,7 @@ pub(super) enum ShadowCasting {
 pub(super) struct ShadowPasses {
     /// For perspective and for parallel views.
     volumes: [OnceCell<ShadowPass>; 2],
+    mask: OnceCell<ShadowMaskPass>,
     map: OnceCell<MapPass>,
     map_texture: RefCell<Option<wgpu::Texture>>,
 }
@@ -230,6 +230,8 @@ impl ShadowPasses {
                 draw(&Ref::map(last.borrow(), |last| &last.as_ref().expect("it was just made").1));
             }
         }
+        let pass = self.mask.get_or_init(|| ShadowMaskPass::new(device, stencil_format(device)));
+        pass.record(encoder, depth_stencil, mask, area);
         Ok(ShadowOnDevice { uniform, mask: Some(mask.clone()), map: None })
     }
 

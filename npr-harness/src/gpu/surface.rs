@@ -172,13 +172,9 @@ const SURFACE_HATCH_WGSL: &str = include_str!("surface_hatch.wgsl");
 
 /// The whole shader of the geometry pass.
 pub fn wgsl() -> String {
-    let ink = [
-        npr_imagespace::format::FORMAT_WGSL,
-        npr_imagespace::shadow::SHADOW_WGSL,
-        npr_imagespace::artist::ARTIST_WGSL,
-        npr_outline::shadow_pass::SHADOW_WGSL,
-    ]
-    .concat();
+    let ink =
+        [npr_imagespace::format::FORMAT_WGSL, npr_imagespace::shadow::SHADOW_WGSL, npr_imagespace::artist::ARTIST_WGSL]
+            .concat();
     let hatch = [npr_hatch::WGSL, npr_hatch::LOOKUP_WGSL].concat();
     let surface = [SURFACE_LIGHT_WGSL, SURFACE_SHADOW_WGSL, SURFACE_WGSL, SURFACE_HATCH_WGSL].concat();
     [npr_toon::WGSL, npr_gooch::WGSL, &hatch, &ink, &surface].concat()
@@ -215,11 +211,12 @@ impl SurfacePass {
             multisampled: false,
         };
         let depth = wgpu::BindingType::Texture {
-            sample_type: wgpu::TextureSampleType::Depth,
+            sample_type: wgpu::TextureSampleType::Float { filterable: false },
             view_dimension: wgpu::TextureViewDimension::D2,
             multisampled: false,
         };
         let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
+        let nearest = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::NonFiltering);
         let layout = |label, entries: &[_]| {
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
         };
@@ -238,10 +235,11 @@ impl SurfacePass {
                 fragment(9, texture),
                 fragment(10, texture),
                 fragment(11, sampler),
-                fragment(12, words),
+                fragment(12, texture),
                 uniform(13),
                 fragment(14, words),
                 fragment(15, depth),
+                fragment(16, nearest),
             ],
         );
         let material_layout =
@@ -339,6 +337,7 @@ impl SurfacePass {
             wgpu::BindingResource::TextureView(
                 shadow.and_then(|shadow| shadow.map.as_ref()).unwrap_or(&self.no_shadow.map),
             ),
+            wgpu::BindingResource::Sampler(&self.no_shadow.nearest),
         ];
         let entry = |(binding, resource)| wgpu::BindGroupEntry { binding, resource };
         let entries: Vec<_> = (0..).zip(bound).map(entry).collect();
@@ -430,9 +429,7 @@ impl SurfacePass {
                 // No shadow is known of what is blended: it is not what the stencil was counted against.
                 shadow: if blended { ShadowVariant::default() } else { ShadowVariant::new(plan, shadow) },
                 depth: targets.depth.texture().format(),
-                hatch: hatch
-                    .filter(|_| paint == Paint::Hatched)
-                    .map(|(shade, plan)| HatchVariant::new(shade, plan, strokes)),
+                hatch: hatch.filter(|_| paint == Paint::Hatched).map(|(shade, plan)| HatchVariant::new(shade, plan)),
                 colored: targets.color.is_some(),
                 clipped: scene.clip.is_some(),
                 inking,

@@ -7,8 +7,6 @@ const HATCH_BY_FORM: u32 = 2u;
 override surface_hatch_mapping: u32 = HATCH_BY_COORDINATES;
 // Whether thresholds are looked up, else six tones.
 override surface_hatch_thresholds: bool = false;
-// Whether six tones are loaded and filtered here, else by a sampler.
-override surface_hatch_loads: bool = false;
 // Whether the tone is what listing 4 makes of the light, else it is in proportion to it.
 override surface_hatch_listing_4: bool = false;
 // Whether strokes are drawn over the surface's own colour, else over paper.
@@ -36,8 +34,9 @@ struct SurfaceHatch {
 @group(0) @binding(8) var<uniform> hatch: SurfaceHatch;
 @group(0) @binding(9) var hatch_light: texture_2d<f32>;
 @group(0) @binding(10) var hatch_dark: texture_2d<f32>;
-@group(0) @binding(11) var hatch_trilinear: sampler;
-@group(0) @binding(12) var hatch_map: texture_2d<u32>;
+// For six tones it filters texels and levels, for thresholds it takes the nearest: GLSL knows one sampler a texture.
+@group(0) @binding(11) var hatch_sampler: sampler;
+@group(0) @binding(12) var hatch_map: texture_2d<f32>;
 
 struct HatchedSurface {
     @invariant @builtin(position) position: vec4<f32>,
@@ -114,14 +113,9 @@ fn vs_hatched(
 fn hatched_once(uv: vec2<f32>, footprint: HatchFootprint, tone: f32, weights: HatchWeights) -> f32 {
     let flat = hatch_flat(footprint.level, hatch.last_level);
     if surface_hatch_thresholds {
-        return mix(1.0 - hatch_ink(hatch_map, uv, footprint, tone, hatch.width), tone, flat);
+        return mix(1.0 - hatch_ink(hatch_map, hatch_sampler, uv, footprint, tone, hatch.width), tone, flat);
     }
-    var texels: HatchTexels;
-    if surface_hatch_loads {
-        texels = hatch_texels_loaded(hatch_light, hatch_dark, uv, footprint);
-    } else {
-        texels = hatch_texels(hatch_light, hatch_dark, hatch_trilinear, uv, footprint);
-    }
+    let texels = hatch_texels(hatch_light, hatch_dark, hatch_sampler, uv, footprint);
     let mean = hatch_blend(hatch.light_tones, hatch.dark_tones, weights);
     return mix(hatch_blend(texels.light, texels.dark, weights), mean, flat);
 }

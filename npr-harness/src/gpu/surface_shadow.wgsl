@@ -1,7 +1,7 @@
 // Whether light falls on a fragment. The twin of `cpu/shadow.rs`; between `surface_light.wgsl` and `surface.wgsl`, after the
 // library of npr-imagespace.
 
-// Where shadows come from: 0 nowhere, 1 a stencil of volumes, 2 a map of depths.
+// Where shadows come from: 0 nowhere, 1 the mask that volumes leave, 2 a map of depths.
 override surface_shadow: u32 = 0u;
 // What of them lines in the image see: 0 nothing, 1 states beside regions, 2 negated normals.
 override surface_shadow_lines: u32 = 0u;
@@ -23,7 +23,9 @@ struct SurfaceShadow {
 
 @group(0) @binding(13) var<uniform> shadow: SurfaceShadow;
 @group(0) @binding(14) var shadow_mask: texture_2d<u32>;
-@group(0) @binding(15) var shadow_map: texture_depth_2d;
+// A depth buffer, bound as floats and read through a sampler, for GLSL ES 3.00: see `line_ink.wgsl` of npr-outline.
+@group(0) @binding(15) var shadow_map: texture_2d<f32>;
+@group(0) @binding(16) var shadow_nearest: sampler;
 
 // Whether the side of a face that is seen is turned towards the light. Depth is linear on the screen, so two derivatives
 // are the face's plane, and the eye, (0, 0, 1, 0) there, is in front of it. In uniform control flow.
@@ -45,7 +47,7 @@ fn shadow_to_light(position: vec4<f32>) -> vec3<f32> {
 // Whether something is between what the depth buffer has at a fragment and the light.
 fn shadow_falls(position: vec4<f32>) -> bool {
     if surface_shadow == 1u {
-        return outline_in_shadow(textureLoad(shadow_mask, vec2<i32>(position.xy), 0).x);
+        return textureLoad(shadow_mask, vec2<i32>(position.xy), 0).x != 0u;
     }
     let place = shadow.map_from_px * vec4<f32>(position.xyz, 1.0);
     let texel = vec2<i32>(floor(place.xy / place.w));
@@ -54,7 +56,8 @@ fn shadow_falls(position: vec4<f32>) -> bool {
     if any(texel < vec2<i32>(0)) || any(texel >= size) {
         return false;
     }
-    return textureLoad(shadow_map, texel, 0) > place.z / place.w;
+    let middle = (vec2<f32>(texel) + 0.5) / vec2<f32>(size);
+    return textureSampleLevel(shadow_map, shadow_nearest, middle, 0.0).x > place.z / place.w;
 }
 
 // What shadows make of a fragment.

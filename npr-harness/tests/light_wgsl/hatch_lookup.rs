@@ -3,8 +3,9 @@
 use crate::check::{Allowed, Check, Extra, Given, MODELS, compare_with};
 use crate::random::Random;
 use glam::{DVec2, DVec4, Vec2, Vec4};
+use npr_harness::gpu::GpuContext;
 use npr_hatch::lookup::{HatchFootprint, hatch_ink, hatch_texels};
-use npr_hatch::upload::{hatch_sampler, upload_tam, upload_thresholds};
+use npr_hatch::upload::{TamChannels, hatch_sampler, hatch_threshold_sampler, upload_tam, upload_thresholds};
 use npr_hatch::{Tam, TamParameters, Thresholds, draw, even_tones};
 use std::sync::Arc;
 
@@ -94,15 +95,22 @@ fn ink_bound(_: &Arc<Thresholds>, _: &Given) -> Allowed {
 }
 
 const THRESHOLDS: &str = "
-    @group(0) @binding(2) var map: texture_2d<u32>;
+    @group(0) @binding(2) var map: texture_2d<f32>;
+    @group(0) @binding(3) var nearest: sampler;
     fn ink(a: vec4<f32>, b: vec4<f32>) -> vec4<f32> {
-        return vec4(hatch_ink(map, a.xy, HatchFootprint(b.x, a.zw), b.y, b.z));
+        return vec4(hatch_ink(map, nearest, a.xy, HatchFootprint(b.x, a.zw), b.y, b.z));
     }
     fn ink_at(a: vec4<f32>, b: vec4<f32>) -> vec4<f32> {
-        return vec4(hatch_ink_at(map, a.xy, b.x, hatch_softened(b.y, b.z), b.z));
+        return vec4(hatch_ink_at(map, nearest, a.xy, b.x, hatch_softened(b.y, b.z), b.z));
+    }
+    // The side is a power of two, so the product is exact.
+    fn texel_of_level(a: vec4<f32>, b: vec4<f32>) -> vec4<f32> {
+        let level = i32(b.x);
+        let side = textureDimensions(map).x >> u32(level);
+        return vec4(hatch_threshold_texel(map, nearest, vec2<u32>(fract(a.xy) * f32(side)), side, level));
     }
     fn ink_of_level(a: vec4<f32>, b: vec4<f32>) -> vec4<f32> {
-        return vec4(hatch_ink_of_level(map, a.xy, i32(b.x), hatch_softened(b.y, b.z), b.z));
+        return vec4(hatch_ink_of_level(map, nearest, a.xy, i32(b.x), hatch_softened(b.y, b.z), b.z));
     }";
 
 const INK: &[Check<Arc<Thresholds>>] = &[
@@ -127,6 +135,19 @@ const INK: &[Check<Arc<Thresholds>>] = &[
         rust: |map, g| ink(map, g, HatchFootprint { level: footprint(g).level.floor(), spread: DVec2::ZERO }),
         allowed: ink_bound,
     },
+    Check {
+        name: "hatch_threshold_texel",
+        wgsl: "texel_of_level(a, b)",
+        given: inked,
+        rust: |map, g| {
+            let level = g[1].x as usize;
+            let side = map.side as usize >> level;
+            let [x, y] = [g[0].x, g[0].y].map(|uv| ((uv - uv.floor()) * side as f32) as usize);
+            DVec4::splat(f64::from(map.levels[level][y * side + x]) / 65535.0)
+        },
+        // Two texels of 8 bits, each rounded to an f32.
+        allowed: |_, _| Allowed::Within(3e-7),
+    },
 ];
 
 fn sampled(random: &Random, tam: &Arc<Tam>) -> Given {
@@ -140,10 +161,10 @@ fn texels_bound(_: &Arc<Tam>, _: &Given) -> Allowed {
     Allowed::Within(4.0 / 255.0)
 }
 
-/// Only places are rounded: by 2^-24 of up to 128 texels of the largest map, times a level's full range between two texels, along
-/// both axes; and what is mixed.
-fn loaded_bound(_: &Arc<Tam>, _: &Given) -> Allowed {
-    Allowed::Within(1e-4)
+/// Places are rounded by 2⁻²⁴ of up to 128 texels of the largest map, times a level's full range between two texels, along
+/// both axes: 1e-4. A texel under 1 is rounded to a half float by up to 2⁻¹².
+fn half_float_bound(_: &Arc<Tam>, _: &Given) -> Allowed {
+    Allowed::Within(4e-4)
 }
 
 const TONES: &str = "
@@ -155,61 +176,35 @@ const TONES: &str = "
     }
     fn texels_at(a: vec4<f32>, b: vec4<f32>) -> HatchTexels {
         return hatch_texels_at(light, dark, trilinear, a.xy, b.x);
-    }
-    fn texels_of_level(a: vec4<f32>, b: vec4<f32>) -> HatchTexels {
-        return hatch_texels_of_level(light, dark, a.xy, i32(b.x));
-    }
-    fn texels_loaded(a: vec4<f32>, b: vec4<f32>) -> HatchTexels {
-        return hatch_texels_loaded(light, dark, a.xy, HatchFootprint(b.x, a.zw));
     }";
 
-const TEXELS: &[Check<Arc<Tam>>] = &[
-    Check {
-        name: "hatch_texels, lighter",
-        wgsl: "vec4(texels(a, b).light, 0.0)",
-        given: sampled,
-        rust: |tam, g| hatch_texels(tam, uv(g), footprint(g)).0.extend(0.0),
-        allowed: texels_bound,
-    },
-    Check {
-        name: "hatch_texels, darker",
-        wgsl: "vec4(texels(a, b).dark, 0.0)",
-        given: sampled,
-        rust: |tam, g| hatch_texels(tam, uv(g), footprint(g)).1.extend(0.0),
-        allowed: texels_bound,
-    },
-    Check {
-        name: "hatch_texels_at, lighter",
-        wgsl: "vec4(texels_at(a, b).light, 0.0)",
-        given: sampled,
-        rust: |tam, g| hatch_texels(tam, uv(g), HatchFootprint { spread: DVec2::ZERO, ..footprint(g) }).0.extend(0.0),
-        allowed: texels_bound,
-    },
-    Check {
-        name: "hatch_texels_loaded, lighter",
-        wgsl: "vec4(texels_loaded(a, b).light, 0.0)",
-        given: sampled,
-        rust: |tam, g| hatch_texels(tam, uv(g), footprint(g)).0.extend(0.0),
-        allowed: loaded_bound,
-    },
-    Check {
-        name: "hatch_texels_loaded, darker",
-        wgsl: "vec4(texels_loaded(a, b).dark, 0.0)",
-        given: sampled,
-        rust: |tam, g| hatch_texels(tam, uv(g), footprint(g)).1.extend(0.0),
-        allowed: loaded_bound,
-    },
-    Check {
-        name: "hatch_texels_of_level, darker",
-        wgsl: "vec4(texels_of_level(a, b).dark, 0.0)",
-        given: sampled,
-        rust: |tam, g| {
-            let level = footprint(g).level.floor();
-            hatch_texels(tam, uv(g), HatchFootprint { level, spread: DVec2::ZERO }).1.extend(0.0)
+fn texel_checks(allowed: fn(&Arc<Tam>, &Given) -> Allowed) -> [Check<Arc<Tam>>; 3] {
+    [
+        Check {
+            name: "hatch_texels, lighter",
+            wgsl: "vec4(texels(a, b).light, 0.0)",
+            given: sampled,
+            rust: |tam, g| hatch_texels(tam, uv(g), footprint(g)).0.extend(0.0),
+            allowed,
         },
-        allowed: loaded_bound,
-    },
-];
+        Check {
+            name: "hatch_texels, darker",
+            wgsl: "vec4(texels(a, b).dark, 0.0)",
+            given: sampled,
+            rust: |tam, g| hatch_texels(tam, uv(g), footprint(g)).1.extend(0.0),
+            allowed,
+        },
+        Check {
+            name: "hatch_texels_at, lighter",
+            wgsl: "vec4(texels_at(a, b).light, 0.0)",
+            given: sampled,
+            rust: |tam, g| {
+                hatch_texels(tam, uv(g), HatchFootprint { spread: DVec2::ZERO, ..footprint(g) }).0.extend(0.0)
+            },
+            allowed,
+        },
+    ]
+}
 
 pub fn calls() -> Vec<&'static str> {
     vec![THRESHOLDS, TONES]
@@ -229,21 +224,33 @@ fn ink_from_a_texture_is_its_reference() {
     let models = thresholds();
     let upload = |map: &Arc<Thresholds>| upload_thresholds(&gpu.device, &gpu.queue, map).expect("it fits");
     let views: Vec<_> = models[..MAPS].iter().map(|map| upload(map).create_view(&Default::default())).collect();
-    let resources = |number: usize| vec![wgpu::BindingResource::TextureView(&views[number % MAPS])];
+    let sampler = hatch_threshold_sampler(&gpu.device);
+    let resources = |number: usize| {
+        vec![wgpu::BindingResource::TextureView(&views[number % MAPS]), wgpu::BindingResource::Sampler(&sampler)]
+    };
     let extra = Extra {
         declarations: THRESHOLDS.into(),
-        layout: vec![texture(wgpu::TextureSampleType::Uint)],
+        layout: vec![
+            texture(wgpu::TextureSampleType::Float { filterable: false }),
+            wgpu::BindingType::Sampler(wgpu::SamplerBindingType::NonFiltering),
+        ],
         resources: (0..MODELS).map(resources).collect(),
     };
     compare_with(&gpu, &library(), &extra, &[], &models, INK);
 }
 
+/// Hardware has a fraction of 8 bits, whatever it filters.
 #[test]
 fn texels_from_textures_are_their_reference() {
     let Some(gpu) = crate::device() else { return };
+    compare_texels(&gpu, TamChannels::Bytes, texels_bound);
+    compare_texels(&gpu, TamChannels::HalfFloats, if gpu.is_software() { half_float_bound } else { texels_bound });
+}
+
+fn compare_texels(gpu: &GpuContext, channels: TamChannels, allowed: fn(&Arc<Tam>, &Given) -> Allowed) {
     let models = tams();
     let upload = |tam: &Arc<Tam>| {
-        let textures = upload_tam(&gpu.device, &gpu.queue, tam).expect("it is valid, and fits");
+        let textures = upload_tam(&gpu.device, &gpu.queue, tam, channels).expect("it is valid, and fits");
         [textures.light, textures.dark].map(|texture| texture.create_view(&Default::default()))
     };
     let views: Vec<_> = models[..MAPS].iter().map(upload).collect();
@@ -259,5 +266,5 @@ fn texels_from_textures_are_their_reference() {
         layout: vec![float, float, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)],
         resources: (0..MODELS).map(resources).collect(),
     };
-    compare_with(&gpu, &library(), &extra, &[], &models, TEXELS);
+    compare_with(gpu, &library(), &extra, &[], &models, &texel_checks(allowed));
 }

@@ -14,6 +14,8 @@ pub(super) enum Bound {
     Whole,
     /// A texture of floats, read texel by texel.
     Float,
+    /// A sampler that does not filter.
+    Nearest,
 }
 
 /// What a pass writes.
@@ -195,6 +197,7 @@ fn binding_type(bound: Bound) -> wgpu::BindingType {
         },
         Bound::Whole => texture(wgpu::TextureSampleType::Uint),
         Bound::Float => texture(wgpu::TextureSampleType::Float { filterable: false }),
+        Bound::Nearest => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::NonFiltering),
     }
 }
 

@@ -55,6 +55,7 @@ pub struct SeparatePass {
     kind: Kind,
     /// For what is not asked for: a texel of floats and one of whole numbers.
     none: [wgpu::TextureView; 2],
+    nearest: wgpu::Sampler,
 }
 
 impl SeparatePass {
@@ -68,7 +69,7 @@ impl SeparatePass {
             flag("cross_taps", kind.taps == Taps::Cross),
             flag("soft", kind.soft),
         ];
-        let bound = [Bound::Uniform, Bound::Float, Bound::Float, Bound::Whole];
+        let bound = [Bound::Uniform, Bound::Float, Bound::Float, Bound::Whole, Bound::Nearest];
         let none = [wgpu::TextureFormat::R8Unorm, wgpu::TextureFormat::R8Uint].map(|format| {
             let texture = device.create_texture(&wgpu::TextureDescriptor {
                 label: Some("not asked for"),
@@ -86,6 +87,7 @@ impl SeparatePass {
             draw: Fullscreen::new(device, "separate", SEPARATE_WGSL, &bound, &constants, Output::Ink(target)),
             kind,
             none,
+            nearest: device.create_sampler(&wgpu::SamplerDescriptor { label: Some("nearest"), ..Default::default() }),
         }
     }
 
@@ -118,7 +120,8 @@ impl SeparatePass {
             texture(self.kind.region, textures.region, no_whole),
         ];
         let [normal, depth, region] = views.each_ref().map(wgpu::BindingResource::TextureView);
-        self.draw.record(device, encoder, &[what.as_entire_binding(), normal, depth, region], onto);
+        let nearest = wgpu::BindingResource::Sampler(&self.nearest);
+        self.draw.record(device, encoder, &[what.as_entire_binding(), normal, depth, region, nearest], onto);
         Ok(())
     }
 }

@@ -4,6 +4,9 @@
 @group(0) @binding(2) var normals: texture_2d<f32>;
 @group(0) @binding(3) var depths: texture_2d<f32>;
 @group(0) @binding(4) var regions: texture_2d<u32>;
+// For `depths`, which may be a depth buffer: GLSL cannot load its texels, and in GLSL ES 3.00 it is complete only with a
+// sampler that does not filter.
+@group(0) @binding(5) var nearest: sampler;
 
 // Known when the pipeline is made: a software rasteriser runs through what it branches around. What is not asked for
 // has a texture of one texel, which is not read.
@@ -40,7 +43,8 @@ fn normal_at(at: vec2<i32>) -> vec3<f32> {
 }
 
 fn depth_at(at: vec2<i32>) -> f32 {
-    let texel = textureLoad(depths, at, 0).x;
+    let middle = (vec2<f32>(at) + 0.5) / vec2<f32>(textureDimensions(depths));
+    let texel = textureSampleLevel(depths, nearest, middle, 0.0).x;
     if depth_test == PLAIN {
         return texel;
     }
