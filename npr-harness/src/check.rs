@@ -15,7 +15,7 @@ use crate::camera::{Camera, Framing};
 use crate::compare::{Comparison, Image, ReportRow, Tolerance, compare, html_report, leave_behind};
 use crate::cpu::Sight;
 use crate::error::HarnessError;
-use crate::executor::Executor;
+use crate::executor::{Backend, Executor, Picture};
 use crate::gallery::{painted_camera, painted_scene, still_life_camera};
 use crate::line_truth::{accuracy, drawn_centreline, true_lines};
 use crate::plan::Plan;
@@ -337,7 +337,8 @@ impl Checker<'_> {
             return Ok(());
         }
         let plan = Plan::new(scene, style, camera)?;
-        let actual = self.executor.render(scene, style, &plan, camera, size, 1, &|_| {})?;
+        let picture = Picture { scene, style, plan: &plan, camera, size, samples: 1 };
+        let Some(actual) = self.render(model, view, technique, &picture)? else { return Ok(()) };
         let magnitude = magnitude(&plan);
         let tolerance = Tolerance { magnitude, count: 0 };
         let mut reference = Reference::new(Shot { sight, style, plan: &plan, samples: 1 })?;
@@ -384,6 +385,25 @@ impl Checker<'_> {
         Ok(())
     }
 
+    /// A picture, or `None`, noted as skipped, where the device cannot make it and is not required.
+    fn render(
+        &mut self,
+        model: &str,
+        view: &str,
+        technique: &str,
+        picture: &Picture<'_>,
+    ) -> Result<Option<Image>, HarnessError> {
+        match self.executor.render_picture(picture, &|_| {}) {
+            Ok(image) => Ok(Some(image)),
+            Err(error) => {
+                if let Executor::Cpu { why: Some(why) } = Executor::instead(Backend::Auto, error)? {
+                    self.skipped.push(format!("{technique} of {model} ({view}): {why}"));
+                }
+                Ok(None)
+            }
+        }
+    }
+
     fn leave(
         &mut self,
         name: &str,
@@ -413,7 +433,8 @@ impl Checker<'_> {
         }
         for (style, technique, limited) in [(corrected, "lines", true), (printed, "printed fins", false)] {
             let plan = Plan::new(scene, &style, camera)?;
-            let image = self.executor.render(scene, &style, &plan, camera, SIZE, 1, &|_| {})?;
+            let picture = Picture { scene, style: &style, plan: &plan, camera, size: SIZE, samples: 1 };
+            let Some(image) = self.render(model, view, technique, &picture)? else { continue };
             let found = accuracy(&truth, &drawn_centreline(&darkness(&image), SIZE.0, SIZE.1), WITHIN_PX);
             let limit = (limited && exact).then_some(Limit::AtLeast(LINE_ACCURACY));
             self.add(model, view, technique, "precision within 1.5 px", found.precision, limit);

@@ -1,27 +1,32 @@
-//! Where pictures are made: on a device if there is one, else on the CPU.
+//! Which executor renders: a device, or ray casting on the CPU.
 
-use crate::camera::Camera;
+mod cost;
+
+pub use cost::Work;
+
+use crate::camera::{Camera, Projection};
 use crate::compare::Image;
 use crate::cpu::{self, CpuOptions};
 use crate::error::HarnessError;
-use crate::plan::Plan;
+use crate::plan::{Plan, Reason};
 use crate::scene::Scene;
 use crate::style::Style;
+use std::fmt;
 
 #[cfg(feature = "gpu")]
-use crate::gpu::{self, GpuContext};
+use crate::gpu::{self, DeviceLimits, GpuAdapter, GpuContext, GpuError};
 #[cfg(feature = "gpu")]
 use crate::plan::LineMethod;
 
-/// What is asked for.
+/// Which executor is asked for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Backend {
-    /// A hardware adapter, else a software one, else the CPU.
+    /// A hardware adapter, else a software adapter or the CPU, whichever is expected to be sooner.
     #[default]
     Auto,
-    /// An adapter, or an error.
+    /// An adapter, hardware or software; an error where there is none, or where it cannot make the picture.
     Gpu,
-    /// Rays.
+    /// Ray casting on the CPU.
     Cpu,
 }
 
@@ -52,24 +57,76 @@ impl GpuPolicy {
     }
 }
 
-/// An executor, chosen.
+/// Why the CPU renders where it was not asked for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum CpuReason {
+    /// The only adapter is a software one, and slower.
+    Sooner {
+        /// Which adapter.
+        adapter: String,
+    },
+    /// There is no adapter, or none is wanted, or it cannot make the picture.
+    Unable(String),
+}
+
+impl fmt::Display for CpuReason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Sooner { adapter } => write!(f, "expected to be sooner than {adapter}"),
+            Self::Unable(why) => f.write_str(why),
+        }
+    }
+}
+
+/// What renders pictures.
 pub enum Executor {
-    /// On a device.
+    /// A device.
     #[cfg(feature = "gpu")]
     Gpu(Box<GpuContext>),
-    /// With rays.
+    /// Ray casting on the CPU.
     Cpu {
-        /// Why not on a device, if one was looked for.
-        why: Option<String>,
+        /// Why not a device, where one was looked for.
+        why: Option<CpuReason>,
     },
 }
 
+/// What a picture is made of.
+#[derive(Clone, Copy)]
+pub struct Picture<'a> {
+    /// What is shown.
+    pub scene: &'a Scene,
+    /// How.
+    pub style: &'a Style,
+    /// Made of these two and the camera.
+    pub plan: &'a Plan,
+    /// From where.
+    pub camera: &'a Camera,
+    /// Width and height, px.
+    pub size: (u32, u32),
+    /// Along each axis of a pixel.
+    pub samples: u32,
+}
+
 impl Executor {
-    /// Chooses.
+    /// Selects an executor, a device wherever there is one: for measurements and comparisons.
     ///
     /// # Errors
     /// If an adapter is required, by `backend` or by the environment, and there is none.
     pub fn choose(backend: Backend) -> Result<Self, HarnessError> {
+        Self::select(backend, None)
+    }
+
+    /// Selects the executor for some pictures: where `backend` leaves it open, a software adapter only if it is expected to
+    /// be sooner than the CPU.
+    ///
+    /// # Errors
+    /// As [`Executor::choose`].
+    pub fn choose_for(backend: Backend, work: &Work) -> Result<Self, HarnessError> {
+        Self::select(backend, Some(work))
+    }
+
+    fn select(backend: Backend, work: Option<&Work>) -> Result<Self, HarnessError> {
         let policy = GpuPolicy::from_env()?;
         if backend == Backend::Cpu {
             return Ok(Self::Cpu { why: None });
@@ -77,32 +134,42 @@ impl Executor {
         if policy == GpuPolicy::Off {
             return match backend {
                 Backend::Gpu => Err(HarnessError::GpuRequired("adapters are off: NPR_GPU=off".into())),
-                _ => Ok(Self::Cpu { why: Some("NPR_GPU=off".into()) }),
+                _ => Ok(Self::Cpu { why: Some(CpuReason::Unable("NPR_GPU=off".into())) }),
             };
         }
-        Self::on_device(backend, policy)
+        // Where a device is required no time is compared.
+        let work = work.filter(|_| backend == Backend::Auto && policy == GpuPolicy::Auto);
+        Self::on_device(backend, policy, work)
     }
 
     #[cfg(feature = "gpu")]
-    fn on_device(backend: Backend, policy: GpuPolicy) -> Result<Self, HarnessError> {
-        match GpuContext::new() {
-            Ok(context) => Ok(Self::Gpu(Box::new(context))),
+    fn on_device(backend: Backend, policy: GpuPolicy, work: Option<&Work>) -> Result<Self, HarnessError> {
+        // A misspelt variable is an error wherever pictures would be made.
+        let limits = DeviceLimits::from_env()?;
+        let opened = GpuAdapter::find().and_then(|adapter| match work {
+            Some(work) if adapter.is_software() && work.is_sooner_on_cpu() => {
+                Ok(Self::Cpu { why: Some(CpuReason::Sooner { adapter: adapter.describe() }) })
+            }
+            _ => Ok(Self::Gpu(Box::new(adapter.open(limits)?))),
+        });
+        match opened {
+            Ok(executor) => Ok(executor),
             Err(error) if policy == GpuPolicy::Required => Err(HarnessError::GpuRequired(error.to_string())),
             Err(error) if backend == Backend::Gpu => Err(error.into()),
-            Err(error) => Ok(Self::Cpu { why: Some(error.to_string()) }),
+            Err(error) => Ok(Self::Cpu { why: Some(CpuReason::Unable(error.to_string())) }),
         }
     }
 
     #[cfg(not(feature = "gpu"))]
-    fn on_device(backend: Backend, policy: GpuPolicy) -> Result<Self, HarnessError> {
+    fn on_device(backend: Backend, policy: GpuPolicy, _: Option<&Work>) -> Result<Self, HarnessError> {
         if backend == Backend::Gpu || policy == GpuPolicy::Required {
             return Err(HarnessError::NoGpuInBuild);
         }
-        Ok(Self::Cpu { why: Some("this build has no GPU executor".into()) })
+        Ok(Self::Cpu { why: Some(CpuReason::Unable("this build has no GPU executor".into())) })
     }
 
-    /// The CPU, where it may make a picture that a device could not make, and why it does: not where a device was asked
-    /// for, by `backend` or by the environment.
+    /// The CPU, for a picture that a device could not make, and why: not where a device was asked for, by `backend` or by
+    /// the environment.
     ///
     /// # Errors
     /// The error itself, else; [`HarnessError::Policy`].
@@ -112,23 +179,40 @@ impl Executor {
         }
         match &error {
             #[cfg(feature = "gpu")]
-            HarnessError::Gpu(fault) if fault.is_of_the_device() => Ok(Self::Cpu { why: Some(fault.to_string()) }),
+            HarnessError::Gpu(fault) if fault.is_of_the_device() => {
+                Ok(Self::Cpu { why: Some(CpuReason::Unable(fault.to_string())) })
+            }
             _ => Err(error),
         }
     }
 
-    /// Whether pictures are made with rays.
+    /// Whether the CPU renders.
     pub fn is_cpu(&self) -> bool {
         matches!(self, Self::Cpu { .. })
     }
 
-    /// One line: where pictures are made, and why not elsewhere.
+    /// One line: what renders, and why not something else.
     pub fn describe(&self) -> String {
         match self {
             #[cfg(feature = "gpu")]
             Self::Gpu(context) => context.describe(),
             Self::Cpu { why: None } => "CPU, ray casting".into(),
             Self::Cpu { why: Some(why) } => format!("CPU, ray casting ({why})"),
+        }
+    }
+
+    /// By which methods a picture's passes are made, and why; none on the CPU, which has one for each.
+    ///
+    /// # Errors
+    /// What the device cannot do, by name.
+    pub fn methods(&self, picture: &Picture<'_>) -> Result<Vec<Reason>, HarnessError> {
+        match self {
+            #[cfg(feature = "gpu")]
+            Self::Gpu(context) => {
+                let parallel = matches!(picture.camera.projection, Projection::Orthographic { .. });
+                Ok(context.capabilities.methods(picture.plan, parallel, picture.size, picture.samples)?)
+            }
+            Self::Cpu { .. } => Ok(Vec::new()),
         }
     }
 
@@ -149,15 +233,67 @@ impl Executor {
         samples: u32,
         progress: &(dyn Fn(f64) + Sync),
     ) -> Result<Image, HarnessError> {
+        self.render_picture(&Picture { scene, style, plan, camera, size, samples }, progress)
+    }
+
+    /// The same.
+    ///
+    /// # Errors
+    /// [`HarnessError`].
+    pub fn render_picture(
+        &self,
+        picture: &Picture<'_>,
+        progress: &(dyn Fn(f64) + Sync),
+    ) -> Result<Image, HarnessError> {
+        let Picture { scene, style, plan, camera, size, samples } = *picture;
         match self {
             #[cfg(feature = "gpu")]
             Self::Gpu(context) => {
-                Ok(gpu::render(context, scene, style, plan, camera, size, samples, LineMethod::Auto)?)
+                // What is known beforehand is said before anything is allocated.
+                self.methods(picture)?;
+                let render = |capabilities| {
+                    gpu::render(context, capabilities, scene, style, plan, camera, size, samples, LineMethod::Auto)
+                };
+                let capabilities = context.capabilities.clone();
+                match render(capabilities.clone()) {
+                    // What drivers promise and refuse all the same is mostly compute shaders.
+                    Err(GpuError::Device { .. }) if capabilities.compute => Ok(render(capabilities.without_compute())?),
+                    done => Ok(done?),
+                }
             }
             Self::Cpu { .. } => {
                 let options = CpuOptions { samples, ..Default::default() };
                 Ok(cpu::render(scene, style, plan, camera, size, &options, progress).image())
             }
         }
+    }
+
+    /// Renders a picture, on the CPU where the device cannot and `backend` and the environment leave that open; then also
+    /// says why. After a device was lost, or had no memory left, the CPU renders further pictures too.
+    ///
+    /// # Errors
+    /// [`HarnessError`].
+    pub fn render_or_instead(
+        &mut self,
+        backend: Backend,
+        picture: &Picture<'_>,
+        progress: &(dyn Fn(f64) + Sync),
+    ) -> Result<(Image, Option<CpuReason>), HarnessError> {
+        let error = match self.render_picture(picture, progress) {
+            Ok(image) => return Ok((image, None)),
+            Err(error) => error,
+        };
+        #[cfg(feature = "gpu")]
+        let is_final = matches!(&error, HarnessError::Gpu(fault) if fault.is_final());
+        #[cfg(not(feature = "gpu"))]
+        let is_final = false;
+        let cpu = Self::instead(backend, error)?;
+        let image = cpu.render_picture(picture, progress)?;
+        let Self::Cpu { why } = &cpu else { unreachable!("the CPU is what there is instead") };
+        let why = why.clone();
+        if is_final {
+            *self = cpu;
+        }
+        Ok((image, why))
     }
 }

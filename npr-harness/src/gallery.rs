@@ -8,7 +8,7 @@ pub use painted::{painted_camera, painted_scene};
 
 use crate::camera::{Camera, Projection};
 use crate::error::HarnessError;
-use crate::executor::Executor;
+use crate::executor::{Backend, CpuReason, Executor, Picture, Work};
 use crate::plan::Plan;
 use crate::scene::Scene;
 use crate::style::{Lines, styles};
@@ -31,6 +31,8 @@ pub struct Row {
     pub passes: Vec<&'static str>,
     /// From the plan to the picture in memory.
     pub time_ms: f64,
+    /// Why the CPU made it, where a device could not.
+    pub why_cpu: Option<CpuReason>,
 }
 
 /// The view for which the built-in scene is composed.
@@ -44,11 +46,27 @@ pub fn still_life_camera() -> Camera {
     }
 }
 
-/// Renders all styles into `dir`, which is made if need be.
+/// What there is to do for all pictures.
+pub fn work() -> Work {
+    let still_life = Scene::new(npr_mesh::embedded::scene());
+    let pictures = styles().into_iter().map(|style| (style, SIZE));
+    let panels = figure_10_styles().into_iter().map(|style| (style, (SIZE.0 / 2, SIZE.1 / 2)));
+    pictures
+        .chain(panels)
+        .fold(Work::default(), |work, (style, size)| work.and(Work::new(&still_life, &style, size, 1)))
+}
+
+/// Renders all styles into `dir`, which is made if need be. Pictures that the device cannot make are made on the CPU, where
+/// `backend` and the environment leave that open.
 ///
 /// # Errors
 /// [`HarnessError`].
-pub fn render(executor: &Executor, dir: &Path, progress: &(dyn Fn(f64) + Sync)) -> Result<Vec<Row>, HarnessError> {
+pub fn render(
+    executor: &mut Executor,
+    backend: Backend,
+    dir: &Path,
+    progress: &(dyn Fn(f64) + Sync),
+) -> Result<Vec<Row>, HarnessError> {
     std::fs::create_dir_all(dir).map_err(|source| HarnessError::Write { path: dir.to_owned(), source })?;
     let still_life = (Scene::new(npr_mesh::embedded::scene()), still_life_camera());
     let painted = (painted_scene(), painted_camera());
@@ -61,22 +79,23 @@ pub fn render(executor: &Executor, dir: &Path, progress: &(dyn Fn(f64) + Sync)) 
         let (scene, camera) = if asks_artists { &painted } else { &still_life };
         let plan = Plan::new(scene, style, camera)?;
         let share_of = |within: f64| progress((number as f64 + within) / pictures);
-        let image = executor.render(scene, style, &plan, camera, SIZE, 1, &share_of)?;
+        let picture = Picture { scene, style, plan: &plan, camera, size: SIZE, samples: 1 };
+        let (image, why_cpu) = executor.render_or_instead(backend, &picture, &share_of)?;
         let time_ms = start.elapsed().as_secs_f64() * 1e3;
         let path = dir.join(format!("{}.png", style.name));
         image.save_png(&path)?;
         let passes = plan.passes.iter().map(|reason| reason.pass).collect();
-        rows.push(Row { path, about: style.about.clone(), passes, time_ms });
+        rows.push(Row { path, about: style.about.clone(), passes, time_ms, why_cpu });
     }
     let start = Instant::now();
     let (scene, camera) = &still_life;
     let share = |within: f64| progress((styles.len() as f64 + within) / pictures);
-    let image = figure_10(executor, scene, camera, SIZE, &share)?;
+    let (image, why_cpu) = figure_10(executor, backend, scene, camera, SIZE, &share)?;
     let time_ms = start.elapsed().as_secs_f64() * 1e3;
     let path = dir.join("figure-10.png");
     image.save_png(&path)?;
     let about = "how shadow outlines come about: hatching, normals negated in shadow, shadows, colours".to_owned();
-    rows.push(Row { path, about, passes: vec!["four pictures"], time_ms });
+    rows.push(Row { path, about, passes: vec!["four pictures"], time_ms, why_cpu });
     Ok(rows)
 }
 
@@ -89,6 +108,9 @@ pub fn table(rows: &[Row]) -> String {
         // Writing to a String cannot fail.
         let _ = writeln!(text, "{path:widest$}  {:>7.1} ms  {}", row.time_ms, row.about);
         let _ = writeln!(text, "{:widest$}              {}", "", row.passes.join("; "));
+        if let Some(why) = &row.why_cpu {
+            let _ = writeln!(text, "{:widest$}              on the CPU: {why}", "");
+        }
     }
     text
 }

@@ -3,6 +3,8 @@
 //! One geometry pass into colour and depth; blended surfaces after it; then lines, two passes over the lines' own
 //! pixels. Everything that does not change from frame to frame is uploaded once, into a [`GpuScene`].
 
+mod adapter;
+mod capabilities;
 mod context;
 mod error;
 mod hatch;
@@ -14,6 +16,8 @@ mod shadow;
 mod surface;
 mod targets;
 
+pub use adapter::{DeviceLimits, GpuAdapter};
+pub use capabilities::{Capabilities, ImageLineMethod, VolumeMethod};
 pub use context::GpuContext;
 pub use error::GpuError;
 pub use scene::GpuScene;
@@ -42,6 +46,8 @@ use surface::{SurfacePass, SurfaceTargets};
 /// Renders frames. Pipelines are made when they are first needed, and kept.
 pub struct GpuRenderer<'a> {
     context: &'a GpuContext,
+    /// What is made use of.
+    capabilities: Capabilities,
     surface: SurfacePass,
     lines: npr_outline::line_pass::LinePass,
     strokes: OnceCell<LineStrokes>,
@@ -53,16 +59,22 @@ pub struct GpuRenderer<'a> {
 }
 
 impl<'a> GpuRenderer<'a> {
-    /// Makes what does not depend on scene or style.
+    /// Makes what does not depend on scene or style, for all that the device can do.
     pub fn new(context: &'a GpuContext) -> Self {
+        Self::with_capabilities(context, context.capabilities.clone())
+    }
+
+    /// The same, making use of no more than `capabilities`.
+    pub fn with_capabilities(context: &'a GpuContext, capabilities: Capabilities) -> Self {
         Self {
             context,
             surface: SurfacePass::new(&context.device),
             lines: npr_outline::line_pass::LinePass::new(
                 &context.device,
                 targets::COLOR_FORMAT,
-                context.can_find_lines,
+                capabilities.can_find_lines(),
             ),
+            capabilities,
             strokes: OnceCell::new(),
             printed: OnceCell::new(),
             ink: Default::default(),
@@ -77,20 +89,19 @@ impl<'a> GpuRenderer<'a> {
     /// # Errors
     /// [`GpuError::BufferTooLarge`].
     pub fn upload(&self, scene: &Scene, plan: &Plan, method: LineMethod) -> Result<GpuScene, GpuError> {
-        let (context, hardware) = (self.context, !self.context.is_software());
-        let (on_device, strokes) = match method {
-            LineMethod::Auto => (hardware && context.can_find_lines, !hardware && context.can_stroke),
-            LineMethod::Rectangles => (false, false),
-            LineMethod::Strokes => (false, true),
-            LineMethod::OnDevice => (true, false),
-        };
-        let mut uploaded = GpuScene::new(self.context, &self.surface, scene, plan)?;
+        let capabilities = &self.capabilities;
+        let lines = if method == LineMethod::Auto { capabilities.lines().0 } else { method };
+        let on_device = lines == LineMethod::OnDevice;
+        let mut uploaded = GpuScene::new(self.context, capabilities, &self.surface, scene, plan)?;
         if let (true, Some(contours)) = (on_device, &plan.contours) {
             uploaded.edges = Some(self.lines.upload_edges(&self.context.device, contours, &scene.model.positions)?);
         }
-        uploaded.strokes = strokes;
+        uploaded.strokes = lines == LineMethod::Strokes;
         if let Some(shadow) = plan.shadow.as_ref().filter(|shadow| shadow.style.method == ShadowMethod::Volumes) {
-            let sorted_there = on_device || method == LineMethod::Auto && hardware;
+            let sorted_there = match method {
+                LineMethod::Auto => capabilities.volumes().0 == VolumeMethod::OnDevice,
+                method => method == LineMethod::OnDevice,
+            };
             uploaded.casting = Some(self.shadows.upload(self.context, &shadow.casters, sorted_there)?);
         }
         if let Some(fins) = &plan.printed_fins {
@@ -122,7 +133,7 @@ impl<'a> GpuRenderer<'a> {
     /// # Errors
     /// [`GpuError::TooLarge`].
     pub fn targets_of_samples(&self, width: u32, height: u32, samples: u32) -> Result<Targets, GpuError> {
-        Targets::new(self.context, width, height, samples)
+        Targets::new(self.context, &self.capabilities, (width, height), samples)
     }
 
     /// Submits a frame. It is done when [`GpuContext::wait`] returns.
@@ -146,7 +157,7 @@ impl<'a> GpuRenderer<'a> {
         targets.begin();
         let mut encoder = device.create_command_encoder(&Default::default());
         let ink = match &plan.image {
-            Some(image) => Some((image, targets.ink(self.context, image)?)),
+            Some(image) => Some((image, targets.ink(self.context, &self.capabilities, image)?)),
             None => None,
         };
         let shadow_of = |encoder: &mut wgpu::CommandEncoder, size: (u32, u32), stencil: &StencilTarget| {
@@ -157,8 +168,10 @@ impl<'a> GpuRenderer<'a> {
                 let drawn = SurfaceTargets { color: None, texels: None, depth, size_px, samples: 1 };
                 self.surface.record(device, encoder, uploaded, scene, style, plan, camera, &light, None, &drawn)
             };
-            let context = self.context;
-            self.shadows.record(context, encoder, uploaded, scene, &frame, stencil, &mut draw_depth).map(Some)
+            let (context, capabilities) = (self.context, &self.capabilities);
+            self.shadows
+                .record(context, capabilities, encoder, uploaded, scene, &frame, stencil, &mut draw_depth)
+                .map(Some)
         };
         // A picture that is left as paper shows nothing of shadows but by its lines.
         let one_pass = ink.as_ref().is_none_or(|(_, ink)| ink.depth.is_none());
@@ -239,7 +252,8 @@ impl<'a> GpuRenderer<'a> {
                     &drawn,
                 )?;
             }
-            self.ink.record(self.context, &mut encoder, scene.bounds(), image, camera, ink, targets)?;
+            let (method, _) = self.capabilities.image_lines();
+            self.ink.record(self.context, method, &mut encoder, scene.bounds(), image, camera, ink, targets)?;
         }
         self.context.queue.submit([encoder.finish()]);
         Ok(())
@@ -277,13 +291,15 @@ impl<'a> GpuRenderer<'a> {
     }
 }
 
-/// Renders one picture: upload, draw, fetch. `samples`: along each axis of a pixel.
+/// Renders one picture, making use of no more than `capabilities`: upload, draw, fetch. `samples`: along each axis of a
+/// pixel.
 ///
 /// # Errors
 /// [`GpuError`].
 #[expect(clippy::too_many_arguments, reason = "each is a thing of its own; a struct would only rename them")]
 pub fn render(
     context: &GpuContext,
+    capabilities: Capabilities,
     scene: &Scene,
     style: &Style,
     plan: &Plan,
@@ -292,7 +308,7 @@ pub fn render(
     samples: u32,
     method: LineMethod,
 ) -> Result<Image, GpuError> {
-    let renderer = GpuRenderer::new(context);
+    let renderer = GpuRenderer::with_capabilities(context, capabilities);
     let targets = renderer.targets_of_samples(width, height, samples)?;
     let uploaded = renderer.upload(scene, plan, method)?;
     renderer.draw(scene, &uploaded, style, plan, camera, &targets)?;

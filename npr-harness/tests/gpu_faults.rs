@@ -121,7 +121,7 @@ fn pictures_beyond_the_limits_are_refused_by_name() {
         let done = render(&executor, name, size);
         let Err(HarnessError::Gpu(GpuError::TooLarge { limit: said, .. })) = done else { panic!("{name}: {done:?}") };
         assert_eq!(said, limit);
-        let error = HarnessError::Gpu(GpuError::TooLarge { width: size.0, height: size.1, limit });
+        let error = HarnessError::Gpu(GpuError::TooLarge { what: "the picture", width: size.0, height: size.1, limit });
         let instead = Executor::instead(Backend::Auto, error);
         if GpuPolicy::from_env().expect("a policy") == GpuPolicy::Auto {
             assert!(instead.is_ok_and(|executor| executor.is_cpu()));

@@ -160,7 +160,7 @@ fn on_device(context: &GpuContext, bands: &Bands, inputs: &[[f32; 16]]) -> Vec<[
 fn toon_functions_are_the_same_on_the_device() {
     let Some(executor) = device() else { return };
     let Executor::Gpu(context) = &executor else { return };
-    if !context.can_find_lines {
+    if !context.capabilities.compute {
         println!("skipped: {} has no compute shaders", context.describe());
         return;
     }

@@ -36,8 +36,8 @@ pub fn compare(context: &GpuContext, scene: &Scene, camera: &Camera, cases: &[Ca
     let prepared: Vec<_> = cases
         .iter()
         .filter(|(_, _, method, _)| match method {
-            LineMethod::OnDevice => context.can_find_lines,
-            LineMethod::Strokes => context.can_stroke,
+            LineMethod::OnDevice => context.capabilities.can_find_lines(),
+            LineMethod::Strokes => context.capabilities.can_stroke(),
             LineMethod::Auto | LineMethod::Rectangles => true,
         })
         .map(|(name, style, method, samples)| {

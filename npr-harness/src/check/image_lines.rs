@@ -9,6 +9,7 @@ use super::{Checker, SIZE, WITHIN_PX, darkness, one_px_style};
 use crate::camera::Camera;
 use crate::cpu::{self, CpuOptions};
 use crate::error::HarnessError;
+use crate::executor::Picture;
 use crate::image_ink::{ImageInk, Regions};
 use crate::line_truth::{
     MOST_FACES_MEETING, TrueLines, TrueSegment, accuracy, drawn_centreline, scene_edge, true_lines,
@@ -88,7 +89,8 @@ impl Checker<'_> {
         for (technique, ink) in filters() {
             let style = one_px_style(Lines::Image(ink));
             let plan = Plan::new(scene, &style, camera)?;
-            let image = self.executor.render(scene, &style, &plan, camera, SIZE, 1, &|_| {})?;
+            let picture = Picture { scene, style: &style, plan: &plan, camera, size: SIZE, samples: 1 };
+            let Some(image) = self.render(model, view, technique, &picture)? else { continue };
             judge(self, technique, &darkness(&image));
         }
         let plan = Plan::new(scene, &style, camera)?;

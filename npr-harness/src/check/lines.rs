@@ -62,7 +62,7 @@ impl Checker<'_> {
         use crate::plan::LineMethod;
         use std::collections::BTreeSet;
         let Executor::Gpu(context) = self.executor else { return Ok(()) };
-        if !context.can_find_lines {
+        if !context.capabilities.can_find_lines() {
             self.skipped.push(format!("line finder of {model}, {view}: {} cannot run it", context.describe()));
             return Ok(());
         }

@@ -3,7 +3,7 @@
 use crate::camera::Camera;
 use crate::compare::Image;
 use crate::error::HarnessError;
-use crate::executor::Executor;
+use crate::executor::{Backend, CpuReason, Executor, Picture};
 use crate::image_ink::ImageInk;
 use crate::plan::Plan;
 use crate::scene::Scene;
@@ -40,28 +40,33 @@ pub fn figure_10_styles() -> [Style; 4] {
     ]
 }
 
-/// The four panels in one picture, each of half its width and height.
+/// The four panels in one picture, each of half its width and height; why the CPU made one of them, where a device could
+/// not.
 ///
 /// # Errors
 /// [`HarnessError`].
 pub fn figure_10(
-    executor: &Executor,
+    executor: &mut Executor,
+    backend: Backend,
     scene: &Scene,
     camera: &Camera,
     (width, height): (u32, u32),
     progress: &(dyn Fn(f64) + Sync),
-) -> Result<Image, HarnessError> {
+) -> Result<(Image, Option<CpuReason>), HarnessError> {
     let (columns, rows) = (width / 2, height / 2);
     let mut rgba8 = vec![255; width as usize * height as usize * 4];
+    let mut why_cpu = None;
     for (number, style) in (0u32..).zip(figure_10_styles()) {
         let plan = Plan::new(scene, &style, camera)?;
         let share = |share: f64| progress((f64::from(number) + share) / 4.0);
-        let panel = executor.render(scene, &style, &plan, camera, (columns, rows), 1, &share)?;
+        let picture = Picture { scene, style: &style, plan: &plan, camera, size: (columns, rows), samples: 1 };
+        let (panel, why) = executor.render_or_instead(backend, &picture, &share)?;
+        why_cpu = why_cpu.or(why);
         let (left, top) = (number % 2 * columns, number / 2 * rows);
         for (row, bytes) in (top..).zip(panel.rgba8.chunks_exact(columns as usize * 4)) {
             let start = (row as usize * width as usize + left as usize) * 4;
             rgba8[start..start + bytes.len()].copy_from_slice(bytes);
         }
     }
-    Ok(Image::new(width, height, rgba8)?)
+    Ok((Image::new(width, height, rgba8)?, why_cpu))
 }

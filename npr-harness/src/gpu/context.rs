@@ -1,7 +1,8 @@
 //! An adapter, a device, and what went wrong on it.
 
 use super::GpuError;
-use npr_outline::line_strokes::STROKE_FORMAT;
+use super::adapter::{DeviceLimits, GpuAdapter};
+use super::capabilities::Capabilities;
 use std::sync::{Arc, Mutex};
 
 /// A device to render on.
@@ -12,10 +13,8 @@ pub struct GpuContext {
     pub queue: wgpu::Queue,
     /// What it is.
     pub info: wgpu::AdapterInfo,
-    /// Whether lines can be found on the device.
-    pub can_find_lines: bool,
-    /// Whether lines can be drawn by compute shaders.
-    pub can_stroke: bool,
+    /// What it can do.
+    pub capabilities: Capabilities,
     faults: Arc<Mutex<Faults>>,
 }
 
@@ -28,46 +27,18 @@ struct Faults {
 }
 
 impl GpuContext {
-    /// Takes a hardware adapter, else a software one.
+    /// Opens the adapter that [`GpuAdapter::find`] takes, with the limits of the environment ([`DeviceLimits::from_env`]).
     ///
     /// # Errors
-    /// [`GpuError::NoAdapter`] with what was looked at, or why the device could not be had.
+    /// [`GpuError::NoAdapter`] with what was looked at, why the device could not be had, [`GpuError::Limits`].
     pub fn new() -> Result<Self, GpuError> {
-        pollster::block_on(Self::request())
+        GpuAdapter::find()?.open(DeviceLimits::from_env()?)
     }
 
-    async fn request() -> Result<Self, GpuError> {
-        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
-        let mut adapters = instance.enumerate_adapters(wgpu::Backends::all()).await;
-        let seen: Vec<String> = adapters.iter().map(|a| describe(&a.get_info())).collect();
-        adapters.retain(is_enough);
-        // Stable: of equals the one that the system names first.
-        adapters.sort_by_key(|adapter| rank(&adapter.get_info()));
-        let adapter = adapters.first().ok_or(GpuError::NoAdapter { seen })?;
+    /// What `adapter` gave.
+    pub(super) fn of(adapter: &wgpu::Adapter, device: wgpu::Device, queue: wgpu::Queue) -> Self {
         let info = adapter.get_info();
-        // The latter two for shadows.
-        let wanted = wgpu::Features::TIMESTAMP_QUERY
-            | wgpu::Features::DEPTH32FLOAT_STENCIL8
-            | wgpu::Features::DEPTH_CLIP_CONTROL;
-        let flags = adapter.get_downlevel_capabilities().flags;
-        let can_find_lines = flags
-            .contains(wgpu::DownlevelFlags::VERTEX_STORAGE | wgpu::DownlevelFlags::INDIRECT_EXECUTION)
-            && flags.contains(wgpu::DownlevelFlags::COMPUTE_SHADERS);
-        let limits = adapter.limits();
-        let stored = adapter.get_texture_format_features(STROKE_FORMAT).allowed_usages;
-        let can_stroke = flags.contains(wgpu::DownlevelFlags::COMPUTE_SHADERS)
-            && stored.contains(wgpu::TextureUsages::STORAGE_BINDING)
-            && limits.max_storage_buffers_per_shader_stage >= 4
-            && limits.max_storage_textures_per_shader_stage >= 1;
-        let (device, queue) = adapter
-            .request_device(&wgpu::DeviceDescriptor {
-                label: Some("npr"),
-                required_features: adapter.features() & wanted,
-                required_limits: limits,
-                ..Default::default()
-            })
-            .await
-            .map_err(|source| GpuError::NoDevice { adapter: describe(&info), source })?;
+        let capabilities = Capabilities::new(adapter, &device);
         // Without these, wgpu ends the process.
         let faults = Arc::new(Mutex::new(Faults::default()));
         let sink = Arc::clone(&faults);
@@ -82,17 +53,17 @@ impl GpuContext {
                 faults.lost.get_or_insert_with(|| one_line(&format!("{reason:?} {message}")));
             }
         });
-        Ok(Self { device, queue, info, can_find_lines, can_stroke, faults })
+        Self { device, queue, info, capabilities, faults }
     }
 
     /// Whether the adapter runs on the CPU.
     pub fn is_software(&self) -> bool {
-        self.info.device_type == wgpu::DeviceType::Cpu
+        self.capabilities.software
     }
 
     /// What the adapter is, in a line.
     pub fn describe(&self) -> String {
-        describe(&self.info)
+        super::adapter::describe(&self.info)
     }
 
     /// Waits for all that was submitted.
@@ -149,28 +120,4 @@ impl GpuContext {
 /// wgpu tells causes on lines of their own.
 fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
-}
-
-fn describe(info: &wgpu::AdapterInfo) -> String {
-    format!("{} ({:?}, {})", info.name, info.backend, info.driver_info)
-}
-
-/// What every picture needs of an adapter.
-fn is_enough(adapter: &wgpu::Adapter) -> bool {
-    let depth = adapter.get_texture_format_features(wgpu::TextureFormat::Depth32Float).allowed_usages;
-    depth.contains(wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING)
-        && adapter.limits().max_color_attachments > 0
-        && adapter.get_info().backend != wgpu::Backend::Noop
-}
-
-/// Hardware before software, Vulkan, Metal and DirectX before OpenGL.
-fn rank(info: &wgpu::AdapterInfo) -> (u8, u8) {
-    let kind = match info.device_type {
-        wgpu::DeviceType::DiscreteGpu => 0,
-        wgpu::DeviceType::IntegratedGpu => 1,
-        wgpu::DeviceType::VirtualGpu => 2,
-        wgpu::DeviceType::Other => 3,
-        wgpu::DeviceType::Cpu => 4,
-    };
-    (kind, u8::from(info.backend == wgpu::Backend::Gl))
 }

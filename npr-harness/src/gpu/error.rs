@@ -18,9 +18,13 @@ pub enum GpuError {
         /// Why.
         source: wgpu::RequestDeviceError,
     },
-    /// A picture larger than the device's textures can be.
-    #[error("{width} × {height} px: this device renders at most {limit} × {limit} px (the CPU has no such limit)")]
+    /// A texture larger than the device's can be.
+    #[error(
+        "{what} of {width} × {height} px: this device's textures have at most {limit} × {limit} px (the CPU has no such limit)"
+    )]
     TooLarge {
+        /// What of the picture.
+        what: &'static str,
         /// Px.
         width: u32,
         /// Px.
@@ -62,6 +66,12 @@ pub enum GpuError {
     /// Shadow volumes in a parallel view, whose depth ends, on a device that cuts off what is farther.
     #[error("this device cannot draw shadow volumes in a parallel view (a shadow map, or the CPU, can)")]
     ParallelVolumes,
+    /// An environment variable that names no limits.
+    #[error("NPR_GPU_LIMITS={name:?}: it must be adapter or webgl2")]
+    Limits {
+        /// What it says.
+        name: String,
+    },
     /// The device is there no more.
     #[error("the graphics device was lost: {reason}")]
     Lost {
@@ -115,7 +125,13 @@ impl GpuError {
             Self::Outline(error) => {
                 matches!(error, OutlineError::TooManyEdges { .. } | OutlineError::PictureTooLarge { .. })
             }
-            Self::ImageSpace(_) | Self::Toon(_) | Self::Gooch(_) | Self::Hatch(_) => false,
+            Self::Hatch(error) => matches!(error, npr_hatch::HatchError::TooLarge { .. }),
+            Self::Limits { .. } | Self::ImageSpace(_) | Self::Toon(_) | Self::Gooch(_) => false,
         }
+    }
+
+    /// Whether the device makes no further picture.
+    pub(crate) fn is_final(&self) -> bool {
+        matches!(self, Self::Lost { .. } | Self::OutOfMemory { .. })
     }
 }

@@ -1,11 +1,11 @@
 //! Strokes on the device: what pipelines know of them, a uniform, and the map's textures.
 
 use super::light::uniform_buffer;
-use super::{GpuContext, GpuError};
+use super::{Capabilities, GpuContext, GpuError};
 use crate::hatch::HatchPlan;
 use crate::style::{HatchEncoding, HatchGround, HatchMapping, HatchShade, HatchTransfer, Style, six_tones};
 use glam::DVec3;
-use npr_hatch::upload::{TamChannels, hatch_sampler, hatch_threshold_sampler, upload_tam, upload_thresholds};
+use npr_hatch::upload::{hatch_sampler, hatch_threshold_sampler, upload_tam, upload_thresholds};
 
 /// `SurfaceHatch` of `surface_hatch.wgsl`.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
@@ -119,7 +119,7 @@ impl HatchTextures {
         }
     }
 
-    pub(super) fn new(context: &GpuContext, plan: &HatchPlan) -> Result<Self, GpuError> {
+    pub(super) fn new(context: &GpuContext, capabilities: &Capabilities, plan: &HatchPlan) -> Result<Self, GpuError> {
         let (device, queue) = (&context.device, &context.queue);
         let mut textures = Self::blank(device);
         let view = |texture: wgpu::Texture| texture.create_view(&Default::default());
@@ -129,7 +129,7 @@ impl HatchTextures {
                 textures.sampler = hatch_threshold_sampler(device);
             }
             None => {
-                let channels = if context.is_software() { TamChannels::HalfFloats } else { TamChannels::Bytes };
+                let (channels, _) = capabilities.tonal_art_map();
                 let tam = upload_tam(device, queue, plan.tam()?, channels)?;
                 (textures.light, textures.dark) = (view(tam.light), view(tam.dark));
             }

@@ -1,5 +1,6 @@
 //! Lines in the image on the device: filter, brush and composite.
 
+use super::capabilities::ImageLineMethod;
 use super::targets::{COLOR_FORMAT, InkTargets, Targets};
 use super::{GpuContext, GpuError};
 use crate::camera::Camera;
@@ -30,17 +31,13 @@ pub(super) struct InkPasses {
     lay: OnceCell<LayPass>,
 }
 
-/// Whether lines are found by compute shaders: a rasteriser that is software is slower at it.
-fn by_strips(context: &GpuContext) -> bool {
-    context.is_software() && context.can_stroke
-}
-
 impl InkPasses {
     /// Finds the lines in the texels that were drawn, and lays them over the picture.
     #[expect(clippy::too_many_arguments, reason = "each is a thing of its own; a struct would only rename them")]
     pub(super) fn record(
         &self,
         context: &GpuContext,
+        method: ImageLineMethod,
         encoder: &mut wgpu::CommandEncoder,
         bounds: Option<(Vec3, Vec3)>,
         image: &ImagePlan,
@@ -49,7 +46,7 @@ impl InkPasses {
         targets: &Targets,
     ) -> Result<(), GpuError> {
         for lines in image.passes() {
-            self.record_lines(context, encoder, bounds, image, lines, camera, ink, targets)?;
+            self.record_lines(context, method, encoder, bounds, image, lines, camera, ink, targets)?;
         }
         Ok(())
     }
@@ -59,6 +56,7 @@ impl InkPasses {
     fn record_lines(
         &self,
         context: &GpuContext,
+        method: ImageLineMethod,
         encoder: &mut wgpu::CommandEncoder,
         bounds: Option<(Vec3, Vec3)>,
         image: &ImagePlan,
@@ -77,7 +75,7 @@ impl InkPasses {
         let filter = &lines.filter;
         // Without a brush lines are laid as they are found, if they are found at the picture's size.
         let found = ink.found.as_ref().filter(|_| lines.brush.is_some() || ink.size != picture_size);
-        if found.is_none() && by_strips(context) && serves(filter, &lines.composite) {
+        if found.is_none() && method == ImageLineMethod::Compute && serves(filter, &lines.composite) {
             let mut strips = self.strips.borrow_mut();
             let pass = strips
                 .entry((structure(filter), image.ink.layout))

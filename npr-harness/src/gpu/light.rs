@@ -243,5 +243,6 @@ impl Blank {
 
 /// A uniform that is written once.
 pub(super) fn uniform_buffer(device: &wgpu::Device, contents: &[u8]) -> wgpu::Buffer {
+    debug_assert!(contents.len().is_multiple_of(16), "WebGL2 binds uniforms of whole vectors");
     filled_buffer(device, "uniform", contents, wgpu::BufferUsages::UNIFORM)
 }

@@ -3,7 +3,7 @@
 use super::hatch::HatchTextures;
 use super::shadow::ShadowCasting;
 use super::surface::{MaterialUniform, SurfacePass};
-use super::{GpuContext, GpuError};
+use super::{Capabilities, GpuContext, GpuError};
 use crate::hatch::HatchVertex;
 use crate::plan::Plan;
 use crate::scene::Scene;
@@ -80,7 +80,13 @@ pub(super) fn is_looked_up(scene: &Scene, material: usize) -> bool {
 }
 
 impl GpuScene {
-    pub(super) fn new(context: &GpuContext, pass: &SurfacePass, scene: &Scene, plan: &Plan) -> Result<Self, GpuError> {
+    pub(super) fn new(
+        context: &GpuContext,
+        capabilities: &Capabilities,
+        pass: &SurfacePass,
+        scene: &Scene,
+        plan: &Plan,
+    ) -> Result<Self, GpuError> {
         let model = &scene.model;
         let buffer = |what, contents: &[u8], usage| buffer(context, what, contents, usage);
         let split =
@@ -117,7 +123,7 @@ impl GpuScene {
                 let vertex = |i: usize| hatch.vertices.get(i).copied().unwrap_or(HatchVertex::zeroed());
                 let vertices: Vec<HatchVertex> = sources().map(vertex).collect();
                 let vertices = buffer("strokes", bytemuck::cast_slice(&vertices), wgpu::BufferUsages::VERTEX)?;
-                Some((vertices, HatchTextures::new(context, hatch)?))
+                Some((vertices, HatchTextures::new(context, capabilities, hatch)?))
             }
             None => None,
         };
@@ -137,7 +143,7 @@ impl GpuScene {
             batches,
             blended_faces,
             materials,
-            most_draws: if context.is_software() { SOFTWARE_DRAWS } else { usize::MAX },
+            most_draws: if capabilities.software { SOFTWARE_DRAWS } else { usize::MAX },
             edges: None,
             strokes: false,
             fins: None,

@@ -2,7 +2,7 @@
 
 use super::light::uniform_buffer;
 use super::scene::GpuScene;
-use super::{GpuContext, GpuError};
+use super::{Capabilities, GpuContext, GpuError};
 use crate::camera::{Camera, Projection};
 use crate::scene::Scene;
 use crate::shadow::{ShadowMethod, ShadowPlan};
@@ -55,15 +55,6 @@ impl BlankShadow {
 
 const MAP_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
-/// Depth with a stencil: as exact as there is.
-pub(super) fn stencil_format(device: &wgpu::Device) -> wgpu::TextureFormat {
-    if device.features().contains(wgpu::Features::DEPTH32FLOAT_STENCIL8) {
-        wgpu::TextureFormat::Depth32FloatStencil8
-    } else {
-        wgpu::TextureFormat::Depth24PlusStencil8
-    }
-}
-
 fn texture(device: &wgpu::Device, label: &str, format: wgpu::TextureFormat, size: (u32, u32)) -> wgpu::Texture {
     device.create_texture(&wgpu::TextureDescriptor {
         label: Some(label),
@@ -85,10 +76,15 @@ pub(super) struct StencilTarget {
 
 impl StencilTarget {
     /// Depth and stencil, and the mask.
-    fn views(&self, device: &wgpu::Device, size: (u32, u32)) -> &(wgpu::TextureView, wgpu::TextureView) {
+    fn views(
+        &self,
+        device: &wgpu::Device,
+        format: wgpu::TextureFormat,
+        size: (u32, u32),
+    ) -> &(wgpu::TextureView, wgpu::TextureView) {
         self.views.get_or_init(|| {
             let view = |label, format| texture(device, label, format, size).create_view(&Default::default());
-            (view("shadow stencil", stencil_format(device)), view("shadow mask", MASK_FORMAT))
+            (view("shadow stencil", format), view("shadow mask", MASK_FORMAT))
         })
     }
 }
@@ -190,6 +186,7 @@ impl ShadowPasses {
     pub(super) fn record(
         &self,
         context: &GpuContext,
+        capabilities: &Capabilities,
         encoder: &mut wgpu::CommandEncoder,
         uploaded: &GpuScene,
         scene: &Scene,
@@ -200,17 +197,17 @@ impl ShadowPasses {
         let device = &context.device;
         let uniform = uniform_buffer(device, bytemuck::bytes_of(&frame.uniform(scene)));
         if let ShadowMethod::Map { side } = frame.plan.style.method {
-            let map = self.draw_map(context, encoder, uploaded, scene, frame.light, side)?;
+            let map = self.draw_map(context, capabilities, encoder, uploaded, scene, frame.light, side)?;
             return Ok(ShadowOnDevice { uniform, mask: None, map: Some(map) });
         }
-        let (depth_stencil, mask) = target.views(device, frame.size);
+        let format = capabilities.stencil_format();
+        let (depth_stencil, mask) = target.views(device, format, frame.size);
         draw_depth(encoder, depth_stencil)?;
         let parallel = matches!(frame.camera.projection, Projection::Orthographic { .. });
-        if parallel && !device.features().contains(wgpu::Features::DEPTH_CLIP_CONTROL) {
+        if parallel && !capabilities.unclipped_depth {
             return Err(GpuError::ParallelVolumes);
         }
-        let pass = self.volumes[usize::from(parallel)]
-            .get_or_init(|| ShadowPass::new(device, stencil_format(device), parallel));
+        let pass = self.volumes[usize::from(parallel)].get_or_init(|| ShadowPass::new(device, format, parallel));
         let aspect = f64::from(frame.size.0) / f64::from(frame.size.1);
         let clip_from_world = frame.camera.clip_from_world(aspect);
         let casting = uploaded.casting.as_ref().expect("what a plan with volumes uploads");
@@ -230,24 +227,23 @@ impl ShadowPasses {
                 draw(&Ref::map(last.borrow(), |last| &last.as_ref().expect("it was just made").1));
             }
         }
-        let pass = self.mask.get_or_init(|| ShadowMaskPass::new(device, stencil_format(device)));
+        let pass = self.mask.get_or_init(|| ShadowMaskPass::new(device, format));
         pass.record(encoder, depth_stencil, mask, area);
         Ok(ShadowOnDevice { uniform, mask: Some(mask.clone()), map: None })
     }
 
+    #[expect(clippy::too_many_arguments, reason = "each is a thing of its own; a struct would only rename them")]
     fn draw_map(
         &self,
         context: &GpuContext,
+        capabilities: &Capabilities,
         encoder: &mut wgpu::CommandEncoder,
         uploaded: &GpuScene,
         scene: &Scene,
         light: DVec4,
         side: u32,
     ) -> Result<wgpu::TextureView, GpuError> {
-        let limit = context.device.limits().max_texture_dimension_2d;
-        if side > limit {
-            return Err(GpuError::TooLarge { width: side, height: side, limit });
-        }
+        capabilities.check_size("the shadow map", (side, side))?;
         let mut kept = self.map_texture.borrow_mut();
         if kept.as_ref().is_none_or(|texture| texture.width() != side) {
             *kept = Some(texture(&context.device, "shadow map", MAP_FORMAT, (side, side)));

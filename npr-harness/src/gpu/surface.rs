@@ -370,45 +370,20 @@ impl SurfacePass {
             filled_buffer(device, "blended faces", bytemuck::cast_slice(&faces), wgpu::BufferUsages::INDEX)
         });
         let paper = style.paper.as_dvec3();
-        let clear = wgpu::Color { r: paper.x, g: paper.y, b: paper.z, a: 1.0 };
-        let attachment = |view, clear| wgpu::RenderPassColorAttachment {
+        let paper = wgpu::LoadOp::Clear(wgpu::Color { r: paper.x, g: paper.y, b: paper.z, a: 1.0 });
+        let attachment = |view, load| wgpu::RenderPassColorAttachment {
             view,
             depth_slice: None,
             resolve_target: None,
-            ops: wgpu::Operations { load: wgpu::LoadOp::Clear(clear), store: wgpu::StoreOp::Store },
+            ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
         };
-        // Zeros are background.
-        let texels = targets.texels.map(|view| attachment(view, wgpu::Color::TRANSPARENT));
-        let attachments = [targets.color.map(|view| attachment(view, clear)), texels];
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("geometry"),
-            color_attachments: match (targets.color, targets.texels) {
-                (None, None) => &[],
-                (_, texels) => &attachments[..if texels.is_some() { 2 } else { 1 }],
-            },
-            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: targets.depth,
-                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Store }),
-                stencil_ops: None,
-            }),
-            ..Default::default()
-        });
-        pass.set_bind_group(0, &view_group, &[]);
-        pass.set_vertex_buffer(0, uploaded.vertices.slice(..));
-        if let Some(lookups) = &uploaded.lookups {
-            pass.set_vertex_buffer(1, lookups.slice(..));
-        }
-        if let Some(regions) = &uploaded.regions {
-            pass.set_vertex_buffer(2, regions.slice(..));
-        }
-        if let Some((vertices, _)) = &uploaded.hatch {
-            pass.set_vertex_buffer(3, vertices.slice(..));
-        }
+        let bound = (&view_group, uploaded, targets.depth);
         let mut set = None;
-        let mut draw = |batch: &Batch, blended: bool| {
+        let mut draw = |pass: &mut wgpu::RenderPass<'_>, batch: &Batch, colored: bool, blended: bool| {
             let material = &scene.model.materials[batch.material];
             let double_sided = material.double_sided;
-            let inking = plan.image.as_ref().filter(|_| targets.texels.is_some()).map(|image| {
+            // A blended surface is no surface to lines in the image.
+            let inking = plan.image.as_ref().filter(|_| targets.texels.is_some() && !blended).map(|image| {
                 let line_kind = image.line_kinds[batch.material];
                 Inking {
                     layout: image.ink.layout,
@@ -430,7 +405,7 @@ impl SurfacePass {
                 shadow: if blended { ShadowVariant::default() } else { ShadowVariant::new(plan, shadow) },
                 depth: targets.depth.texture().format(),
                 hatch: hatch.filter(|_| paint == Paint::Hatched).map(|(shade, plan)| HatchVariant::new(shade, plan)),
-                colored: targets.color.is_some(),
+                colored,
                 clipped: scene.clip.is_some(),
                 inking,
             };
@@ -443,19 +418,38 @@ impl SurfacePass {
                 pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
                 set = Some(variant);
             }
-            uploaded.materials.bind(&mut pass, batch.material);
+            uploaded.materials.bind(pass, batch.material);
             pass.draw_indexed(batch.indices.clone(), 0, 0..1);
         };
+        // WebGL2 has one write mask and one blend state for all targets of a pass. So a picture that is left as paper is
+        // cleared by itself where texels are drawn, and blended surfaces, which have no texels, have a pass of their own.
+        let colored = targets.color.is_some() && (paint != Paint::Nothing || targets.texels.is_none());
+        let color = targets.color.map(|view| attachment(view, paper));
+        // Zeros are background.
+        let texels = targets.texels.map(|view| attachment(view, wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT)));
+        if !colored && color.is_some() {
+            let color_attachments = &[color.clone()];
+            drop(encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some("paper"),
+                color_attachments,
+                ..Default::default()
+            }));
+        }
+        let mut pass = begin(encoder, bound, [color.filter(|_| colored), texels], wgpu::LoadOp::Clear(0.0));
         // Lines in the image that are found at another size hide nothing behind what the picture itself has.
         let needed =
             paint != Paint::Nothing || targets.texels.is_some() || targets.color.is_none() || plan.image.is_none();
         for batch in uploaded.batches.iter().filter(|_| needed) {
-            draw(batch, false);
+            draw(&mut pass, batch, colored, false);
+        }
+        if let (Some(view), Some(_), false) = (targets.color, targets.texels, blended_runs.is_empty()) {
+            drop(pass);
+            pass = begin(encoder, bound, [Some(attachment(view, wgpu::LoadOp::Load)), None], wgpu::LoadOp::Load);
         }
         let mut start = 0;
         for run in blended_runs {
             let end = start + 3 * run.len() as u32;
-            draw(&Batch { material: material_of(&run[0]), indices: start..end }, true);
+            draw(&mut pass, &Batch { material: material_of(&run[0]), indices: start..end }, true, true);
             start = end;
         }
         Ok(())
@@ -464,8 +458,7 @@ impl SurfacePass {
     fn pipeline(&self, device: &wgpu::Device, variant: Variant) -> wgpu::RenderPipeline {
         let Variant { paint, looked_up, by_alpha, cull_back, blended, light, hatch, colored, clipped, inking, .. } =
             variant;
-        // A blended surface is no surface to lines in the image.
-        let inked = inking.is_some() && !blended;
+        let inked = inking.is_some();
         let (vertex, fragment) = match (paint, looked_up, inked) {
             (Paint::Nothing, false, false) => ("vs_depth", if clipped { "fs_clipped" } else { "fs_nothing" }),
             (Paint::Nothing, true, false) => ("vs_textured", "fs_cut_out"),
@@ -513,19 +506,12 @@ impl SurfacePass {
         let target = wgpu::ColorTargetState {
             format: COLOR_FORMAT,
             blend: blended.then_some(wgpu::BlendState::ALPHA_BLENDING),
-            write_mask: if paint == Paint::Nothing {
-                wgpu::ColorWrites::empty()
-            } else if blended {
-                wgpu::ColorWrites::ALL
-            } else {
-                // A solid surface's alpha is what the clear left: 1.
-                wgpu::ColorWrites::COLOR
-            },
+            write_mask: if paint == Paint::Nothing { wgpu::ColorWrites::empty() } else { wgpu::ColorWrites::ALL },
         };
         let texels = inking.map(|inking| wgpu::ColorTargetState {
             format: texel_format(inking.layout),
             blend: None,
-            write_mask: if inked { wgpu::ColorWrites::ALL } else { wgpu::ColorWrites::empty() },
+            write_mask: wgpu::ColorWrites::ALL,
         });
         let (narrow, line_kind, region_of_texture) = inking.map_or((false, LineKind::Normals, false), |inking| {
             (inking.layout == TexelLayout::Narrow, inking.line_kind, inking.region_of_texture)
@@ -544,6 +530,7 @@ impl SurfacePass {
                 ("surface_region_of_texture", flag(region_of_texture)),
                 ("surface_by_alpha", flag(by_alpha)),
                 ("surface_looked_up", flag(looked_up)),
+                ("surface_blended", flag(blended)),
             ])
             .collect();
         let targets = [colored.then_some(target), texels];
@@ -580,6 +567,38 @@ impl SurfacePass {
             cache: None,
         })
     }
+}
+
+/// Begins a pass over colour and texels, if they are there, and depth, with all bound that no material has of its own.
+fn begin<'a>(
+    encoder: &'a mut wgpu::CommandEncoder,
+    (view_group, uploaded, depth): (&wgpu::BindGroup, &GpuScene, &wgpu::TextureView),
+    attachments: [Option<wgpu::RenderPassColorAttachment<'_>>; 2],
+    load_depth: wgpu::LoadOp<f32>,
+) -> wgpu::RenderPass<'a> {
+    let count = if attachments[1].is_some() { 2 } else { usize::from(attachments[0].is_some()) };
+    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some("geometry"),
+        color_attachments: &attachments[..count],
+        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+            view: depth,
+            depth_ops: Some(wgpu::Operations { load: load_depth, store: wgpu::StoreOp::Store }),
+            stencil_ops: None,
+        }),
+        ..Default::default()
+    });
+    pass.set_bind_group(0, view_group, &[]);
+    pass.set_vertex_buffer(0, uploaded.vertices.slice(..));
+    if let Some(lookups) = &uploaded.lookups {
+        pass.set_vertex_buffer(1, lookups.slice(..));
+    }
+    if let Some(regions) = &uploaded.regions {
+        pass.set_vertex_buffer(2, regions.slice(..));
+    }
+    if let Some((vertices, _)) = &uploaded.hatch {
+        pass.set_vertex_buffer(3, vertices.slice(..));
+    }
+    pass
 }
 
 /// Blended faces from the farthest to the nearest, by the eye depth of their middle; equals in the file's order.

@@ -48,6 +48,8 @@ override surface_region_of_texture: bool = false;
 override surface_by_alpha: bool = false;
 // Whether texture coordinates and vertex colours are looked up, where one entry point does both.
 override surface_looked_up: bool = false;
+// Whether the surface is blended over what is behind it.
+override surface_blended: bool = false;
 
 @group(0) @binding(0) var<uniform> view: SurfaceView;
 @group(0) @binding(2) var<uniform> ink: SurfaceInk;
@@ -116,6 +118,11 @@ struct Inked {
 
 struct Texel {
     @location(1) texel: vec2<u32>,
+}
+
+// What is written beside a surface's colour. Not left to a write mask: WebGL2 has one for all targets of a pass.
+fn surface_alpha(alpha: f32) -> f32 {
+    return select(1.0, alpha, surface_blended);
 }
 
 fn to_eye(position_px: vec2<f32>) -> vec3<f32> {
@@ -246,7 +253,7 @@ fn fs_painted(in: Surface, @builtin(front_facing) front: bool) -> @location(0) v
     let at = shadow_at(in.position, normal);
     let color = painted(material.base_color.rgb, normal, in.position.xy, at);
     clip_off(in.position);
-    return vec4<f32>(color, material.base_color.a);
+    return vec4<f32>(color, surface_alpha(material.base_color.a));
 }
 
 @fragment
@@ -259,7 +266,7 @@ fn fs_painted_textured(in: TexturedSurface, @builtin(front_facing) front: bool) 
         discard;
     }
     clip_off(in.position);
-    return vec4<f32>(color, base.a);
+    return vec4<f32>(color, surface_alpha(base.a));
 }
 
 @fragment
@@ -353,7 +360,7 @@ fn fs_painted_inked(in: InkedSurface, @builtin(front_facing) front: bool) -> Ink
     let at = shadow_at(in.position, normal);
     let color = painted(material.base_color.rgb, normal, in.position.xy, at);
     clip_off(in.position);
-    return Inked(vec4<f32>(color, material.base_color.a), plain_words(in, front, at));
+    return Inked(vec4<f32>(color, 1.0), plain_words(in, front, at));
 }
 
 @fragment
@@ -367,7 +374,7 @@ fn fs_painted_textured_inked(in: InkedTexturedSurface, @builtin(front_facing) fr
         discard;
     }
     clip_off(in.position);
-    return Inked(vec4<f32>(color, base.a), textured_words(in, front, texel, at));
+    return Inked(vec4<f32>(color, 1.0), textured_words(in, front, texel, at));
 }
 
 // What the light is at a pixel, wherever it is computed.
@@ -418,7 +425,7 @@ fn fs_lit(in: LitSurface, @builtin(front_facing) front: bool) -> @location(0) ve
         discard;
     }
     clip_off(in.position);
-    return vec4<f32>(color, base.a);
+    return vec4<f32>(color, surface_alpha(base.a));
 }
 
 @fragment
@@ -426,14 +433,14 @@ fn fs_lit_plain(in: PlainLitSurface, @builtin(front_facing) front: bool) -> @loc
     let at = shadow_at(in.position, facing(in.normal, front));
     let color = shaded(material.base_color.rgb, light_of(in, front), at);
     clip_off(in.position);
-    return vec4<f32>(color, material.base_color.a);
+    return vec4<f32>(color, surface_alpha(material.base_color.a));
 }
 
 @fragment
 fn fs_lit_vertex(in: VertexLitSurface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
     let color = shaded(material.base_color.rgb, select(light_of_back(in.light), in.light, front), NO_SHADOW);
     clip_off(in.position);
-    return vec4<f32>(color, material.base_color.a);
+    return vec4<f32>(color, surface_alpha(material.base_color.a));
 }
 
 @fragment
@@ -446,7 +453,7 @@ fn fs_lit_inked(in: LitSurface, @builtin(front_facing) front: bool) -> Inked {
         discard;
     }
     clip_off(in.position);
-    return Inked(vec4<f32>(color, base.a), lit_words(in, texel, front, at));
+    return Inked(vec4<f32>(color, 1.0), lit_words(in, texel, front, at));
 }
 
 @fragment

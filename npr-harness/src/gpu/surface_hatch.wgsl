@@ -235,7 +235,7 @@ fn fs_hatched(in: HatchedSurface, @builtin(front_facing) front: bool) -> @locati
         discard;
     }
     clip_off(in.position);
-    return vec4<f32>(color, base.a);
+    return vec4<f32>(color, surface_alpha(base.a));
 }
 
 @fragment
@@ -249,5 +249,5 @@ fn fs_hatched_inked(in: HatchedSurface, @builtin(front_facing) front: bool) -> I
         discard;
     }
     clip_off(in.position);
-    return Inked(vec4<f32>(color, base.a), lit_words(lit, texel, front, at));
+    return Inked(vec4<f32>(color, 1.0), lit_words(lit, texel, front, at));
 }

@@ -1,7 +1,7 @@
 //! What a frame is drawn into.
 
 use super::shadow::StencilTarget;
-use super::{GpuContext, GpuError};
+use super::{Capabilities, GpuContext, GpuError};
 use crate::compare::Image;
 use crate::image_ink::{ImageInk, ImagePlan, InkScale};
 use npr_imagespace::format::texel::TexelLayout;
@@ -66,13 +66,14 @@ impl InkTargets {
     /// `apart`: the picture's own surfaces are not of its size.
     fn new(
         context: &GpuContext,
+        capabilities: &Capabilities,
         ink: &ImageInk,
         brushed: bool,
         picture: (u32, u32),
         apart: bool,
     ) -> Result<Self, GpuError> {
         let size = ink.scale.size(picture);
-        check_size(context, size)?;
+        capabilities.check_size("the ink", size)?;
         let view = |label, format, usage| texture(context, label, format, usage, size).create_view(&Default::default());
         let read = wgpu::TextureUsages::TEXTURE_BINDING;
         let scaled = ink.scale != InkScale::One;
@@ -87,14 +88,6 @@ impl InkTargets {
             thick: (scaled && brushed).then(|| view("thick ink", INK_FORMAT, read)),
         })
     }
-}
-
-fn check_size(context: &GpuContext, (width, height): (u32, u32)) -> Result<(), GpuError> {
-    let limit = context.device.limits().max_texture_dimension_2d;
-    if width == 0 || height == 0 || width > limit || height > limit {
-        return Err(GpuError::TooLarge { width, height, limit });
-    }
-    Ok(())
 }
 
 fn texture(
@@ -117,18 +110,27 @@ fn texture(
 }
 
 impl Targets {
-    pub(super) fn new(context: &GpuContext, width: u32, height: u32, samples: u32) -> Result<Self, GpuError> {
-        check_size(context, (width, height))?;
+    pub(super) fn new(
+        context: &GpuContext,
+        capabilities: &Capabilities,
+        (width, height): (u32, u32),
+        samples: u32,
+    ) -> Result<Self, GpuError> {
+        capabilities.check_size("the picture", (width, height))?;
         let samples = samples.max(1);
         let fine = match samples {
             1 => None,
-            _ => Some(Box::new(Self::new(context, width.saturating_mul(samples), height.saturating_mul(samples), 1)?)),
+            _ => {
+                let fine = (width.saturating_mul(samples), height.saturating_mul(samples));
+                capabilities.check_size("the picture's samples", fine)?;
+                Some(Box::new(Self::new(context, capabilities, fine, 1)?))
+            }
         };
         let texture = |label, format, usage| texture(context, label, format, usage, (width, height));
         let view = |texture: &wgpu::Texture| texture.create_view(&Default::default());
         let read = wgpu::TextureUsages::TEXTURE_BINDING;
         let stored =
-            if context.can_stroke { wgpu::TextureUsages::STORAGE_BINDING } else { wgpu::TextureUsages::empty() };
+            if capabilities.can_stroke() { wgpu::TextureUsages::STORAGE_BINDING } else { wgpu::TextureUsages::empty() };
         let color = texture("colour", COLOR_FORMAT, read | stored | wgpu::TextureUsages::COPY_SRC);
         let copied = wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::COPY_DST;
         let inked = texture("colour and lines", COLOR_FORMAT, read | copied);
@@ -154,13 +156,19 @@ impl Targets {
     ///
     /// # Errors
     /// [`GpuError::TooLarge`].
-    pub(super) fn ink(&self, context: &GpuContext, image: &ImagePlan) -> Result<Ref<'_, InkTargets>, GpuError> {
+    pub(super) fn ink(
+        &self,
+        context: &GpuContext,
+        capabilities: &Capabilities,
+        image: &ImagePlan,
+    ) -> Result<Ref<'_, InkTargets>, GpuError> {
         let (ink, brushed) = (&image.ink, image.has_brush());
         let kind = (ink.layout, ink.scale, brushed);
         let is_for = |targets: &InkTargets| targets.kind == kind;
         if !self.ink.borrow().as_ref().is_some_and(is_for) {
-            *self.ink.borrow_mut() =
-                Some(InkTargets::new(context, ink, brushed, (self.width, self.height), self.fine.is_some())?);
+            let picture = (self.width, self.height);
+            let made = InkTargets::new(context, capabilities, ink, brushed, picture, self.fine.is_some())?;
+            *self.ink.borrow_mut() = Some(made);
         }
         Ok(Ref::map(self.ink.borrow(), |targets| targets.as_ref().expect("it was just made")))
     }

@@ -14,7 +14,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 pub fn device() -> Option<Executor> {
     match Executor::choose(Backend::Auto).unwrap_or_else(|error| panic!("{error}")) {
         Executor::Cpu { why } => {
-            println!("skipped: {}", why.as_deref().unwrap_or("no device"));
+            println!("skipped: {}", why.map_or_else(|| "no device".to_owned(), |why| why.to_string()));
             None
         }
         #[cfg(feature = "gpu")]

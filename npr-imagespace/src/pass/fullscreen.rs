@@ -204,7 +204,8 @@ fn binding_type(bound: Bound) -> wgpu::BindingType {
 pub(super) fn uniform(device: &wgpu::Device, contents: &[u8]) -> wgpu::Buffer {
     let buffer = device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("ink uniform"),
-        size: (contents.len() as u64).next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT),
+        // WebGL2 binds uniforms of whole vectors.
+        size: (contents.len() as u64).next_multiple_of(16),
         usage: wgpu::BufferUsages::UNIFORM,
         mapped_at_creation: true,
     });

@@ -8,7 +8,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::{DVec3, DVec4};
 use npr_harness::camera::{Camera, Framing};
 use npr_harness::error::HarnessError;
-use npr_harness::executor::{Backend, Executor};
+use npr_harness::executor::{Backend, CpuReason, Executor};
 use npr_harness::picture_limits::{MEMORY_BYTES, MOST_SAMPLES, check_picture};
 use npr_harness::plan::Plan;
 use npr_harness::scene::Scene;
@@ -229,17 +229,19 @@ fn load(path: &Path, options: &LoadOptions) -> Result<npr_mesh::Loaded, HarnessE
 }
 
 fn announce(executor: &Executor) {
-    if let Executor::Cpu { why: Some(why) } = executor {
-        eprintln!("npr: rendering on the CPU: {}", one_line(why));
+    if let Executor::Cpu { why: Some(why @ CpuReason::Unable(_)) } = executor {
+        eprintln!("npr: rendering on the CPU: {}", one_line(&why.to_string()));
     }
 }
 
 fn run_gallery() -> Result<bool, HarnessError> {
-    let executor = Executor::choose(Backend::Auto)?;
+    let backend = Backend::Auto;
+    let mut executor = Executor::choose_for(backend, &gallery::work())?;
     announce(&executor);
     println!("on {}", executor.describe());
     let bar = progress_bar("gallery");
-    let rows = gallery::render(&executor, Path::new("npr-out"), &|share| bar.set_position((share * 1000.0) as u64))?;
+    let tell = |share| bar.set_position((share * 1000.0) as u64);
+    let rows = gallery::render(&mut executor, backend, Path::new("npr-out"), &tell)?;
     bar.finish_and_clear();
     print!("{}", gallery::table(&rows));
     Ok(true)

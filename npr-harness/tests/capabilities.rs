@@ -1,0 +1,247 @@
+//! Each capability of an adapter taken away in turn: the picture stays within the limits of `npr check`, and the methods
+//! name the reason; what cannot be known beforehand falls to the next method, and at last to the CPU.
+#![cfg(feature = "gpu")]
+
+mod common;
+
+use common::device;
+use npr_harness::camera::{Camera, Framing};
+use npr_harness::check::{PLACES, Reference, Shot, magnitude};
+use npr_harness::compare::{Image, Tolerance, compare};
+use npr_harness::cpu::Sight;
+use npr_harness::error::HarnessError;
+use npr_harness::executor::{Backend, CpuReason, Executor, GpuPolicy, Picture};
+use npr_harness::gallery::still_life_camera;
+use npr_harness::gpu::{Capabilities, DeviceLimits, GpuAdapter, GpuContext, GpuError, GpuRenderer};
+use npr_harness::plan::{LineMethod, Plan};
+use npr_harness::scene::Scene;
+use npr_harness::style::{Style, style};
+use npr_mesh::embedded;
+
+const SIZE: (u32, u32) = (192, 108);
+
+/// Lines from edges, lines in the image, a disc over ink of another size, shadow volumes, both kinds of strokes.
+const STYLES: [&str; 6] = ["cartoon", "ink-image", "ink-thick", "toon-shadow", "hatch-planes", "hatch-shadow"];
+
+fn context(limits: DeviceLimits) -> Option<GpuContext> {
+    // Says so where there is none, or fails if there must be one.
+    device()?;
+    Some(GpuAdapter::find().expect("it was there").open(limits).expect("it opens"))
+}
+
+struct Shown {
+    scene: Scene,
+    camera: Camera,
+}
+
+impl Shown {
+    fn new(camera: Camera) -> Self {
+        Self { scene: Scene::new(embedded::scene()), camera }
+    }
+
+    fn parallel() -> Self {
+        let scene = Scene::new(embedded::scene());
+        let aspect = f64::from(SIZE.0) / f64::from(SIZE.1);
+        let framing = Framing { fov_y_rad: None, ..Framing::default() };
+        Self { camera: Camera::framed(scene.corners(), aspect, &framing), scene }
+    }
+
+    /// Compares pictures by a device, of which only some capabilities are used, with the reference.
+    fn check<'a>(&self, context: &GpuContext, style: &Style, cases: impl IntoIterator<Item = (&'a str, Capabilities)>) {
+        let plan = Plan::new(&self.scene, style, &self.camera).expect("a good style");
+        let sight = Sight::kept(&self.scene, &self.camera, SIZE, PLACES);
+        let magnitude = magnitude(&plan);
+        let mut reference =
+            Reference::new(Shot { sight: &sight, style, plan: &plan, samples: 1 }).expect("the sizes are one");
+        let tolerance = [Tolerance { magnitude, count: 0 }];
+        let mut closer = false;
+        for (what, capabilities) in cases {
+            let image = self.render(context, &capabilities, style, &plan).expect("a picture");
+            let mut comparison = compare(&reference.image, &image, &reference.exempt).expect("one size");
+            if !comparison.passes(&tolerance) && !closer {
+                reference.look_closer().expect("one size");
+                closer = true;
+                comparison = compare(&reference.image, &image, &reference.exempt).expect("one size");
+            }
+            let name = &style.name;
+            assert!(comparison.passes(&tolerance), "{name}, {what}: {} of 255", comparison.worst);
+            // A small picture has more edges for its pixels than those of `npr check`.
+            assert!(comparison.exempt_share() < 0.1, "{name}, {what}: {} exempt", comparison.exempt_share());
+        }
+    }
+
+    fn render(
+        &self,
+        context: &GpuContext,
+        capabilities: &Capabilities,
+        style: &Style,
+        plan: &Plan,
+    ) -> Result<Image, GpuError> {
+        let renderer = GpuRenderer::with_capabilities(context, capabilities.clone());
+        let targets = renderer.targets(SIZE.0, SIZE.1)?;
+        let uploaded = renderer.upload(&self.scene, plan, LineMethod::Auto)?;
+        renderer.draw(&self.scene, &uploaded, style, plan, &self.camera, &targets)?;
+        renderer.read(&targets)
+    }
+}
+
+fn named(name: &str) -> Style {
+    style(name).expect("a style of this crate")
+}
+
+/// What is taken away, and what the methods of some style then say.
+type Case = (&'static str, fn(&mut Capabilities), &'static str, &'static str);
+
+const CASES: [Case; 9] = [
+    ("nothing", |c| c.software = false, "cartoon", "found and drawn on the device"),
+    ("compute shaders", |c| c.compute = false, "cartoon", "no compute shaders"),
+    (
+        "storage in vertex shaders",
+        |c| (c.software, c.vertex_storage) = (false, false),
+        "cartoon",
+        "no storage buffers in vertex shaders",
+    ),
+    (
+        "indirect draws",
+        |c| (c.software, c.indirect_draws) = (false, false),
+        "cartoon",
+        "no draws with arguments in a buffer",
+    ),
+    (
+        "pictures written by compute shaders",
+        |c| (c.software, c.picture_storage) = (true, false),
+        "ink-image",
+        "cannot write pictures",
+    ),
+    ("a stencil beside floats", |c| c.float_stencil = false, "toon-shadow", "no stencil beside floats"),
+    ("depth as computed", |c| c.exact_depth = false, "lines", "multiples of 2^-24"),
+    ("a software adapter's filtering", |c| c.software = true, "hatch-planes", "half floats"),
+    ("hardware's filtering", |c| c.software = false, "hatch-planes", "bytes"),
+];
+
+#[test]
+fn without_a_capability_the_picture_is_right_and_the_reason_named() {
+    let Some(context) = context(DeviceLimits::Adapter) else { return };
+    let shown = Shown::new(still_life_camera());
+    let cases = CASES.map(|(what, take, ..)| {
+        let mut capabilities = context.capabilities.clone();
+        take(&mut capabilities);
+        (what, capabilities)
+    });
+    for name in STYLES {
+        shown.check(&context, &named(name), cases.clone());
+    }
+    for ((what, capabilities), (.., of_style, said)) in cases.iter().zip(CASES) {
+        let style = named(of_style);
+        let plan = Plan::new(&shown.scene, &style, &shown.camera).expect("a good style");
+        let methods = capabilities.methods(&plan, false, SIZE, 1).expect("a small picture");
+        assert!(methods.iter().any(|method| method.why.contains(said)), "{what}: {methods:?}");
+    }
+}
+
+/// On hardware each of the three things that finding lines on the device takes is the reason if it alone is missing.
+#[test]
+fn lines_are_found_on_the_cpu_for_the_reason_that_is_there() {
+    let all = Capabilities {
+        software: false,
+        compute: true,
+        vertex_storage: true,
+        indirect_draws: true,
+        picture_storage: true,
+        unclipped_depth: true,
+        float_stencil: true,
+        exact_depth: true,
+        texture_px: 2048,
+        buffer_bytes: 1 << 28,
+    };
+    assert_eq!(all.lines(), (LineMethod::OnDevice, "found and drawn on the device"));
+    for (missing, reason) in [
+        (Capabilities { compute: false, ..all.clone() }, "compute shaders"),
+        (Capabilities { vertex_storage: false, ..all.clone() }, "storage buffers in vertex shaders"),
+        (Capabilities { indirect_draws: false, ..all.clone() }, "draws with arguments in a buffer"),
+    ] {
+        let (method, why) = missing.lines();
+        assert_eq!(method, LineMethod::Rectangles, "{reason}");
+        assert!(why.contains(reason), "{why}");
+    }
+    assert_eq!(Capabilities { software: true, ..all }.lines().0, LineMethod::Strokes);
+}
+
+#[test]
+fn shadow_volumes_in_a_parallel_view_need_unclipped_depth() {
+    let Some(context) = context(DeviceLimits::Adapter) else { return };
+    let shown = Shown::parallel();
+    let style = named("toon-shadow");
+    if context.capabilities.unclipped_depth {
+        shown.check(&context, &style, [("parallel", context.capabilities.clone())]);
+    }
+    let clipped = Capabilities { unclipped_depth: false, ..context.capabilities.clone() };
+    let plan = Plan::new(&shown.scene, &style, &shown.camera).expect("a good style");
+    assert!(matches!(clipped.methods(&plan, true, SIZE, 1), Err(GpuError::ParallelVolumes)));
+    clipped.methods(&plan, false, SIZE, 1).expect("perspective views have no far plane");
+    assert!(matches!(shown.render(&context, &clipped, &style, &plan), Err(GpuError::ParallelVolumes)));
+}
+
+#[test]
+fn under_webgl2_limits_pictures_are_right_or_the_texture_is_named() {
+    let Some(mut context) = context(DeviceLimits::Webgl2) else { return };
+    let capabilities = &context.capabilities;
+    assert!(!capabilities.compute && !capabilities.can_find_lines() && capabilities.texture_px == 2048);
+    let shown = Shown::new(still_life_camera());
+    for name in STYLES {
+        shown.check(&context, &named(name), [("WebGL2", context.capabilities.clone())]);
+    }
+    // Ink at twice the size of 1280 × 720.
+    let style = named("ink-thick");
+    let plan = Plan::new(&shown.scene, &style, &shown.camera).expect("a good style");
+    let refused = context.capabilities.methods(&plan, false, (1280, 720), 1);
+    let Err(GpuError::TooLarge { what: "the ink", width: 2560, height: 1440, limit: 2048 }) = refused else {
+        panic!("{refused:?}")
+    };
+    let (scene, camera) = (&shown.scene, &shown.camera);
+    let samples = |samples| context.capabilities.methods(&plan, false, (960, 540), samples);
+    samples(2).expect("1920 × 1080 samples");
+    assert!(matches!(samples(3), Err(GpuError::TooLarge { what: "the picture's samples", .. })));
+
+    // A driver that refuses what it promised: the next method is taken.
+    context.capabilities.compute = true;
+    context.capabilities.picture_storage = true;
+    let cartoon = named("cartoon");
+    let plan = Plan::new(scene, &cartoon, camera).expect("a good style");
+    let refused = shown.render(&context, &context.capabilities, &cartoon, &plan);
+    assert!(matches!(refused, Err(GpuError::Device { .. })), "{refused:?}");
+    let executor = Executor::Gpu(Box::new(context));
+    let picture = Picture { scene, style: &cartoon, plan: &plan, camera, size: SIZE, samples: 1 };
+    executor.render_picture(&picture, &|_| {}).expect("without compute shaders it can");
+}
+
+#[test]
+fn what_a_device_cannot_make_the_cpu_makes_unless_a_device_is_required() {
+    let Some(context) = context(DeviceLimits::Webgl2) else { return };
+    let scene = Scene::new(embedded::cube());
+    let camera = Camera::framed(scene.corners(), 1100.0 / 8.0, &Framing::default());
+    let style = named("ink-thick");
+    let plan = Plan::new(&scene, &style, &camera).expect("a good style");
+    let picture = Picture { scene: &scene, style: &style, plan: &plan, camera: &camera, size: (1100, 8), samples: 1 };
+    let mut executor = Executor::Gpu(Box::new(context));
+    let required = GpuPolicy::from_env().expect("a policy") == GpuPolicy::Required;
+    for backend in [Backend::Auto, Backend::Gpu] {
+        let done = executor.render_or_instead(backend, &picture, &|_| {});
+        if required || backend == Backend::Gpu {
+            assert!(matches!(done, Err(HarnessError::Gpu(GpuError::TooLarge { what: "the ink", .. }))), "{backend:?}");
+            continue;
+        }
+        let (image, why) = done.expect("the CPU makes it");
+        assert_eq!((image.width, image.height), (1100, 8));
+        assert!(matches!(&why, Some(CpuReason::Unable(why)) if why.contains("2200 × 16")), "{why:?}");
+    }
+    assert!(!executor.is_cpu(), "the device still makes smaller pictures");
+    if !required {
+        let Executor::Gpu(context) = &executor else { panic!("a device") };
+        context.device.destroy();
+        let small = Picture { size: (16, 16), ..picture };
+        let (_, why) = executor.render_or_instead(Backend::Auto, &small, &|_| {}).expect("the CPU makes it");
+        assert!(matches!(&why, Some(CpuReason::Unable(why)) if why.contains("lost")), "{why:?}");
+        assert!(executor.is_cpu(), "a lost device makes no further picture");
+    }
+}
