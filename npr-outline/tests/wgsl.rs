@@ -14,6 +14,7 @@ const FIN_PASS: &str = include_str!("../src/fin_pass.wgsl");
 
 const SHADOW_VOLUME: &str = include_str!("../src/shadow_volume.wgsl");
 const SHADOW_PASS: &str = include_str!("../src/shadow_pass.wgsl");
+const SHADOW_MASK: &str = include_str!("../src/shadow_mask.wgsl");
 
 fn validated(parts: &[&str]) -> naga::Module {
     let source = parts.concat();
@@ -36,6 +37,7 @@ fn modules_validate_as_the_passes_use_them() {
     assert_eq!(entry_points(&[LINE, COMPACTION]), ["compact"]);
     assert_eq!(entry_points(&[NORMAL_FORMAT, FIN_PRINTED, FIN_PASS]), ["vs_fin", "vs_fin_oct", "fs_fin"]);
     assert_eq!(entry_points(&[SHADOW_VOLUME, SHADOW_PASS]), ["vs_side", "vs_cap", "vs_placed"]);
+    assert_eq!(entry_points(&[SHADOW_MASK]), ["vs_shadow_mask", "fs_in_shadow", "fs_lit"]);
 }
 
 #[test]

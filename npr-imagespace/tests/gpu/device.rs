@@ -6,10 +6,12 @@ use std::sync::OnceLock;
 pub struct Gpu {
     pub device: wgpu::Device,
     pub queue: wgpu::Queue,
+    /// Whether it runs compute shaders.
+    pub compute: bool,
 }
 
 /// The device that the tests share, or `None`, having said so, where `NPR_GPU` is `off`, or there is no adapter and
-/// `NPR_GPU` is not `required`.
+/// `NPR_GPU` is not `required`. With `NPR_GPU_LIMITS=webgl2` it has no more than every WebGL2 device.
 pub fn gpu() -> Option<&'static Gpu> {
     static GPU: OnceLock<Option<Gpu>> = OnceLock::new();
     let wish = std::env::var("NPR_GPU").unwrap_or_else(|_| "auto".into());
@@ -29,9 +31,17 @@ fn open(required: bool) -> Option<Gpu> {
         Err(_) => return None,
     };
     println!("adapter: {}", adapter.get_info().name);
-    let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default()))
-        .expect("an adapter gives a device with the default limits");
-    Some(Gpu { device, queue })
+    let limits = std::env::var("NPR_GPU_LIMITS").unwrap_or_default();
+    let required_limits = match &*limits {
+        "" | "adapter" => wgpu::Limits::default().or_worse_values_from(&adapter.limits()),
+        "webgl2" => wgpu::Limits::downlevel_webgl2_defaults().using_alignment(adapter.limits()),
+        other => panic!("NPR_GPU_LIMITS={other:?}: it must be adapter or webgl2"),
+    };
+    let descriptor = wgpu::DeviceDescriptor { required_limits, ..Default::default() };
+    let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).expect("an adapter gives a device");
+    let compute = adapter.get_downlevel_capabilities().flags.contains(wgpu::DownlevelFlags::COMPUTE_SHADERS)
+        && device.limits().max_compute_invocations_per_workgroup >= 64;
+    Some(Gpu { device, queue, compute })
 }
 
 impl Gpu {
@@ -68,7 +78,10 @@ impl Gpu {
 
     /// A texture that holds the bytes, rows from the top.
     pub fn upload(&self, format: wgpu::TextureFormat, size: [u32; 2], bytes: &[u8]) -> wgpu::Texture {
-        let texture = self.texture(format, size);
+        // Nothing is drawn into floats, which not every device could.
+        let is_float = format.sample_type(None, None) == Some(wgpu::TextureSampleType::Float { filterable: false });
+        let drawn = if is_float { wgpu::TextureUsages::empty() } else { wgpu::TextureUsages::RENDER_ATTACHMENT };
+        let texture = self.usable(format, size, drawn);
         self.write(&texture, bytes);
         texture
     }

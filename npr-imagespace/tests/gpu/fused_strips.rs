@@ -124,7 +124,7 @@ const LAYOUTS: [TexelLayout; 2] = [TexelLayout::Narrow, TexelLayout::Wide];
 
 #[test]
 fn whatever_is_asked_for_the_ink_is_the_references() {
-    let Some(gpu) = gpu() else { return };
+    let Some(gpu) = gpu().filter(|gpu| gpu.compute) else { return println!("skipped: no compute shaders") };
     let (mut numbers, mut turn) = (Numbers(1), 0);
     for layout in LAYOUTS {
         for taps in [Taps::Diagonal, Taps::Cross] {
@@ -156,7 +156,7 @@ fn whatever_is_asked_for_the_ink_is_the_references() {
 
 #[test]
 fn pictures_of_any_size() {
-    let Some(gpu) = gpu() else { return };
+    let Some(gpu) = gpu().filter(|gpu| gpu.compute) else { return println!("skipped: no compute shaders") };
     let mut numbers = Numbers(2);
     for layout in LAYOUTS {
         for taps in [Taps::Diagonal, Taps::Cross] {
@@ -183,7 +183,7 @@ fn pictures_of_any_size() {
 
 #[test]
 fn areas_and_composites() {
-    let Some(gpu) = gpu() else { return };
+    let Some(gpu) = gpu().filter(|gpu| gpu.compute) else { return println!("skipped: no compute shaders") };
     let mut numbers = Numbers(3);
     let red = Composite::Over { color: Vec3::new(0.8, 0.1, 0.0), opacity: 1.0 };
     let composites = [red, Composite::Multiply, Composite::AlphaTested(AlphaTest::CORRECTED)];

@@ -10,10 +10,12 @@ pub const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 pub struct Gpu {
     pub device: wgpu::Device,
     pub queue: wgpu::Queue,
+    /// Whether it runs compute shaders.
+    pub compute: bool,
 }
 
 /// The device that the tests share, or `None`, having said so, where `NPR_GPU` is `off`, or there is no adapter and
-/// `NPR_GPU` is not `required`.
+/// `NPR_GPU` is not `required`. With `NPR_GPU_LIMITS=webgl2` it has no more than every WebGL2 device.
 pub fn gpu() -> Option<&'static Gpu> {
     static GPU: OnceLock<Option<Gpu>> = OnceLock::new();
     let wish = std::env::var("NPR_GPU").unwrap_or_else(|_| "auto".into());
@@ -33,9 +35,17 @@ fn open(required: bool) -> Option<Gpu> {
         Err(_) => return None,
     };
     println!("adapter: {}", adapter.get_info().name);
-    let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default()))
-        .expect("an adapter gives a device with the default limits");
-    Some(Gpu { device, queue })
+    let limits = std::env::var("NPR_GPU_LIMITS").unwrap_or_default();
+    let required_limits = match &*limits {
+        "" | "adapter" => wgpu::Limits::default().or_worse_values_from(&adapter.limits()),
+        "webgl2" => wgpu::Limits::downlevel_webgl2_defaults().using_alignment(adapter.limits()),
+        other => panic!("NPR_GPU_LIMITS={other:?}: it must be adapter or webgl2"),
+    };
+    let descriptor = wgpu::DeviceDescriptor { required_limits, ..Default::default() };
+    let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).expect("an adapter gives a device");
+    let compute = adapter.get_downlevel_capabilities().flags.contains(wgpu::DownlevelFlags::COMPUTE_SHADERS)
+        && device.limits().max_compute_invocations_per_workgroup >= 64;
+    Some(Gpu { device, queue, compute })
 }
 
 /// The targets of one picture.
@@ -189,6 +199,103 @@ impl Gpu {
         );
         self.queue.submit([encoder.finish()]);
         self.mapped(&copy).chunks(padded_row as usize).flat_map(|padded| padded[..row as usize].to_vec()).collect()
+    }
+
+    /// The values of a depth buffer, rows from the top. OpenGL copies no depths, so a pass brings them into words.
+    pub fn read_depth(&self, depth: &wgpu::Texture) -> Vec<f32> {
+        let source = "
+            @group(0) @binding(0) var depth: texture_2d<f32>;
+            @group(0) @binding(1) var nearest: sampler;
+            @vertex fn vs(@builtin(vertex_index) i: u32) -> @builtin(position) vec4<f32> {
+                return vec4<f32>(f32(i & 1u) * 4.0 - 1.0, f32(i >> 1u) * 4.0 - 1.0, 0.0, 1.0);
+            }
+            @fragment fn fs(@builtin(position) p: vec4<f32>) -> @location(0) u32 {
+                let size = vec2<f32>(textureDimensions(depth));
+                return bitcast<u32>(textureSampleLevel(depth, nearest, p.xy / size, 0.0).x);
+            }";
+        let module = self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: None,
+            source: wgpu::ShaderSource::Wgsl(source.into()),
+        });
+        let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::FRAGMENT,
+            ty,
+            count: None,
+        };
+        let texture = wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Float { filterable: false },
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        };
+        let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::NonFiltering);
+        let layout = self.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: None,
+            entries: &[entry(0, texture), entry(1, sampler)],
+        });
+        let pipeline_layout = self.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: None,
+            bind_group_layouts: &[Some(&layout)],
+            immediate_size: 0,
+        });
+        let format = wgpu::TextureFormat::R32Uint;
+        let pipeline = self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: None,
+            layout: Some(&pipeline_layout),
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: None,
+                compilation_options: Default::default(),
+                buffers: &[],
+            },
+            primitive: Default::default(),
+            depth_stencil: None,
+            multisample: Default::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &module,
+                entry_point: None,
+                compilation_options: Default::default(),
+                targets: &[Some(format.into())],
+            }),
+            multiview_mask: None,
+            cache: None,
+        });
+        let words = self.device.create_texture(&wgpu::TextureDescriptor {
+            label: None,
+            size: depth.size(),
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+            view_formats: &[],
+        });
+        let (from, to) = (depth.create_view(&Default::default()), words.create_view(&Default::default()));
+        let sampler = self.device.create_sampler(&Default::default());
+        let resources = [wgpu::BindingResource::TextureView(&from), wgpu::BindingResource::Sampler(&sampler)];
+        let entries: Vec<_> =
+            (0..).zip(resources).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
+        let group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: None,
+            layout: &layout,
+            entries: &entries,
+        });
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &to,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations::default(),
+            })],
+            ..Default::default()
+        });
+        pass.set_pipeline(&pipeline);
+        pass.set_bind_group(0, &group, &[]);
+        pass.draw(0..3, 0..1);
+        drop(pass);
+        self.queue.submit([encoder.finish()]);
+        bytemuck::pod_collect_to_vec(&self.read_texture(&words, 4))
     }
 
     fn mapped(&self, buffer: &wgpu::Buffer) -> Vec<u8> {
