@@ -24,7 +24,8 @@ pub struct GpuContext {
 struct Faults {
     /// Why it is there no more; that remains.
     lost: Option<String>,
-    first: Option<wgpu::Error>,
+    /// [`GpuError::OutOfMemory`] or [`GpuError::Device`]: a `wgpu::Error` cannot be sent between threads on wasm32.
+    first: Option<GpuError>,
 }
 
 impl GpuContext {
@@ -73,7 +74,11 @@ impl GpuContext {
         let sink = Arc::clone(&faults);
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
             if let Ok(mut faults) = sink.lock() {
-                faults.first.get_or_insert(error);
+                let fault = one_line(&error.to_string());
+                faults.first.get_or_insert(match error {
+                    wgpu::Error::OutOfMemory { .. } => GpuError::OutOfMemory { fault },
+                    _ => GpuError::Device { fault },
+                });
             }
         }));
         let sink = Arc::clone(&faults);
@@ -107,10 +112,7 @@ impl GpuContext {
             return Err(GpuError::Lost { reason: reason.clone() });
         }
         match faults.first.take() {
-            Some(error @ wgpu::Error::OutOfMemory { .. }) => {
-                Err(GpuError::OutOfMemory { fault: one_line(&error.to_string()) })
-            }
-            Some(error) => Err(GpuError::Device { fault: one_line(&error.to_string()) }),
+            Some(error) => Err(error),
             None => polled.map(|_| ()).map_err(|error| GpuError::Device { fault: one_line(&error.to_string()) }),
         }
     }
