@@ -43,4 +43,5 @@ pub mod scene;
 pub mod shadow;
 pub mod shadow_truth;
 pub mod style;
+pub mod suggest;
 pub mod texture;
