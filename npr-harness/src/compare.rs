@@ -4,7 +4,11 @@
 //! channel like any other. Pixels at which the reference itself is not stable can be exempt ([`exempt_mask`]); both
 //! counts, with and without them, are kept, so that what was exempt can be stated and bounded.
 
-use image::{ExtendedColorType, ImageEncoder, ImageFormat, ImageReader, codecs::png::PngEncoder};
+mod format;
+
+pub use format::PictureFormat;
+
+use image::{ImageFormat, ImageReader};
 use npr_hatch::files::{read_file, write_file};
 use std::{
     fs,
@@ -69,6 +73,14 @@ pub enum ImageError {
         height: u32,
         /// Pixels.
         limit: u64,
+    },
+    /// No bytes of a format could be made of it.
+    #[error("a {format} picture could not be made: {source}")]
+    Format {
+        /// Of the picture.
+        format: PictureFormat,
+        /// What the encoder said.
+        source: image::ImageError,
     },
     /// No PNG could be made of it.
     #[error("{}: {source}", path.display())]
@@ -190,14 +202,22 @@ impl Image {
     /// # Errors
     /// [`ImageError::Encode`] and [`ImageError::Write`], which name the file.
     pub fn save_png(&self, path: &Path) -> Result<(), ImageError> {
-        let mut bytes = Vec::new();
+        let bytes = self.encode(PictureFormat::Png).map_err(|error| match error {
+            ImageError::Format { source, .. } => ImageError::Encode { path: path.to_owned(), source },
+            other => other,
+        })?;
+        write_whole(path, &bytes)
+    }
+
+    /// The bytes of a file of a format.
+    ///
+    /// # Errors
+    /// [`ImageError::Length`], [`ImageError::Format`].
+    pub fn encode(&self, format: PictureFormat) -> Result<Vec<u8>, ImageError> {
         if byte_count(self.width, self.height) != Some(self.rgba8.len()) {
             return Err(ImageError::Length { width: self.width, height: self.height, bytes: self.rgba8.len() });
         }
-        PngEncoder::new(&mut bytes)
-            .write_image(&self.rgba8, self.width, self.height, ExtendedColorType::Rgba8)
-            .map_err(|source| ImageError::Encode { path: path.to_owned(), source })?;
-        write_whole(path, &bytes)
+        format.encode(self).map_err(|source| ImageError::Format { format, source })
     }
 }
 

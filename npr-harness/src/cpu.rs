@@ -306,14 +306,19 @@ impl FrameContext<'_> {
     }
 
     /// Does `work` for all rows, on several threads. Rows are handed out one by one, since the cost of a row depends on
-    /// what is in it.
+    /// what is in it. With one thread that is the caller's: some platforms have no other.
     fn by_rows<Row>(&self, rows: impl Iterator<Item = Row> + Send, threads: usize, work: impl Fn(Row) + Sync) {
         // Built before the threads ask for it, so that they do not wait for each other.
         self.scene.rays();
         let available = std::thread::available_parallelism().map_or(1, usize::from);
+        let threads = if threads == 0 { available } else { threads };
+        if threads == 1 {
+            rows.for_each(work);
+            return;
+        }
         let rows = std::sync::Mutex::new(rows);
         std::thread::scope(|scope| {
-            for _ in 0..if threads == 0 { available } else { threads } {
+            for _ in 0..threads {
                 scope.spawn(|| {
                     loop {
                         let next = rows.lock().expect("no thread panics while it holds the lock").next();

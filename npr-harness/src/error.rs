@@ -1,5 +1,53 @@
 //! What can go wrong on the way to a picture.
 
+use crate::compare::PictureFormat;
+use std::fmt;
+
+/// What a path that a command was given is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum PathRole {
+    /// A file with a model.
+    Model,
+    /// A file with a style.
+    Style,
+    /// A folder with files that a model names.
+    AssetRoot,
+    /// A file with a tonal art map.
+    Map,
+    /// A picture of a stroke.
+    StrokePicture,
+    /// What is written.
+    Output,
+}
+
+impl PathRole {
+    fn kind(self) -> &'static str {
+        match self {
+            Self::AssetRoot => "directory",
+            Self::Model | Self::Style | Self::Map | Self::StrokePicture | Self::Output => "file",
+        }
+    }
+}
+
+impl fmt::Display for PathRole {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Model => "model",
+            Self::Style => "style",
+            Self::AssetRoot => "asset root",
+            Self::Map => "map",
+            Self::StrokePicture => "stroke picture",
+            Self::Output => "output",
+        })
+    }
+}
+
+/// The beginning of a list of known names.
+fn did_you_mean(nearest: &Option<String>) -> String {
+    nearest.as_ref().map(|nearest| format!("did you mean {nearest:?}? ")).unwrap_or_default()
+}
+
 /// Why there is no picture.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -98,10 +146,12 @@ pub enum HarnessError {
     #[error(transparent)]
     Tessellate(#[from] npr_mesh::pn_triangles::TessellateError),
     /// A material that the model does not have.
-    #[error("no material is called {name:?} (there are: {known})")]
+    #[error("no material is called {name:?} ({}there are: {known})", did_you_mean(nearest))]
     UnknownMaterial {
         /// What was asked for.
         name: String,
+        /// The material that was probably meant, if one is called nearly the same.
+        nearest: Option<String>,
         /// Those there are.
         known: String,
     },
@@ -112,10 +162,12 @@ pub enum HarnessError {
         style: String,
     },
     /// A style that does not exist.
-    #[error("no style is called {name:?} (there are: {known})")]
+    #[error("no style is called {name:?} ({}there are: {known})", did_you_mean(nearest))]
     UnknownStyle {
         /// What was asked for.
         name: String,
+        /// The style that was probably meant, if one is called nearly the same.
+        nearest: Option<String>,
         /// Those there are.
         known: String,
     },
@@ -166,6 +218,57 @@ pub enum HarnessError {
     /// An environment variable that says nothing.
     #[error("NPR_GPU={0:?}: it must be required, auto or off")]
     Policy(String),
+    /// A file or directory that a command was given and that is not there.
+    #[error("{role} {}: no such {}", path.display(), role.kind())]
+    NoSuchPath {
+        /// What it is for.
+        role: PathRole,
+        /// Which.
+        path: std::path::PathBuf,
+    },
+    /// A directory where a command needs a file.
+    #[error("{role} {}: is a directory", path.display())]
+    IsDirectory {
+        /// What it is for.
+        role: PathRole,
+        /// Which.
+        path: std::path::PathBuf,
+    },
+    /// A file or directory that a command was given and that the system does not let it use.
+    #[error("{role} {}: {source}", path.display())]
+    Unusable {
+        /// What it is for.
+        role: PathRole,
+        /// Which.
+        path: std::path::PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// A picture's file whose extension names no format that can be written.
+    #[error(
+        "output {}: unknown picture format (expected {}, or - for PNG on standard output)",
+        path.display(),
+        PictureFormat::EXTENSIONS.map(|(extension, _)| format!(".{extension}")).join(", ")
+    )]
+    PictureFormat {
+        /// Which file.
+        path: std::path::PathBuf,
+    },
+    /// A picture that is larger than its file's format can say.
+    #[error("a picture of {width} × {height} px: each side of a {format} picture must lie in 1..={limit}")]
+    FormatSize {
+        /// Px.
+        width: u32,
+        /// Px.
+        height: u32,
+        /// Of the file.
+        format: PictureFormat,
+        /// Px.
+        limit: u32,
+    },
+    /// Two things that would be written to standard output, one into the other.
+    #[error("--json and -o - would both write to standard output")]
+    StandardOutputTwice,
     /// A file that could not be read.
     #[error("{}: {source}", path.display())]
     Read {

@@ -210,7 +210,12 @@ impl Executor {
             #[cfg(feature = "gpu")]
             Self::Gpu(context) => {
                 let parallel = matches!(picture.camera.projection, Projection::Orthographic { .. });
-                Ok(context.capabilities.methods(picture.plan, parallel, picture.size, picture.samples)?)
+                let usable = context.usable();
+                let mut methods = usable.methods(picture.plan, parallel, picture.size, picture.samples)?;
+                if let Some(fault) = context.refusal() {
+                    methods.push(Reason { pass: "compute shaders", why: format!("refused by the driver: {fault}") });
+                }
+                Ok(methods)
             }
             Self::Cpu { .. } => Ok(Vec::new()),
         }
@@ -254,10 +259,15 @@ impl Executor {
                 let render = |capabilities| {
                     gpu::render(context, capabilities, scene, style, plan, camera, size, samples, LineMethod::Auto)
                 };
-                let capabilities = context.capabilities.clone();
-                match render(capabilities.clone()) {
+                let capabilities = context.usable();
+                let compute = capabilities.compute;
+                match render(capabilities) {
                     // What drivers promise and refuse all the same is mostly compute shaders.
-                    Err(GpuError::Device { .. }) if capabilities.compute => Ok(render(capabilities.without_compute())?),
+                    Err(GpuError::Device { fault }) if compute => {
+                        let image = render(context.capabilities.clone().without_compute())?;
+                        context.note_refusal(fault);
+                        Ok(image)
+                    }
                     done => Ok(done?),
                 }
             }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use npr_mesh::{
-    Model,
+    Model, Warning,
     edges::{self, EdgeKind, EdgeOptions, Edges},
 };
 use std::{collections::HashMap, fmt, ops::Range};
@@ -55,8 +55,9 @@ pub struct Inspection {
     pub min: [f32; 3],
     /// The box's upper corner.
     pub max: [f32; 3],
-    /// What the loader had to repair or leave out.
-    pub warnings: Vec<String>,
+    /// What the loader had to repair or leave out; as JSON, objects of `text` and `count`.
+    #[serde(serialize_with = "texts_and_counts")]
+    pub warnings: Vec<Warning>,
 }
 
 /// Counts.
@@ -65,7 +66,7 @@ pub struct Inspection {
 ///
 /// # Panics
 /// If a face names a vertex that is not there, or a per-face array has another length than stated in [`Model`].
-pub fn inspect(name: &str, model: &Model, warnings: Vec<String>) -> Inspection {
+pub fn inspect(name: &str, model: &Model, warnings: Vec<Warning>) -> Inspection {
     let options = EdgeOptions { skip_redundant: false, ..EdgeOptions::default() };
     let found = edges::find(&model.positions, &model.faces, &model.face_polygon, &model.face_material, &options);
     let of_kind = |kind| found.edges.iter().filter(|edge| edge.kind() == kind).count();
@@ -102,6 +103,15 @@ pub fn inspect(name: &str, model: &Model, warnings: Vec<String>) -> Inspection {
         max: max.to_array(),
         warnings,
     }
+}
+
+fn texts_and_counts<S: serde::Serializer>(warnings: &[Warning], to: S) -> Result<S::Ok, S::Error> {
+    #[derive(serde::Serialize)]
+    struct Counted<'a> {
+        text: &'a str,
+        count: u64,
+    }
+    to.collect_seq(warnings.iter().map(|Warning { text, count }| Counted { text, count: *count }))
 }
 
 /// Polygons are compared as a whole: two that share three of their corners can be cut so that a triangle of the one
@@ -217,7 +227,7 @@ impl fmt::Display for Inspection {
             ("from", corner(self.min)),
             ("to", corner(self.max)),
         ];
-        rows.extend(self.warnings.iter().map(|warning| ("warning", warning.clone())));
+        rows.extend(self.warnings.iter().map(|warning| ("warning", warning.to_string())));
         let width = rows.iter().map(|(label, _)| label.chars().count()).max().unwrap_or(0);
         for (number, (label, value)) in rows.iter().enumerate() {
             let end = if number == 0 { "" } else { "\n" };

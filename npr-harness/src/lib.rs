@@ -1,4 +1,21 @@
 //! Scene, style and frame, on wgpu and on the CPU, checked against each other.
+//!
+//! # Features
+//!
+//! - `gpu`: the wgpu executor.
+//! - `cli`: the command `npr`, and with it the parser of its arguments and its progress bars. A library needs neither.
+//!
+//! # WebAssembly
+//!
+//! The library compiles for `wasm32-unknown-unknown`, with and without `gpu`. At run time that target has no threads, no
+//! clock, no files and nothing that can block:
+//!
+//! - The CPU executor renders on the calling thread. A number of threads above 1 ([`cpu::CpuOptions`]) panics.
+//! - What reads or writes files, such as [`style::Style::read`] or [`compare::Image::save_png`], returns an error.
+//!   [`style::Style::from_toml`] takes text.
+//! - [`gallery::render`] and [`check::run`] panic, for the clock and for files.
+//! - [`executor::Executor::choose`] with [`executor::Backend::Auto`] or [`executor::Backend::Gpu`], and whatever reads a
+//!   picture back from a device, would block until the browser has answered, and panic; [`executor::Backend::Cpu`] does not.
 #![warn(missing_docs)]
 
 pub mod band_truth;
@@ -26,4 +43,5 @@ pub mod scene;
 pub mod shadow;
 pub mod shadow_truth;
 pub mod style;
+pub mod suggest;
 pub mod texture;

@@ -149,6 +149,10 @@ pub fn true_lines_of_steps(
         let follow = |share: &[(u32, LineKind)]| -> Vec<TrueSegment> {
             share.iter().flat_map(|&(edge, kind)| sight.visible_pieces(edge, kind, step_of(edge, kind))).collect()
         };
+        // Some platforms have no other thread than this one.
+        if threads == 1 {
+            return follow(&lines);
+        }
         let running: Vec<_> = lines.chunks(share).map(|share| scope.spawn(move || follow(share))).collect();
         running.into_iter().flat_map(|thread| thread.join().expect("following lines does not panic")).collect()
     });

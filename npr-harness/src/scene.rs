@@ -3,6 +3,7 @@
 use crate::color::encode_rgb;
 use crate::error::HarnessError;
 use crate::rays::RayCaster;
+use crate::suggest::nearest;
 use crate::texture::MipMapped;
 use glam::{DVec3, DVec4, Vec3};
 use npr_hatch::HatchError;
@@ -95,7 +96,8 @@ impl Scene {
             return Ok(());
         }
         let names = self.model.materials.iter().map(|m| format!("{:?}", m.name)).collect::<Vec<_>>().join(", ");
-        Err(HarnessError::UnknownMaterial { name: material.to_owned(), known: names })
+        let nearest = nearest(material, self.model.materials.iter().map(|m| m.name.as_str())).map(str::to_owned);
+        Err(HarnessError::UnknownMaterial { name: material.to_owned(), nearest, known: names })
     }
 
     /// A place in the model's own space, in the space of the positions here.

@@ -213,6 +213,9 @@ fn under_webgl2_limits_pictures_are_right_or_the_texture_is_named() {
     let executor = Executor::Gpu(Box::new(context));
     let picture = Picture { scene, style: &cartoon, plan: &plan, camera, size: SIZE, samples: 1 };
     executor.render_picture(&picture, &|_| {}).expect("without compute shaders it can");
+    let methods = executor.methods(&picture).expect("a small picture");
+    let says = |text: &str| methods.iter().any(|method| method.why.contains(text));
+    assert!(says("drawn as rectangles") && says("refused by the driver"), "{methods:?}");
 }
 
 #[test]

@@ -197,7 +197,7 @@ fn a_picture_that_cannot_be_written_leaves_the_old_one() {
         .expect("there is a shell");
     let said = text(&done.stderr);
     assert_eq!(done.status.code(), Some(1), "{said}");
-    assert!(said.starts_with("npr: out/a.png: "), "{said}");
+    assert!(said.starts_with("npr: output out/a.png: "), "{said}");
     assert_eq!(std::fs::read(folder.join("out/a.png")).expect("there"), b"the old one");
     assert_eq!(std::fs::read_dir(folder.join("out")).expect("a folder").count(), 1, "nothing else is there");
 }

@@ -49,7 +49,7 @@ fn files_outside_of_the_models_folder_are_read_with_an_asset_root_only() {
     let without = json(&folder.inspect(&[]));
     assert_eq!(without["textures"], 0);
     let warnings = without["warnings"].as_array().expect("a list");
-    assert!(warnings.iter().any(|w| w.as_str().is_some_and(|w| w.contains("leads out of the model's folder"))));
+    assert!(warnings.iter().any(|w| w["text"].as_str().is_some_and(|w| w.contains("leads out of the model's folder"))));
 
     let with = json(&folder.inspect(&["--asset-root", path(&folder.0.join("assets"))]));
     assert_eq!((&with["textures"], &with["materials"]), (&1.into(), &1.into()));
@@ -63,8 +63,36 @@ fn limits_are_lowered_and_misspelt_ones_refused() {
     let message = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(1), "{message}");
     assert!(message.contains("2 faces, more than the limit of 1"), "{message}");
-    for wrong in ["face=1", "faces", "faces=-1", "faces=many"] {
+    for (wrong, said) in [
+        ("face=1", "did you mean \"faces\"? there are: file-bytes, vertices, "),
+        ("vertexes=1", "did you mean \"vertices\"?"),
+        ("triangles=1", "\"triangles\" is no limit (there are: "),
+        ("faces", "NAME=NUMBER"),
+        ("faces=-1", "whole number"),
+        ("faces=many", "whole number"),
+    ] {
         let output = folder.inspect(&["--limit", wrong]);
         assert_eq!(output.status.code(), Some(2), "{wrong}");
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert!(message.contains(said), "{wrong}: {message}");
     }
+    // Every name that the message lists is one.
+    let listed = String::from_utf8_lossy(&folder.inspect(&["--limit", "=1"]).stderr).into_owned();
+    let names = listed.split_once("there are: ").and_then(|(_, rest)| rest.split_once(')')).expect("a list").0;
+    let all: Vec<String> =
+        names.split(", ").flat_map(|name| ["--limit".to_owned(), format!("{name}=1000000")]).collect();
+    assert_eq!(all.len(), 20, "{names}");
+    json(&folder.inspect(&all.iter().map(String::as_str).collect::<Vec<_>>()));
+}
+
+/// `image` decodes WebP in this build, for pictures that are written: models have PNG and JPEG textures all the same.
+#[test]
+fn textures_are_png_or_jpeg() {
+    let folder = Folder::new("webp");
+    fs::write(folder.0.join("assets/m.mtl"), "newmtl red\nmap_Kd t.webp\n").expect("written");
+    image::RgbaImage::new(2, 2).save(folder.0.join("assets/t.webp")).expect("written");
+    let found = json(&folder.inspect(&["--asset-root", path(&folder.0.join("assets"))]));
+    assert_eq!(found["textures"], 0);
+    let text = found["warnings"][0]["text"].as_str().expect("a warning");
+    assert!(text.contains("t.webp") && text.contains("not supported"), "{text}");
 }

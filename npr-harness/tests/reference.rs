@@ -17,6 +17,9 @@ use npr_imagespace::morphology::disc::Disc;
 use npr_mesh::{Model, embedded};
 use npr_outline::segment::outline_screen;
 use npr_toon::source::toon_to_light;
+use std::collections::HashSet;
+use std::sync::Mutex;
+use std::thread;
 
 const PERSPECTIVE: Projection = Projection::Perspective { fov_y_rad: 0.6 };
 
@@ -235,4 +238,26 @@ fn a_fold_through_pixels_leaves_their_shadows_open_and_no_others() {
     assert!(columns.contains(&17), "a line of the object: {columns:?}");
     assert!(columns.contains(&19), "a line that a cast shadow in the fold's column would have beside it: {columns:?}");
     assert!(columns.iter().all(|x| (12..=20).contains(x)), "{columns:?}");
+}
+
+/// Where threads cannot be started, such as on wasm32-unknown-unknown, the caller's has to do.
+#[test]
+fn one_thread_is_the_callers() {
+    let (scene, style, size) = (Scene::new(embedded::scene()), named("ink-image"), (40, 30));
+    let camera = still_life_camera();
+    let plan = Plan::new(&scene, &style, &camera).expect("it can be drawn");
+    let rendered = |threads: usize| {
+        let seen = Mutex::new(HashSet::new());
+        let tell = |_| {
+            seen.lock().expect("no thread panics").insert(thread::current().id());
+        };
+        let options = CpuOptions { threads, ..Default::default() };
+        let image = render(&scene, &style, &plan, &camera, size, &options, &tell).image();
+        (image, seen.into_inner().expect("no thread panics"))
+    };
+    let (alone, threads) = rendered(1);
+    assert_eq!(threads, HashSet::from([thread::current().id()]));
+    let (shared, threads) = rendered(3);
+    assert!(!threads.contains(&thread::current().id()));
+    assert_eq!(alone, shared);
 }

@@ -15,6 +15,7 @@ use npr_harness::style::{
 use npr_hatch::{TamParameters, Thresholds, draw, store};
 use npr_imagespace::composite::Composite;
 use npr_imagespace::morphology::disc::Disc;
+use npr_outline::LineKind;
 use npr_toon::row::{RampRow, TexelFilter};
 use npr_toon::source::Light;
 use npr_toon::table::RampTable;
@@ -109,6 +110,8 @@ fn an_unknown_key_is_named() {
     for text in base {
         let said = message(&format!("{text}tonse = 1\n"));
         assert!(said.contains("unknown field `tonse`"), "{said}");
+        let knows = said.contains("`tones`");
+        assert_eq!(said.contains("`tonse` (did you mean `tones`?), expected"), knows, "{said}");
         let line = text.matches('\n').count() + 1;
         assert!(said.starts_with(&format!("some/mine.toml:{line}:1: ")), "{said}");
         assert_eq!(said.lines().count(), 1, "{said}");
@@ -122,6 +125,90 @@ fn an_unknown_key_is_named() {
         "normals = \"per-pixl\"\n",
     ] {
         assert!(message(text).contains("unknown variant"), "{}", message(text));
+    }
+}
+
+/// In tables of every kind: wherever a name is known that is nearly the same, it is proposed.
+#[test]
+fn a_misspelt_key_gets_a_proposal() {
+    for (text, said) in [
+        ("papper = 1", "1:1: unknown field `papper` (did you mean `paper`?), expected one of `"),
+        ("[line.fins]\n", "1:2: unknown field `line` (did you mean `lines`?)"),
+        ("[lines.finns]\n", "unknown variant `finns` (did you mean `fins`?)"),
+        ("[lines.fins]\nsilhouete-px = 2", "2:1: unknown field `silhouete-px` (did you mean `silhouette-px`?)"),
+        ("[lines.image]\nnormal_cos = 1", "`normal-cos`?"),
+        ("[lines.image.brush]\nradius = 1", "2:1: unknown field `radius`, expected "),
+        ("[[light]]\ndirecton = [0, 0, 1]", "2:1: unknown field `directon` (did you mean `direction`?)"),
+        ("[shade.goch]\n", "`gooch`?"),
+        ("[shade.gooch]\nyelow = 1", "`yellow`?"),
+        ("[shade.hatch.map]\nwidht-px = 1", "`width-px`?"),
+        (
+            "[shadow]\nmethod = \"volume\"",
+            "unknown variant `volume` (did you mean `volumes`?), expected `volumes` or `map`",
+        ),
+        ("normals = \"per-pixl\"", "`per-pixel`?"),
+        ("[shadow]\nwatercolour = 1", "unknown field `watercolour`, expected "),
+    ] {
+        assert!(message(text).starts_with("some/mine.toml:"), "{text}: {}", message(text));
+        assert!(message(text).contains(said), "{text}: {}", message(text));
+    }
+}
+
+#[test]
+fn lines_with_one_key_have_defaults_for_the_rest() {
+    let fins = |text: &str| match parse(text).expect(text).lines {
+        Some(Lines::Fins(look)) => look,
+        other => panic!("{text}: {other:?}"),
+    };
+    let Some(Lines::Fins(cartoon)) = named("cartoon").lines else { panic!("cartoon has lines from edges") };
+    let [silhouette, boundary, crease] =
+        [LineKind::Silhouette, LineKind::Boundary, LineKind::Crease].map(|k| k as usize);
+    let usual = fins("[lines.fins]\n");
+    assert_eq!(usual.ink, cartoon.ink);
+    for kind in [silhouette, boundary, crease] {
+        assert_eq!(usual.width_px[kind], cartoon.width_px[kind]);
+    }
+    assert_eq!(usual.width_px[LineKind::MaterialBorder as usize], 0.0);
+    let wide = fins("[lines.fins]\nsilhouette-px = 5\n");
+    assert_eq!((wide.width_px[silhouette], wide.width_px[crease], wide.ink), (5.0, usual.width_px[crease], usual.ink));
+    let red = fins("[lines.fins]\nink = \"#ff0000\"\n");
+    assert_eq!((red.width_px, red.ink), (usual.width_px, [1.0, 0.0, 0.0, 1.0]));
+    assert_eq!(fins("[lines.fins]\nopacity = 0.5\n").ink[3], 0.5);
+    assert_eq!(parse("[lines.printed]\n").expect("a style").lines, named("printed-fins").lines);
+    let Some(Lines::Image(ink)) = parse("[lines.image.composite.over]\nopacity = 0.5\n").expect("a style").lines else {
+        panic!("no lines in the image")
+    };
+    assert_eq!(ink.composite, Composite::Over { color: Vec3::ZERO, opacity: 0.5 });
+}
+
+#[test]
+fn two_kinds_of_one_thing_are_named_with_their_place() {
+    for (text, said) in [
+        (
+            "[lines.image]\n\n[lines.fins]\ncrease-px = 1\n",
+            "some/mine.toml:3:8: a style has one kind of lines: [lines.image] and [lines.fins] are both there",
+        ),
+        (
+            "lines = { fins = {}, image = {} }",
+            "some/mine.toml:1:22: a style has one kind of lines: [lines.fins] and [lines.image] are both there",
+        ),
+        ("[lines.fins]\n[lines.finns]\n", "[lines.fins] and [lines.finns] are both there"),
+        (
+            "[shade.toon]\n[shade.gooch]\n[shade.hatch]\n",
+            "2:8: a style has one kind of shade: [shade.toon] and [shade.gooch]",
+        ),
+        (
+            "[lines.image.composite]\nmultiply = {}\nover = {}\n",
+            "3:1: a style has one kind of composite of lines: [lines.image.composite.multiply] and \
+             [lines.image.composite.over] are both there",
+        ),
+        (
+            "[lines.image.shadows]\napart = {}\nlines = {}\n",
+            "[lines.image.shadows.apart] and [lines.image.shadows.lines]",
+        ),
+    ] {
+        assert!(message(text).contains(said), "{text}: {}", message(text));
+        assert!(matches!(parse(text), Err(StyleFileError::TwoKinds { .. })), "{text}");
     }
 }
 

@@ -207,15 +207,15 @@ fn what_is_wrong_is_said_in_one_line() {
         (&["--cross-from", "6"], "crosswise strokes are to begin with tone 6 of 6"),
         (&["--cross-angle", "999"], "cross_deg is 999"),
         (&["--candidates", "0"], "0 candidates"),
-        (&["--stroke", "missing.png"], "missing.png"),
+        (&["--stroke", "missing.png"], "npr: stroke picture missing.png: no such file"),
         (&["--stroke", "white.png"], "no ink"),
         (&["--pressure", "0.1,0.1"], "out of reach"),
     ];
     let maps: [(&[&str], &str); 4] = [
-        (&["missing.tam"], "missing.tam"),
+        (&["missing.tam"], "npr: map missing.tam: no such file"),
         (&["torn.tam"], "torn.tam: the file has"),
         (&["text.tam"], "text.tam: no tonal art map"),
-        (&["good"], "good: "),
+        (&["good"], "npr: map good: is a directory"),
     ];
     for (arguments, named) in cases.into_iter().chain(maps) {
         let done = tam(&[arguments, &["-o", "out"]].concat(), &folder.0);
@@ -250,7 +250,9 @@ fn what_cannot_be_written_is_said() {
     let done = tam(&[&arguments[..], &["file/out"]].concat(), &folder.0);
     assert_eq!(done.status.code(), Some(1));
     let said = text(&done.stderr);
-    assert!(said.starts_with("npr: file/out: ") && !said.contains("incomplete"), "{said}");
+    assert!(said.starts_with("npr: output file/out: ") && !said.contains("incomplete"), "{said}");
+    let said = text(&tam(&[&arguments[..], &["file"]].concat(), &folder.0).stderr);
+    assert_eq!(said, "npr: output file: not a directory\n");
     // In the midst of it a folder is where a file is to be.
     std::fs::create_dir_all(folder.join("out/tone_2_4.png")).expect("made");
     let done = tam(&[&arguments[..], &["out"]].concat(), &folder.0);

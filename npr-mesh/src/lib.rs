@@ -61,5 +61,5 @@ pub mod weld;
 pub use error::LoadError;
 pub use limits::Limits;
 #[cfg(any(feature = "obj", feature = "gltf"))]
-pub use load::{LoadOptions, Loaded, load};
+pub use load::{LoadOptions, Loaded, Warning, load};
 pub use model::{AlphaMode, Material, Model, Texture, Wrap};

@@ -112,7 +112,21 @@ fn polygons_count_n_minus_2_faces_and_are_numbered() {
 fn faces_of_two_corners_are_left_out_with_a_warning() {
     let loaded = text(format!("{TRIANGLE}f 1 2\nf 1\nf\nf 1 2 3\n"));
     assert_eq!(loaded.model.faces.len(), 1);
-    assert!(loaded.warnings.iter().any(|w| w.starts_with("3 faces")), "{:?}", loaded.warnings);
+    assert!(loaded.warnings.iter().any(|w| w.text.starts_with("3 faces")), "{:?}", loaded.warnings);
+}
+
+#[test]
+fn materials_that_no_file_defines_are_one_warning() {
+    let warning = |count: usize| {
+        let uses = (0..count).map(|number| format!("usemtl m{number}\nf 1 2 3\n")).collect::<String>();
+        let mut warnings = text(format!("{TRIANGLE}{uses}")).warnings;
+        warnings.retain(|warning| warning.text.contains("material"));
+        warnings.into_iter().map(|warning| warning.to_string()).collect::<Vec<_>>()
+    };
+    assert_eq!(warning(1), ["no material file defines \"m0\": the default material stands for it"]);
+    let several = |listed: &str| format!("no material file defines {listed}: the default material stands for them");
+    assert_eq!(warning(3), [several("\"m0\", \"m1\" and \"m2\" (3 materials)")]);
+    assert_eq!(warning(9), [several("\"m0\", \"m1\", \"m2\" and 6 more (9 materials)")]);
 }
 
 #[test]
@@ -137,7 +151,11 @@ fn vertex_colours_become_linear_and_vertices_without_are_white() {
     assert_eq!(m.colors[2].to_array(), [0.0, 0.0, 0.0, 1.0]);
     let bytes = text("v 0 0 0 255 0 0\nv 1 0 0 0 255 0\nv 0 1 0 0 0 255\nf 1 2 3\n");
     assert_eq!(bytes.model.colors[0].to_array(), [1.0, 0.0, 0.0, 1.0]);
-    assert!(bytes.warnings.iter().any(|w| w == "vertex colours above 1 are taken as 0..=255"), "{:?}", bytes.warnings);
+    assert!(
+        bytes.warnings.iter().any(|w| w.text == "vertex colours above 1 are taken as 0..=255"),
+        "{:?}",
+        bytes.warnings
+    );
     assert!(matches!(try_text("v 0 0 0 x y z\nf 1 1 1\n"), Err(LoadError::Malformed { .. })));
 }
 
@@ -171,7 +189,7 @@ fn materials_colours_alpha_and_textures() {
     assert_eq!((model.textures[0].width, &model.textures[0].rgba8[..4]), (2, &[1, 2, 3, 255][..]));
     assert_eq!((three.alpha_mode, three.texture), (AlphaMode::Opaque, None));
     for part in ["missing.mtl", "nowhere.png", "map_d", "spectral"] {
-        assert!(warnings.iter().any(|w| w.contains(part)), "{part} in {warnings:?}");
+        assert!(warnings.iter().any(|w| w.text.contains(part)), "{part} in {warnings:?}");
     }
 }
 
@@ -185,7 +203,7 @@ fn faces_without_a_material_have_material_0_and_unknown_ones_are_named() {
     assert_eq!(model.face_material, [0, 1, 0]);
     assert_eq!(model.materials[0], Default::default());
     assert_eq!(model.materials[1].name, "red");
-    assert!(warnings.iter().any(|w| w.contains("blue")), "{warnings:?}");
+    assert!(warnings.iter().any(|w| w.text.contains("blue")), "{warnings:?}");
 }
 
 #[test]
@@ -322,7 +340,7 @@ fn known_models_have_their_face_counts() {
         let Loaded { model, warnings } =
             load(&shared(&format!("{}.obj", columns[0])).unwrap(), &LoadOptions::default()).unwrap();
         assert_eq!(model.faces.len().to_string(), columns[1], "{}", columns[0]);
-        assert!(warnings.iter().all(|w| w == "no normals: they are made from the faces"), "{warnings:?}");
+        assert!(warnings.iter().all(|w| w.text == "no normals: they are made from the faces"), "{warnings:?}");
         assert!(model.normals.iter().all(|n| (n.length() - 1.0).abs() < 1e-6));
         models += 1;
     }

@@ -3,7 +3,7 @@
 use super::GpuError;
 use super::adapter::{DeviceLimits, GpuAdapter};
 use super::capabilities::Capabilities;
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, OnceLock};
 
 /// A device to render on.
 pub struct GpuContext {
@@ -13,8 +13,10 @@ pub struct GpuContext {
     pub queue: wgpu::Queue,
     /// What it is.
     pub info: wgpu::AdapterInfo,
-    /// What it can do.
+    /// What it can do, as the driver promises.
     pub capabilities: Capabilities,
+    /// What the driver said of compute shaders that it refused although it had promised them.
+    refusal: OnceLock<String>,
     faults: Arc<Mutex<Faults>>,
 }
 
@@ -23,7 +25,8 @@ pub struct GpuContext {
 struct Faults {
     /// Why it is there no more; that remains.
     lost: Option<String>,
-    first: Option<wgpu::Error>,
+    /// [`GpuError::OutOfMemory`] or [`GpuError::Device`]: a `wgpu::Error` cannot be sent between threads on wasm32.
+    first: Option<GpuError>,
 }
 
 impl GpuContext {
@@ -44,7 +47,11 @@ impl GpuContext {
         let sink = Arc::clone(&faults);
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
             if let Ok(mut faults) = sink.lock() {
-                faults.first.get_or_insert(error);
+                let fault = one_line(&error.to_string());
+                faults.first.get_or_insert(match error {
+                    wgpu::Error::OutOfMemory { .. } => GpuError::OutOfMemory { fault },
+                    _ => GpuError::Device { fault },
+                });
             }
         }));
         let sink = Arc::clone(&faults);
@@ -53,7 +60,25 @@ impl GpuContext {
                 faults.lost.get_or_insert_with(|| one_line(&format!("{reason:?} {message}")));
             }
         });
-        Self { device, queue, info, capabilities, faults }
+        Self { device, queue, info, capabilities, refusal: OnceLock::new(), faults }
+    }
+
+    /// What it can do, as was seen.
+    pub(crate) fn usable(&self) -> Capabilities {
+        if self.refusal.get().is_some() {
+            self.capabilities.clone().without_compute()
+        } else {
+            self.capabilities.clone()
+        }
+    }
+
+    pub(crate) fn refusal(&self) -> Option<&str> {
+        self.refusal.get().map(String::as_str)
+    }
+
+    /// A picture was made without compute shaders that could not be made with them.
+    pub(crate) fn note_refusal(&self, fault: String) {
+        self.refusal.get_or_init(|| fault);
     }
 
     /// Whether the adapter runs on the CPU.
@@ -78,10 +103,7 @@ impl GpuContext {
             return Err(GpuError::Lost { reason: reason.clone() });
         }
         match faults.first.take() {
-            Some(error @ wgpu::Error::OutOfMemory { .. }) => {
-                Err(GpuError::OutOfMemory { fault: one_line(&error.to_string()) })
-            }
-            Some(error) => Err(GpuError::Device { fault: one_line(&error.to_string()) }),
+            Some(error) => Err(error),
             None => polled.map(|_| ()).map_err(|error| GpuError::Device { fault: one_line(&error.to_string()) }),
         }
     }

@@ -22,7 +22,7 @@ fn cube() -> Model {
 #[test]
 fn a_cube_has_twelve_creases() {
     let mut cube = cube();
-    let counted = inspect("cube", &cube, vec!["a word".to_owned()]);
+    let counted = inspect("cube", &cube, vec!["a word".to_owned().into()]);
     assert_eq!((counted.faces, counted.edges, counted.two_face_edges), (12, 18, 18));
     assert_eq!((counted.creases_over_30_deg, counted.within_0_01_deg_of_30), (12, 0));
     assert_eq!((counted.vertices, counted.positions, counted.polygons), (8, 8, 12));
@@ -110,7 +110,7 @@ fn nothing_is_nothing() {
 
 #[test]
 fn it_prints_as_a_table_and_as_json() {
-    let counted = inspect("cube", &cube(), vec!["first".to_owned(), "second".to_owned()]);
+    let counted = inspect("cube", &cube(), ["first", "second"].map(|text| text.to_owned().into()).to_vec());
     let text = counted.to_string();
     let columns: Vec<usize> = text
         .lines()

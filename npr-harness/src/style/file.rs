@@ -6,9 +6,11 @@
 use super::Style;
 use super::form::StyleForm;
 use crate::compare::ImageError;
+use crate::suggest::nearest;
 use npr_hatch::files::read_file;
 use std::io;
 use std::path::{Path, PathBuf};
+use toml::de::{DeTable, DeValue};
 
 /// Longer files are no styles.
 const MOST_BYTES: u64 = 1 << 20;
@@ -36,6 +38,27 @@ pub enum StyleFileError {
         column: usize,
         /// In the parser's words.
         message: String,
+    },
+    /// It has two tables of which a style has one.
+    #[error(
+        "{}:{line}:{column}: a style has one kind of {what}: [{table}.{first}] and [{table}.{second}] are both there",
+        path.display()
+    )]
+    TwoKinds {
+        /// Which file.
+        path: PathBuf,
+        /// Of the second table, from 1.
+        line: usize,
+        /// The same.
+        column: usize,
+        /// What there is one kind of.
+        what: &'static str,
+        /// The key above both.
+        table: &'static str,
+        /// A key.
+        first: String,
+        /// Another one.
+        second: String,
     },
     /// It is TOML, but says something twice or not at all.
     #[error("{}: {what}", path.display())]
@@ -76,16 +99,18 @@ impl Style {
     /// # Errors
     /// [`StyleFileError`], but for [`StyleFileError::Read`].
     pub fn from_toml(text: &str, path: &Path) -> Result<Self, StyleFileError> {
-        let form: StyleForm = toml::from_str(text).map_err(|error| {
-            let before = &text[..error.span().map_or(0, |span| span.start.min(text.len()))];
-            let line = before.rsplit('\n').next().unwrap_or("");
-            StyleFileError::Toml {
-                path: path.to_owned(),
-                line: before.matches('\n').count() + 1,
-                column: line.chars().count() + 1,
-                message: error.message().trim().replace('\n', ", "),
-            }
-        })?;
+        let failed = |error: toml::de::Error| {
+            let (line, column) = position(text, error.span().map_or(0, |span| span.start));
+            let message = with_suggestion(error.message().trim()).replace('\n', ", ");
+            StyleFileError::Toml { path: path.to_owned(), line, column, message }
+        };
+        let document = DeTable::parse(text).map_err(failed)?;
+        for (table, what) in ONE_KIND {
+            let Some([(_, first), (start, second)]) = two_kinds(document.get_ref(), table) else { continue };
+            let (line, column) = position(text, start);
+            return Err(StyleFileError::TwoKinds { path: path.to_owned(), line, column, what, table, first, second });
+        }
+        let form: StyleForm = toml::from_str(text).map_err(failed)?;
         let style = form.style(path)?;
         style.validate().map_err(|source| StyleFileError::Rule { path: path.to_owned(), source: Box::new(source) })?;
         Ok(style)
@@ -98,6 +123,48 @@ impl Style {
     pub fn to_toml(&self) -> Result<String, StyleFileError> {
         Ok(toml::to_string(&StyleForm::new(self))?)
     }
+}
+
+/// Tables that hold one other table, whose key says of which kind something is.
+const ONE_KIND: [(&str, &str); 5] = [
+    ("lines", "lines"),
+    ("shade", "shade"),
+    ("lines.image.shadows", "lines around shadows"),
+    ("lines.image.shadows.apart.composite", "composite of lines around shadows"),
+    ("lines.image.composite", "composite of lines"),
+];
+
+/// The first two keys of a table, with the offsets at which they stand, if it has more than one.
+fn two_kinds(document: &DeTable<'_>, table: &str) -> Option<[(usize, String); 2]> {
+    let table = table.split('.').try_fold(document, |outer, key| match outer.get(key)?.get_ref() {
+        DeValue::Table(inner) => Some(inner),
+        _ => None,
+    })?;
+    let mut keys: Vec<_> = table.keys().map(|key| (key.span().start, key.get_ref().to_string())).collect();
+    keys.sort_unstable();
+    keys.truncate(2);
+    keys.try_into().ok()
+}
+
+/// Line and column, both from 1, of an offset.
+fn position(text: &str, offset: usize) -> (usize, usize) {
+    let before = &text[..offset.min(text.len())];
+    let line = before.rsplit('\n').next().unwrap_or("");
+    (before.matches('\n').count() + 1, line.chars().count() + 1)
+}
+
+/// Names what was probably meant, where the parser says which names it knows:
+/// "unknown field `a`, expected one of `b`, `c`".
+fn with_suggestion(message: &str) -> String {
+    let unknown = ["unknown field `", "unknown variant `"].iter().find_map(|&start| {
+        let (name, known) = message.strip_prefix(start)?.split_once("`, expected ")?;
+        Some((start, name, known))
+    });
+    let suggested = unknown.and_then(|(start, name, known)| {
+        let nearest = nearest(name, known.split('`').skip(1).step_by(2))?;
+        Some(format!("{start}{name}` (did you mean `{nearest}`?), expected {known}"))
+    });
+    suggested.unwrap_or_else(|| message.to_owned())
 }
 
 fn read_text(path: &Path) -> io::Result<String> {

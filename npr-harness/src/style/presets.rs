@@ -25,7 +25,7 @@ use std::sync::LazyLock;
 /// A warm white.
 const PAPER: Vec3 = Vec3::new(0.98, 0.97, 0.94);
 /// Not quite black.
-const INK: [f32; 4] = [0.10, 0.09, 0.11, 1.0];
+pub(super) const INK: [f32; 4] = [0.10, 0.09, 0.11, 1.0];
 
 fn ink_lines(silhouette_px: f32, crease_px: f32) -> Option<Lines> {
     let width_px = widths_px(silhouette_px, silhouette_px, crease_px, crease_px);

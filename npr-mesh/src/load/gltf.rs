@@ -20,7 +20,7 @@ mod pose;
 mod scene;
 
 use super::external::{External, shortened};
-use super::{Loaded, read_file};
+use super::{Parsed, read_file};
 use crate::{Limits, LoadError};
 use files::Bytes;
 use gltf::json::Root;
@@ -61,7 +61,7 @@ fn malformed(path: &Path, fault: impl Into<String>) -> LoadError {
 ///
 /// # Errors
 /// [`LoadError`], which names the file and the fault.
-pub(super) fn load(external: &External) -> Result<Loaded, LoadError> {
+pub(super) fn load(external: &External) -> Result<Parsed, LoadError> {
     let (path, limits) = (external.model, external.limits);
     let file = read_file(path, limits)?;
     let mut warnings = Vec::new();
@@ -78,7 +78,7 @@ pub(super) fn load(external: &External) -> Result<Loaded, LoadError> {
         Bytes::Missing(fault) => Some(format!("buffer {number} is left out, and no mesh needs it: {fault}")),
         _ => None,
     }));
-    Ok(Loaded { model, warnings })
+    Ok(Parsed { model, warnings })
 }
 
 /// The version (glTF 2.0, 3.2 "Asset") and the extensions (3.12 "Specifying Extensions").

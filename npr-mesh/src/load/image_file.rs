@@ -1,7 +1,8 @@
 //! PNG and JPEG bytes to RGBA8.
 
 use crate::{Limits, LoadError};
-use image::{DynamicImage, ImageDecoder, ImageReader};
+use image::error::ImageFormatHint;
+use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader};
 use std::io::Cursor;
 use std::path::Path;
 
@@ -23,6 +24,10 @@ pub(super) fn decode(
     let malformed = |why: String| LoadError::Malformed { path: path.to_owned(), fault: format!("image {name}: {why}") };
     let mut reader =
         ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| malformed(e.to_string()))?;
+    // Another crate of the same build may have turned on more of `image`'s formats.
+    if let Some(other) = reader.format().filter(|format| !matches!(format, ImageFormat::Png | ImageFormat::Jpeg)) {
+        return Err(malformed(ImageError::Unsupported(ImageFormatHint::Exact(other).into()).to_string()));
+    }
     // Eight bytes per texel are the most that a format here stores; the rest is room for the decoders' own tables.
     let mut decoder_limits = image::Limits::default();
     decoder_limits.max_alloc = Some(limits.texels.saturating_mul(16).saturating_add(64 << 20));
@@ -49,7 +54,7 @@ pub(super) fn decode(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use image::{ImageFormat, Rgba, RgbaImage};
+    use image::{Rgba, RgbaImage};
 
     fn png(width: u32, height: u32) -> Vec<u8> {
         let image = RgbaImage::from_fn(width, height, |x, y| Rgba([x as u8, y as u8, 7, 200]));

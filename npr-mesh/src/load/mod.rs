@@ -9,6 +9,9 @@ mod gltf;
 mod image_file;
 #[cfg(feature = "obj")]
 mod obj;
+mod warning;
+
+pub use warning::Warning;
 
 use crate::{Limits, LoadError, Model, edges, normals};
 use external::External;
@@ -41,8 +44,15 @@ impl Default for LoadOptions {
 pub struct Loaded {
     /// The triangles, every normal present.
     pub model: Model,
-    /// One line each, without the file's name.
-    pub warnings: Vec<String>,
+    /// Different ones, in the order in which they first came up.
+    pub warnings: Vec<Warning>,
+}
+
+/// What the loader of a format returns: normals may be missing, faces too.
+struct Parsed {
+    model: Model,
+    /// As they came up, the same one any number of times.
+    warnings: Vec<String>,
 }
 
 /// Reads a model by its file's ending (`.obj`, `.gltf`, `.glb`, in any case).
@@ -58,20 +68,23 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, LoadError> {
         }
     }
     let ending = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
-    let mut loaded = match ending.as_str() {
+    let Parsed { mut model, warnings } = match ending.as_str() {
         #[cfg(feature = "obj")]
         "obj" => obj::load(&External::new(path, options))?,
         #[cfg(feature = "gltf")]
         "gltf" | "glb" => gltf::load(&External::new(path, options))?,
         _ => return Err(LoadError::UnknownFormat { path: path.to_owned() }),
     };
-    shorten(&mut loaded.warnings);
-    if loaded.model.faces.is_empty() {
-        return Err(LoadError::Empty { path: path.to_owned(), why: loaded.warnings.into_iter().next() });
+    if model.faces.is_empty() {
+        let why = Warning::counted(warnings).into_iter().next().map(|warning| warning.text);
+        return Err(LoadError::Empty { path: path.to_owned(), why });
     }
-    report(&loaded.model, &mut loaded.warnings);
-    normals::fill_missing(&mut loaded.model, options.normal_crease_angle_rad);
-    Ok(loaded)
+    let mut of_model = Vec::new();
+    report(&model, &mut of_model);
+    let mut warnings = Warning::counted(warnings);
+    warnings.extend(of_model.into_iter().map(Warning::from));
+    normals::fill_missing(&mut model, options.normal_crease_angle_rad);
+    Ok(Loaded { model, warnings })
 }
 
 /// What of a model is repaired whatever its format: normals that are not there, faces that cannot be seen.
@@ -90,24 +103,6 @@ fn report(model: &Model, warnings: &mut Vec<String>) {
     let flat = model.faces.iter().filter(|face| edges::has_zero_area(&model.positions, face)).count();
     if flat > 0 {
         warnings.push(format!("{flat} of {} faces have no area", model.faces.len()));
-    }
-}
-
-/// A file with a million faults is described well enough by some of them.
-fn shorten(warnings: &mut Vec<String>) {
-    const MOST: usize = 100;
-    let more = warnings.len().saturating_sub(MOST);
-    if more > 1 {
-        warnings.truncate(MOST);
-        warnings.push(format!("and {more} more"));
-    }
-    for warning in warnings {
-        if warning.chars().any(char::is_control) {
-            *warning = warning
-                .chars()
-                .flat_map(|c| if c.is_control() { c.escape_default().collect() } else { vec![c] })
-                .collect();
-        }
     }
 }
 

@@ -13,7 +13,7 @@ mod mtl;
 mod prepare;
 
 use super::external::{External, shortened};
-use super::{Loaded, read_file};
+use super::{Parsed, read_file};
 use crate::triangulate::EAR_TESTS_OF_A_FILE;
 use crate::{LoadError, Material, Model};
 use builder::Builder;
@@ -35,13 +35,13 @@ use std::io::Read;
 /// # Errors
 /// [`LoadError`] for what cannot be read, is no OBJ, refers to vertices that are not there or not finite, or is
 /// over a limit. A file without faces is no error here.
-pub(super) fn load(external: &External) -> Result<Loaded, LoadError> {
+pub(super) fn load(external: &External) -> Result<Parsed, LoadError> {
     let (path, limits) = (external.model, external.limits);
     let bytes = read_file(path, limits)?;
     let mut prepared = prepare(bytes, path, limits)?;
     let mut warnings = std::mem::take(&mut prepared.warnings);
     if prepared.counts.triangles == 0 {
-        return Ok(Loaded { model: Model::default(), warnings });
+        return Ok(Parsed { model: Model::default(), warnings });
     }
 
     let mut library = Library::default();
@@ -52,18 +52,17 @@ pub(super) fn load(external: &External) -> Result<Loaded, LoadError> {
     let mut material_of = Vec::new();
     let mut used = vec![false; library.materials.len()];
     let names = Names::new(&library.materials);
+    let mut undefined = Vec::new();
     for name in &prepared.materials_used {
         match names.find(name) {
             Some(number) => {
                 material_of.push((name.clone(), number));
                 used[number] = true;
             }
-            None => {
-                let name = shortened(name);
-                warnings.push(format!("no material file defines \"{name}\": the default material stands for it"));
-            }
+            None => undefined.push(name.as_str()),
         }
     }
+    warnings.extend(without_definition(&undefined));
 
     // Two copies of a large file are one too many: tobj's own arrays come on top.
     let text = prepared.text;
@@ -126,7 +125,25 @@ pub(super) fn load(external: &External) -> Result<Loaded, LoadError> {
     for color in &mut model.colors {
         *color = linear_from_srgb(color.truncate().clamp(Vec3::ZERO, Vec3::ONE)).extend(color.w);
     }
-    Ok(Loaded { model, warnings })
+    Ok(Parsed { model, warnings })
+}
+
+/// One warning, however many materials a missing file would have defined.
+fn without_definition(names: &[&str]) -> Option<String> {
+    const MOST: usize = 3;
+    if let [name] = names {
+        return Some(format!("no material file defines \"{}\": the default material stands for it", shortened(name)));
+    }
+    let mut listed: Vec<_> = names.iter().take(MOST).map(|name| format!("\"{}\"", shortened(name))).collect();
+    let last = match names.len() {
+        0 => return None,
+        count if count > MOST => format!("{} more", count - MOST),
+        _ => listed.pop()?,
+    };
+    let (count, listed) = (names.len(), listed.join(", "));
+    Some(format!(
+        "no material file defines {listed} and {last} ({count} materials): the default material stands for them"
+    ))
 }
 
 /// Numbers meshes from 0 in the order of their first faces, without gaps; empty if there is one.

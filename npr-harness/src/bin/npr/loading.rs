@@ -1,8 +1,26 @@
 //! The flags of all commands that load models.
 
+use crate::paths;
+use crate::terminal::spinner;
 use clap::Args;
-use npr_mesh::{Limits, LoadOptions};
-use std::path::PathBuf;
+use npr_harness::error::{HarnessError, PathRole};
+use npr_harness::suggest::nearest;
+use npr_mesh::{Limits, LoadOptions, Loaded};
+use std::path::{Path, PathBuf};
+
+/// What [`limit_mut`] knows.
+const LIMITS: [&str; 10] = [
+    "file-bytes",
+    "vertices",
+    "faces",
+    "repeated",
+    "polygon-corners",
+    "nodes",
+    "instances",
+    "displacements",
+    "texels",
+    "texels-in-all",
+];
 
 #[derive(Args, Clone, Default)]
 pub struct Loading {
@@ -16,6 +34,17 @@ pub struct Loading {
 }
 
 impl Loading {
+    /// Says before anything is read which of some models, or of the folders, is not there.
+    pub fn check(&self, models: impl IntoIterator<Item = impl AsRef<Path>>) -> Result<(), HarnessError> {
+        for model in models {
+            paths::check_file(PathRole::Model, model.as_ref())?;
+        }
+        match &self.asset_root {
+            Some(root) => paths::check_directory(PathRole::AssetRoot, root),
+            None => Ok(()),
+        }
+    }
+
     pub fn options(&self) -> LoadOptions {
         let mut limits = Limits::default();
         for (name, most) in &self.limit {
@@ -46,8 +75,16 @@ fn limit_mut<'a>(limits: &'a mut Limits, name: &str) -> Option<&'a mut u64> {
 fn parse_limit(text: &str) -> Result<(String, u64), String> {
     let (name, number) = text.split_once('=').ok_or("expected NAME=NUMBER, such as vertices=200000000")?;
     if limit_mut(&mut Limits::default(), name).is_none() {
-        return Err(format!("{name:?} is no limit (see --help)"));
+        let nearest = nearest(name, LIMITS).map(|nearest| format!("did you mean {nearest:?}? "));
+        return Err(format!("{name:?} is no limit ({}there are: {})", nearest.unwrap_or_default(), LIMITS.join(", ")));
     }
     let number = number.parse().map_err(|_| format!("{number:?} is not a whole number"))?;
     Ok((name.to_owned(), number))
+}
+
+pub fn load(path: &Path, loading: &Loading) -> Result<Loaded, HarnessError> {
+    let bar = spinner(&format!("reading {}", path.display()));
+    let loaded = npr_mesh::load(path, &loading.options())?;
+    bar.finish_and_clear();
+    Ok(loaded)
 }

@@ -1,8 +1,9 @@
 //! `npr tam`: tonal art maps into a folder, and out of a file.
 
-use crate::spinner;
+use crate::paths;
+use crate::terminal::spinner;
 use clap::Args;
-use npr_harness::error::HarnessError;
+use npr_harness::error::{HarnessError, PathRole};
 use npr_harness::hatch::read_map;
 use npr_hatch::files::write_file;
 use npr_hatch::{
@@ -172,13 +173,21 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
     if let Some(stroke) = options.drawn.stroke.as_deref().filter(|stroke| is_overwritten(stroke, &options.output)) {
         return Err(HarnessError::Overwrites { path: stroke.to_owned() });
     }
+    paths::check_output_folder(&options.output)?;
+    if let Some(stroke) = &options.drawn.stroke {
+        paths::check_file(PathRole::StrokePicture, stroke)?;
+    }
+    if let Some(map) = &options.map {
+        paths::check_file(PathRole::Map, map)?;
+    }
     let map = match &options.map {
         Some(path) => read(path)?,
         None => make(&options.drawn)?,
     };
     let start = Instant::now();
     let folder = &options.output;
-    std::fs::create_dir_all(folder).map_err(|source| HarnessError::Write { path: folder.clone(), source })?;
+    let unusable = |source| HarnessError::Unusable { role: PathRole::Output, path: folder.clone(), source };
+    std::fs::create_dir_all(folder).map_err(unusable)?;
     let files = write(&map, folder)
         .map_err(|source| HarnessError::Incomplete { folder: folder.clone(), source: Box::new(source) })?;
     let write_s = start.elapsed().as_secs_f64();

@@ -4,6 +4,7 @@ use super::{Color, one, yes};
 use crate::image_ink::{ImageInk, InkScale, Regions};
 use crate::shadow::ShadowLines;
 use crate::style::Lines;
+use crate::style::presets::INK;
 use glam::Vec3;
 use npr_imagespace::composite::{AlphaTest, Composite};
 use npr_imagespace::filter::fused::{DepthTest, FusedFilter, ShadowTest};
@@ -23,23 +24,43 @@ pub(super) enum LinesForm {
 }
 
 #[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
 pub(super) struct FinsForm {
     silhouette_px: f32,
     boundary_px: f32,
     crease_px: f32,
-    #[serde(default)]
     material_border_px: f32,
     ink: Color,
-    #[serde(default = "one")]
     opacity: f32,
 }
 
+/// As in the style `cartoon`, but for borders between materials.
+impl Default for FinsForm {
+    fn default() -> Self {
+        let [r, g, b, opacity] = INK;
+        Self {
+            silhouette_px: 2.0,
+            boundary_px: 2.0,
+            crease_px: 1.3,
+            material_border_px: 0.0,
+            ink: Color(Vec3::new(r, g, b)),
+            opacity,
+        }
+    }
+}
+
 #[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
 pub(super) struct PrintedForm {
     width_px: f32,
     ink: Color,
+}
+
+/// As in the style `printed-fins`.
+impl Default for PrintedForm {
+    fn default() -> Self {
+        Self { width_px: 2.0, ink: Color(Vec3::ZERO) }
+    }
 }
 
 #[derive(Serialize, Deserialize)]
@@ -145,9 +166,14 @@ struct AlphaForm {
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct OverForm {
+    #[serde(default = "black")]
     color: Color,
     #[serde(default = "one")]
     opacity: f32,
+}
+
+fn black() -> Color {
+    Color(Vec3::ZERO)
 }
 
 impl BrushForm {

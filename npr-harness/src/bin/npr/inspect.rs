@@ -1,0 +1,32 @@
+//! `npr inspect`.
+
+use crate::loading::{Loading, load};
+use clap::Args;
+use npr_harness::error::HarnessError;
+use npr_harness::inspect::inspect;
+use std::path::PathBuf;
+
+#[derive(Args)]
+pub struct Options {
+    /// The model.
+    input: PathBuf,
+    /// As JSON.
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    loading: Loading,
+}
+
+pub fn run(options: &Options) -> Result<bool, HarnessError> {
+    let input = &options.input;
+    options.loading.check([input])?;
+    let loaded = load(input, &options.loading)?;
+    let name = input.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+    let inspection = inspect(&name, &loaded.model, loaded.warnings);
+    if options.json {
+        println!("{}", serde_json::to_string_pretty(&inspection)?);
+    } else {
+        print!("{inspection}");
+    }
+    Ok(true)
+}

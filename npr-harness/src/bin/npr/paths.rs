@@ -1,0 +1,45 @@
+//! What is wrong with the paths that a command was given, found before anything is computed.
+
+use npr_harness::error::{HarnessError, PathRole};
+use std::fs;
+use std::io::ErrorKind;
+use std::path::Path;
+
+/// That there is something to read, and that it is no directory.
+pub fn check_file(role: PathRole, path: &Path) -> Result<(), HarnessError> {
+    match is_directory(role, path)? {
+        Some(false) => Ok(()),
+        Some(true) => Err(HarnessError::IsDirectory { role, path: path.to_owned() }),
+        None => Err(HarnessError::NoSuchPath { role, path: path.to_owned() }),
+    }
+}
+
+/// That there is a directory.
+pub fn check_directory(role: PathRole, path: &Path) -> Result<(), HarnessError> {
+    match is_directory(role, path)? {
+        Some(true) => Ok(()),
+        Some(false) => Err(not_a_directory(role, path)),
+        None => Err(HarnessError::NoSuchPath { role, path: path.to_owned() }),
+    }
+}
+
+/// That nothing else is where a directory is to be, which need not be there yet.
+pub fn check_output_folder(path: &Path) -> Result<(), HarnessError> {
+    match is_directory(PathRole::Output, path)? {
+        Some(true) | None => Ok(()),
+        Some(false) => Err(not_a_directory(PathRole::Output, path)),
+    }
+}
+
+fn not_a_directory(role: PathRole, path: &Path) -> HarnessError {
+    HarnessError::Unusable { role, path: path.to_owned(), source: ErrorKind::NotADirectory.into() }
+}
+
+/// `None` where nothing is.
+fn is_directory(role: PathRole, path: &Path) -> Result<Option<bool>, HarnessError> {
+    match fs::metadata(path) {
+        Ok(there) => Ok(Some(there.is_dir())),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
+        Err(source) => Err(HarnessError::Unusable { role, path: path.to_owned(), source }),
+    }
+}

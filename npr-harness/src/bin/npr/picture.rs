@@ -1,0 +1,64 @@
+//! Where `npr render` writes its picture.
+
+use npr_harness::compare::{Image, PictureFormat};
+use npr_harness::error::{HarnessError, PathRole};
+use npr_hatch::files::{check_place, write_file};
+use std::fs;
+use std::io::{self, Write};
+use std::path::Path;
+
+/// Where a picture goes, and as what.
+#[derive(Clone, Copy)]
+pub enum Destination<'a> {
+    /// Whole or not at all.
+    File(&'a Path, PictureFormat),
+    /// PNG.
+    StandardOutput,
+}
+
+impl<'a> Destination<'a> {
+    /// Says before anything is computed what could not be written, and spares what is read.
+    pub fn new(output: &'a Path, size: (u32, u32), inputs: &[&Path]) -> Result<Self, HarnessError> {
+        if output == Path::new("-") {
+            return Ok(Self::StandardOutput);
+        }
+        let real = |path: &Path| fs::canonicalize(path).ok();
+        if inputs.iter().any(|input| real(input).is_some_and(|input| Some(input) == real(output))) {
+            return Err(HarnessError::Overwrites { path: output.to_owned() });
+        }
+        if output.is_dir() {
+            return Err(HarnessError::IsDirectory { role: PathRole::Output, path: output.to_owned() });
+        }
+        let format = PictureFormat::of_path(output);
+        let format = format.ok_or_else(|| HarnessError::PictureFormat { path: output.to_owned() })?;
+        let ((width, height), limit) = (size, format.largest_side());
+        if width.max(height) > limit {
+            return Err(HarnessError::FormatSize { width, height, format, limit });
+        }
+        check_place(output).map_err(unusable(output))?;
+        Ok(Self::File(output, format))
+    }
+
+    pub fn write(self, image: &Image) -> Result<(), HarnessError> {
+        match self {
+            Self::File(path, format) => write_file(path, &image.encode(format)?).map_err(unusable(path)),
+            Self::StandardOutput => {
+                let bytes = image.encode(PictureFormat::Png)?;
+                let mut output = io::stdout().lock();
+                output.write_all(&bytes).and_then(|()| output.flush()).map_err(unusable(Path::new("-")))
+            }
+        }
+    }
+
+    /// The summary goes beside the picture, never into it.
+    pub fn summarize(self, summary: &str) {
+        match self {
+            Self::File(..) => print!("{summary}"),
+            Self::StandardOutput => eprint!("{summary}"),
+        }
+    }
+}
+
+fn unusable(path: &Path) -> impl FnOnce(io::Error) -> HarnessError {
+    move |source| HarnessError::Unusable { role: PathRole::Output, path: path.to_owned(), source }
+}

@@ -1,0 +1,242 @@
+//! `npr render`.
+
+use crate::loading::{Loading, load};
+use crate::picture::Destination;
+use crate::style::{known_style, style_file};
+use crate::terminal::{announce, one_line, progress_bar};
+use clap::{Args, ValueEnum};
+use glam::{DVec3, DVec4};
+use npr_harness::camera::{Camera, Framing};
+use npr_harness::error::HarnessError;
+use npr_harness::executor::{Backend, Executor, Picture, Work};
+use npr_harness::picture_limits::{MEMORY_BYTES, MOST_SAMPLES, check_picture};
+use npr_harness::plan::Plan;
+use npr_harness::plan::Reason;
+use npr_harness::scene::Scene;
+use npr_imagespace::artist::LineKind;
+use npr_mesh::{Warning, pn_triangles};
+use serde_json::json;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+#[derive(Args)]
+pub struct Options {
+    /// The model.
+    input: PathBuf,
+    /// The picture: a file that ends in .png, .jpg, .jpeg (quality 95) or .webp (lossless), or - for PNG on standard
+    /// output. With -, everything else is written to standard error, and --json is refused.
+    #[arg(short, long)]
+    output: PathBuf,
+    /// One of `npr styles`, or a file.toml (see `npr style`).
+    #[arg(long, default_value = "cartoon")]
+    style: String,
+    /// Width and height, px.
+    #[arg(long, default_value = "1280x720", value_parser = parse_size)]
+    size: (u32, u32),
+    /// Where the picture is made.
+    #[arg(long, value_enum, default_value = "auto")]
+    backend: BackendName,
+    /// Around the model, degrees to the right from the side of +Z.
+    #[arg(long, default_value_t = 30.0, allow_negative_numbers = true)]
+    yaw: f64,
+    /// Above the horizon, degrees, -90 to 90.
+    #[arg(long, default_value_t = 20.0, allow_negative_numbers = true)]
+    pitch: f64,
+    /// 1 fits the whole model, 2 is twice as far away.
+    #[arg(long, default_value_t = 1.0)]
+    distance: f64,
+    /// Between the upper and the lower border, degrees.
+    #[arg(long, default_value_t = 35.0, conflicts_with = "ortho")]
+    fov: f64,
+    /// A parallel view.
+    #[arg(long)]
+    ortho: bool,
+    /// Samples per pixel along each axis: 2 or more smooth what has no line on it.
+    #[arg(long, default_value_t = 1)]
+    samples: u32,
+    /// What the picture may take of memory while it is made, GiB.
+    #[arg(long, value_name = "GIB", default_value_t = MEMORY_BYTES as f64 / f64::from(1 << 30))]
+    max_memory: f64,
+    /// Round a coarse model: each edge is cut into so many pieces, on the curves that its normals ask for.
+    #[arg(long, default_value_t = 1)]
+    segments: u32,
+    /// Show only where x NX + y NY + z NZ + D >= 0.
+    #[arg(long, value_name = "NX,NY,NZ,D", value_parser = parse_plane, allow_hyphen_values = true)]
+    clip: Option<DVec4>,
+    /// Where a material's inner lines come from, in styles that ask (`artist`): normals, vertex-colors, texture, regions
+    /// or none. May be repeated.
+    #[arg(long, value_name = "MATERIAL=KIND", value_parser = parse_line_kind)]
+    inner_lines: Vec<(String, LineKind)>,
+    /// Print what was done as JSON.
+    #[arg(long)]
+    json: bool,
+    /// Print the plan: each pass and why, each that was left out and why, and on an adapter by which method each is made
+    /// and why.
+    #[arg(long)]
+    plan: bool,
+    #[command(flatten)]
+    loading: Loading,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum BackendName {
+    Auto,
+    Gpu,
+    Cpu,
+}
+
+fn parse_size(text: &str) -> Result<(u32, u32), String> {
+    let number = |part: &str| part.parse::<u32>().map_err(|_| format!("{part:?} is not a number of pixels"));
+    let (width, height) = text.split_once(['x', 'X']).ok_or("expected WIDTHxHEIGHT, such as 1280x720")?;
+    Ok((number(width)?, number(height)?))
+}
+
+fn parse_plane(text: &str) -> Result<DVec4, String> {
+    let number = |part: &str| part.trim().parse::<f64>().map_err(|_| format!("{part:?} is not a number"));
+    let numbers = text.split(',').map(number).collect::<Result<Vec<_>, _>>()?;
+    let plane = <[f64; 4]>::try_from(numbers).map_err(|_| "expected four numbers: NX,NY,NZ,D")?;
+    let plane = DVec4::from(plane);
+    if plane.is_finite() && plane.truncate() != DVec3::ZERO { Ok(plane) } else { Err("no plane".into()) }
+}
+
+fn parse_line_kind(text: &str) -> Result<(String, LineKind), String> {
+    let (material, kind) = text.rsplit_once('=').ok_or("expected MATERIAL=KIND")?;
+    let kind = match kind {
+        "normals" => LineKind::Normals,
+        "vertex-colors" => LineKind::VertexColor,
+        "texture" => LineKind::Texture,
+        "regions" => LineKind::Regions,
+        "none" => LineKind::None,
+        other => return Err(format!("{other:?} is none of normals, vertex-colors, texture, regions, none")),
+    };
+    Ok((material.to_owned(), kind))
+}
+
+fn elapsed_ms(start: Instant) -> f64 {
+    start.elapsed().as_secs_f64() * 1e3
+}
+
+fn checked(what: &'static str, value: f64, low: f64, high: f64, range: &'static str) -> Result<f64, HarnessError> {
+    if (low..=high).contains(&value) { Ok(value) } else { Err(HarnessError::Range { what, value, range }) }
+}
+
+pub fn run(options: &Options) -> Result<bool, HarnessError> {
+    let (width, height) = options.size;
+    let most = f64::from(MOST_SAMPLES);
+    let samples = checked("samples", f64::from(options.samples), 1.0, most, "1..=64")? as u32;
+    let memory = checked("memory", options.max_memory, 0.0, 1e6, "0..=1e6 GiB")? * f64::from(1 << 30);
+    let framing = Framing {
+        yaw_rad: checked("yaw", options.yaw, -1e6, 1e6, "-1e6..=1e6 degrees")?.to_radians(),
+        pitch_rad: checked("pitch", options.pitch, -90.0, 90.0, "-90..=90 degrees")?.to_radians(),
+        distance: checked("distance", options.distance, 1e-3, 1e3, "0.001..=1000")?,
+        fov_y_rad: if options.ortho {
+            None
+        } else {
+            Some(checked("field of view", options.fov, 1.0, 170.0, "1..=170 degrees")?.to_radians())
+        },
+    };
+    let inputs = [Some(&*options.input), style_file(&options.style)];
+    let inputs: Vec<&Path> = inputs.into_iter().flatten().collect();
+    let destination = Destination::new(&options.output, options.size, &inputs)?;
+    if options.json && matches!(destination, Destination::StandardOutput) {
+        return Err(HarnessError::StandardOutputTwice);
+    }
+    options.loading.check([&options.input])?;
+    let style = known_style(&options.style)?;
+    let backend = match options.backend {
+        BackendName::Auto => Backend::Auto,
+        BackendName::Gpu => Backend::Gpu,
+        BackendName::Cpu => Backend::Cpu,
+    };
+    let check = |on_device| check_picture(&style, options.size, samples, on_device, memory as u64);
+    // Which executor it will be depends on the model; what neither could hold is known at once.
+    check(backend == Backend::Gpu)?;
+    let start = Instant::now();
+    let loaded = load(&options.input, &options.loading)?;
+    let loaded_ms = elapsed_ms(start);
+    let warn = |warnings: &[Warning]| {
+        for warning in warnings {
+            eprintln!("npr: {}", one_line(&format!("{}: warning: {warning}", options.input.display())));
+        }
+    };
+    warn(&loaded.warnings);
+    let start = Instant::now();
+    let segments = checked("segments", f64::from(options.segments), 1.0, 1024.0, "1..=1024")? as u32;
+    let model = if segments > 1 { pn_triangles::tessellate(&loaded.model, segments)? } else { loaded.model };
+    let mut scene = Scene::new(model);
+    let of_edges: Vec<Warning> = scene.edges.warnings().into_iter().map(Warning::from).collect();
+    warn(&of_edges);
+    let warnings = [loaded.warnings, of_edges].concat();
+    scene.clip = options.clip.map(|plane| scene.plane_here(plane));
+    for (material, kind) in &options.inner_lines {
+        scene.set_line_kind(material, *kind)?;
+    }
+    let camera = Camera::framed(scene.corners(), f64::from(width) / f64::from(height), &framing);
+    let plan = Plan::new(&scene, &style, &camera)?;
+    let prepared_ms = elapsed_ms(start);
+    let start = Instant::now();
+    let picture = Picture { scene: &scene, style: &style, plan: &plan, camera: &camera, size: options.size, samples };
+    let mut executor = Executor::choose_for(backend, &Work::new(&scene, &style, options.size, samples))?;
+    let device_ms = if executor.is_cpu() { 0.0 } else { elapsed_ms(start) };
+    check(!executor.is_cpu())?;
+    announce(&executor);
+    let start = Instant::now();
+    let bar = progress_bar("rendering");
+    let tell = |share| bar.set_position((share * 1000.0) as u64);
+    let image = match executor.render_picture(&picture, &tell) {
+        Ok(image) => image,
+        Err(error) => {
+            executor = Executor::instead(backend, error)?;
+            check(false)?;
+            announce(&executor);
+            executor.render_picture(&picture, &tell)?
+        }
+    };
+    // Afterwards: a driver may have refused what it had promised.
+    let methods = executor.methods(&picture)?;
+    bar.finish_and_clear();
+    destination.write(&image)?;
+    let drawn_ms = elapsed_ms(start);
+    let (_, counts) = plan.lines(camera.homogeneous_eye());
+    if options.json {
+        let listed = |of: &[Reason]| of.iter().map(|r| json!({"pass": r.pass, "why": r.why})).collect::<Vec<_>>();
+        let warnings: Vec<_> = warnings.iter().map(|w| json!({"text": w.text, "count": w.count})).collect();
+        println!(
+            "{}",
+            json!({
+                "input": options.input, "output": options.output, "style": style.name,
+                "width": width, "height": height, "executor": executor.describe(),
+                "faces": scene.model.faces.len(), "edges": scene.edges.edges.len(), "folds": scene.edges.folds.len(),
+                "lines": {"silhouette": counts[0], "boundary": counts[1], "crease": counts[2], "material_border": counts[3]},
+                "device_ms": device_ms, "load_ms": loaded_ms, "prepare_ms": prepared_ms, "render_ms": drawn_ms,
+                "passes": listed(&plan.passes), "left_out": listed(&plan.left_out), "methods": listed(&methods),
+                "warnings": warnings,
+            })
+        );
+    } else {
+        let folds = match scene.edges.folds.len() {
+            0 => String::new(),
+            folds => format!(" and {folds} folds of polygons"),
+        };
+        let mut summary = format!(
+            "{}: {width} × {height} px, {} faces, {} lines of {} edges{folds}, {:.0} ms to start the device, {:.0} ms to load, {:.0} ms to prepare, {:.0} ms to render, on {}\n",
+            options.output.display(),
+            scene.model.faces.len(),
+            counts.iter().sum::<usize>(),
+            scene.edges.edges.len(),
+            device_ms,
+            loaded_ms,
+            prepared_ms,
+            drawn_ms,
+            executor.describe()
+        );
+        if options.plan {
+            summary.push_str(&plan.to_string());
+            for Reason { pass, why } in &methods {
+                summary.push_str(&format!("  method  {pass:<36} {}\n", one_line(why)));
+            }
+        }
+        destination.summarize(&summary);
+    }
+    Ok(true)
+}

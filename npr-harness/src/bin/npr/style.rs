@@ -1,0 +1,36 @@
+//! `npr styles`, `npr style`, and the style that a flag names.
+
+use crate::paths;
+use npr_harness::error::{HarnessError, PathRole};
+use npr_harness::style::{Style, style, styles};
+use npr_harness::suggest::nearest;
+use std::path::Path;
+
+pub fn list() {
+    for style in styles() {
+        println!("{:<16}{}", style.name, style.about);
+    }
+}
+
+pub fn print(name: &str) -> Result<bool, HarnessError> {
+    print!("{}", known_style(name)?.to_toml()?);
+    Ok(true)
+}
+
+/// The file that a style's name is: what ends in `.toml` is one.
+pub fn style_file(name: &str) -> Option<&Path> {
+    let path = Path::new(name);
+    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml")).then_some(path)
+}
+
+pub fn known_style(name: &str) -> Result<Style, HarnessError> {
+    if let Some(path) = style_file(name) {
+        paths::check_file(PathRole::Style, path)?;
+        return Ok(Style::read(path)?);
+    }
+    style(name).ok_or_else(|| {
+        let known: Vec<String> = styles().into_iter().map(|style| style.name).collect();
+        let nearest = nearest(name, known.iter().map(String::as_str)).map(str::to_owned);
+        HarnessError::UnknownStyle { name: name.to_owned(), nearest, known: known.join(", ") }
+    })
+}
