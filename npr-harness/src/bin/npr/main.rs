@@ -293,8 +293,11 @@ fn run_render(options: &Render) -> Result<bool, HarnessError> {
     for (material, kind) in &options.inner_lines {
         scene.set_line_kind(material, *kind)?;
     }
-    let camera = Camera::framed(scene.corners(), f64::from(width) / f64::from(height), &framing);
-    let plan = Plan::new(&scene, &style, &camera)?;
+    let decide = || {
+        let camera = Camera::framed(scene.corners(), f64::from(width) / f64::from(height), &framing);
+        Plan::new(&scene, &style, &camera).map(|plan| (camera, plan))
+    };
+    let (camera, plan) = if executor.is_cpu() { scene.while_building_rays(decide) } else { decide() }?;
     let prepared_ms = start.elapsed().as_secs_f64() * 1e3 - loaded_ms;
     let drawing = Instant::now();
     let bar = progress_bar("rendering");
