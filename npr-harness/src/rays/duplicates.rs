@@ -36,9 +36,9 @@ pub fn mixed(hash: u64, round: u32) -> u32 {
 }
 
 /// Joins the boxes of faces with the same corners in the same order, wherever it begins: the first stays. Returns the
-/// groups, each by ascending face.
+/// groups, each by ascending face. The hashes are gone then.
 pub fn join(positions: &[Vec3], faces: &[[u32; 3]], boxes: &mut Boxes) -> Vec<Vec<Alike>> {
-    let mut places = sharing(&boxes.hashes);
+    let mut places = sharing(&std::mem::take(&mut boxes.hashes));
     if places.is_empty() {
         return Vec::new();
     }

@@ -2,12 +2,15 @@
 //! (Wald 2007, "On fast Construction of SAH-based Bounding Volume Hierarchies").
 //!
 //! obvhs, which traverses the hierarchy, has a builder too. It works from the bottom up, in rounds of joining boxes that
-//! are each other's nearest. Faces that lie on or within one another have one such pair a round: 20,000 of them took
-//! 14 s and made a tree 19,994 deep, where this takes 14 ms and 14 levels.
+//! are each other's nearest. Faces that lie on or within one another have one such pair a round: 20,000 of them make a
+//! tree 19,994 deep.
 //!
-//! Boxes are moved to their part of the hierarchy, so that every pass over a part is sequential. Large parts are judged
+//! Boxes are moved to their part of the hierarchy, so that every pass over a part is sequential. Large parts are divided
 //! by a sample of their boxes. The halves of parts of more than [`FORK`] boxes may be built by different threads; which
 //! parts those are depends on the boxes only, so that any number of threads builds the same hierarchy.
+//!
+//! With the boxes and the triangles in order, 1.1 million faces of a scanned model take 0.26 s of processor time, 4.4
+//! million 1.1 s, on two threads 0.57 of that.
 //!
 //! Here a face is in one leaf. Where faces are so large that this does not do, [`super::cells`] takes over.
 
@@ -18,8 +21,9 @@ use glam::Vec3A;
 use obvhs::{aabb::Aabb, bvh2::Bvh2, bvh2::node::Bvh2Node};
 use std::ops::Range;
 
-/// Parts of up to so many boxes are divided into 8 bins along each axis, others into 16.
-const FEW: usize = 32;
+/// Up to so many boxes are sorted into 8 bins along each axis, more into 16. With 16 always building takes 1.04 times as
+/// long, and rays the same time.
+const FEW: usize = 128;
 
 /// A leaf has at most so many boxes.
 const LEAF: usize = 8;
@@ -28,7 +32,7 @@ const LEAF: usize = 8;
 const STEP: f32 = 1.5;
 
 /// Where a part is divided is decided by about so many of its boxes, at equal steps.
-pub const SAMPLE: usize = 4096;
+pub const SAMPLE: usize = 1024;
 
 /// The halves of parts of more boxes, at most [`FORKS`] steps down, have room for nodes of their own.
 const FORK: usize = 1 << 13;

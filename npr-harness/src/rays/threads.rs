@@ -13,7 +13,7 @@ pub fn count(items: usize) -> usize {
     std::thread::available_parallelism().map_or(1, NonZero::get).min(items / LEAST)
 }
 
-/// Does both at the same time.
+/// Does both at the same time, `b` on this thread.
 pub fn join<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> B) -> (A, B) {
     std::thread::scope(|scope| {
         let a = scope.spawn(a);
@@ -22,7 +22,8 @@ pub fn join<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> 
     })
 }
 
-/// Does `work` for all items, on so many threads, each on its own; the results are in the order of the items.
+/// Does `work` for all items at the same time, each on a thread of its own, the last on this one. The results are in the
+/// order of the items.
 pub fn each<T: Send, R: Send>(items: impl IntoIterator<Item = T>, work: impl Fn(T) -> R + Sync) -> Vec<R> {
     let mut items: Vec<T> = items.into_iter().collect();
     let Some(last) = items.pop() else { return Vec::new() };
