@@ -7,13 +7,16 @@
 //! signs of three 2D edge functions decide. A sheared corner depends on the ray and that corner only, and the signs are
 //! exact for the sheared corners, so a ray through a shared edge or corner hits at least one of the faces there.
 
+mod boxes;
 mod cells;
+mod duplicates;
 mod hierarchy;
+mod threads;
 
-use cells::{CELL, Cell, Content, Tree, Whole};
+use boxes::Boxes;
+use cells::{CELL, Cell, Content, References, Tree, Whole};
 use glam::{DVec3, Vec3};
-use npr_mesh::edges::has_zero_area;
-use obvhs::{aabb::Aabb, fast_stack, ray::Ray, ray::RayHit};
+use obvhs::{fast_stack, ray::Ray, ray::RayHit};
 use std::collections::HashMap;
 use std::ops::ControlFlow;
 
@@ -25,12 +28,12 @@ pub struct RayCaster {
     tree: Tree,
     /// The hierarchy works on (position − centre) / half_size, which is within −1..1.
     whole: Whole,
-    /// Faces that lie on one another and are wound alike, by number: one triangle stands for them, else a ray that hits
-    /// one would be tested against all.
+    /// Faces that lie on one another and are wound alike, by number: one triangle stands for them.
     alike: Vec<Vec<Alike>>,
 }
 
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
 struct Triangle {
     corners: [Vec3; 3],
     /// The face's number; or, with the bit [`ALIKE`], which of [`RayCaster::alike`].
@@ -88,34 +91,18 @@ impl RayCaster {
     /// If a face names a vertex that is not there, or there are 2³¹ faces.
     pub fn new(positions: &[Vec3], faces: &[[u32; 3]]) -> Self {
         assert!(faces.len() <= ALIKE as usize, "more faces than numbers");
-        let triangles: Vec<Triangle> = (0u32..)
-            .zip(faces)
-            .map(|(number, face)| (number, face, face.map(|v| positions[v as usize])))
-            .filter(|(_, face, corners)| corners.iter().all(|c| c.is_finite()) && !has_zero_area(positions, face))
-            .map(|(face, _, corners)| Triangle { corners, face })
-            .collect();
-        let (triangles, alike) = joined(triangles);
-        let Some(first) = triangles.first() else {
-            return Self { tree: Tree::default(), whole: Whole::new(0, DVec3::ZERO, 1.0), alike };
+        let mut found = Boxes::new(positions, faces);
+        let alike = duplicates::join(positions, faces, &mut found);
+        let stands_for: HashMap<u32, u32> = (0..).zip(&alike).map(|(group, faces)| (faces[0].face, group)).collect();
+        let triangle = |face: u32| Triangle {
+            corners: faces[face as usize].map(|vertex| positions[vertex as usize]),
+            face: stands_for.get(&face).map_or(face, |group| ALIKE | group),
         };
-        let (low, high) = triangles
-            .iter()
-            .flat_map(|t| t.corners)
-            .fold((first.corners[0], first.corners[0]), |(low, high), corner| (low.min(corner), high.max(corner)));
-        let (low, high) = (low.as_dvec3(), high.as_dvec3());
-        let center = (low + high) / 2.0;
-        let half_size = (high - low).max_element() / 2.0;
-        let boxes: Vec<Aabb> = triangles
-            .iter()
-            .map(|Triangle { corners: [a, b, c], .. }| Aabb {
-                min: ((a.min(*b).min(*c).as_dvec3() - center) / half_size - PADDING).as_vec3a(),
-                max: ((a.max(*b).max(*c).as_dvec3() - center) / half_size + PADDING).as_vec3a(),
-            })
-            .collect();
-        let mut whole = Whole::new(triangles.len(), center, half_size);
-        let tree = Tree::new(&triangles, &boxes);
+        let Boxes { boxes, faces: numbers, center, half_size, .. } = found;
+        let mut whole = Whole::new(boxes.len(), center, half_size);
+        let tree = Tree::new(References { faces: numbers, boxes }, Some((0, 0)), triangle);
         if !tree.cells.is_empty() {
-            whole.triangles = triangles;
+            whole.triangles = (0..faces.len() as u32).map(triangle).collect();
         }
         Self { tree, whole, alike }
     }
@@ -306,31 +293,6 @@ impl<V: FnMut(Hit) -> ControlFlow<(), Seen>> Walk<'_, V> {
             }
         }
     }
-}
-
-/// Joins triangles with the same corners in the same order, wherever it begins.
-fn joined(triangles: Vec<Triangle>) -> (Vec<Triangle>, Vec<Vec<Alike>>) {
-    let mut places: HashMap<[[u32; 3]; 3], usize> = HashMap::with_capacity(triangles.len());
-    let (mut kept, mut alike): (Vec<Triangle>, Vec<Vec<Alike>>) = (Vec::with_capacity(triangles.len()), Vec::new());
-    for triangle in triangles {
-        let mut key = triangle.corners.map(|corner| corner.to_array().map(f32::to_bits));
-        let lowest = (0..3).min_by_key(|&corner| key[corner]).unwrap_or(0);
-        key.rotate_left(lowest);
-        let place = *places.entry(key).or_insert(kept.len());
-        if place == kept.len() {
-            kept.push(triangle);
-            continue;
-        }
-        let same = &mut kept[place];
-        if same.face & ALIKE == 0 {
-            alike.push(vec![Alike { face: same.face, first: 0 }]);
-            same.face = ALIKE | (alike.len() - 1) as u32;
-        }
-        let first =
-            (0..3).find(|&corner| same.corners[corner].to_array() == triangle.corners[0].to_array()).unwrap_or(0);
-        alike[(same.face & !ALIKE) as usize].push(Alike { face: triangle.face, first });
-    }
-    (kept, alike)
 }
 
 /// The ray as the z axis: axes permuted so that its largest component is the third, without changing the handedness,

@@ -49,7 +49,9 @@ pub struct Scene {
 impl Scene {
     /// Finds a model's edges and prepares it.
     pub fn new(mut model: Model) -> Self {
-        let (origin, scale) = normalize(&mut model);
+        let bounds = model.bounds();
+        let (origin, scale) = normalize(&mut model, bounds);
+        let moved = origin != DVec3::ZERO || scale != 1.0;
         let edges = edges::find(
             &model.positions,
             &model.faces,
@@ -74,7 +76,7 @@ impl Scene {
             line_kinds,
             rays: OnceLock::new(),
             boundary_sides: OnceLock::new(),
-            bounds: OnceLock::new(),
+            bounds: if moved { OnceLock::new() } else { OnceLock::from(bounds) },
             directions: OnceLock::new(),
             casters: OnceLock::new(),
             mip_mapped: OnceLock::new(),
@@ -126,6 +128,18 @@ impl Scene {
     /// The ray caster, built when it is first asked for.
     pub fn rays(&self) -> &RayCaster {
         self.rays.get_or_init(|| RayCaster::new(&self.model.positions, &self.model.faces))
+    }
+
+    /// Does `work` while other threads build the ray caster. On two cores a picture of 1.1 million faces whose plan is made
+    /// so takes 0.94 of the time, one of 4.4 million 0.89.
+    pub fn while_building_rays<R>(&self, work: impl FnOnce() -> R) -> R {
+        if std::thread::available_parallelism().map_or(1, usize::from) == 1 {
+            return work();
+        }
+        std::thread::scope(|scope| {
+            scope.spawn(|| self.rays());
+            work()
+        })
     }
 
     /// The model's textures with their mip levels.
@@ -182,9 +196,13 @@ impl Scene {
         })
     }
 
-    /// The corners of all faces.
+    /// The positions of all vertices that are corners of faces, each once.
     pub fn corners(&self) -> impl Iterator<Item = Vec3> + Clone + '_ {
-        self.model.faces.iter().flatten().map(|&v| self.model.positions[v as usize])
+        let mut used = vec![false; self.model.positions.len()];
+        for &vertex in self.model.faces.iter().flatten() {
+            used[vertex as usize] = true;
+        }
+        self.model.positions.iter().zip(used).filter_map(|(&position, used)| used.then_some(position))
     }
 
     /// Of the model's box, found when it is first asked for; `None` without faces.
@@ -215,8 +233,10 @@ const OCTAVES: i32 = 20;
 ///
 /// Others stay where they are: a subtraction could round two positions to one. Far away it cannot, since there
 /// the difference of two f32 is exact.
-fn normalize(model: &mut Model) -> (DVec3, f64) {
-    let Some((low, high)) = model.bounds() else { return (DVec3::ZERO, 1.0) };
+///
+/// `bounds`: the model's.
+fn normalize(model: &mut Model, bounds: Option<(Vec3, Vec3)>) -> (DVec3, f64) {
+    let Some((low, high)) = bounds else { return (DVec3::ZERO, 1.0) };
     let (low, high) = (low.as_dvec3(), high.as_dvec3());
     let (middle, diagonal) = (low.midpoint(high), (high - low).length());
     if !(middle.is_finite() && diagonal.is_finite()) {

@@ -126,63 +126,80 @@ pub fn contour_edges(model: &Model, edges: &Edges, options: &ContourOptions) -> 
     };
     let points = plane_points(model);
     let folded = folded_normals(model, edges);
-    let plane_of = |face: u32, fits: bool| {
-        let (normal, on) = match folded.get(&face) {
-            Some(&own) => (wound(own, face), first_corner(model, face)),
-            None => (normal_of(face), points.get(face as usize).copied().unwrap_or_else(|| first_corner(model, face))),
-        };
-        let normal = if fits { normal } else { -normal };
-        normal.extend(-normal.as_dvec3().dot(on - origin.as_dvec3()) as f32).to_array()
-    };
-    let mut contours = ContourEdges { origin, ..Default::default() };
-    let most = edges.edges.len() + edges.folds.len();
-    contours.planes.reserve_exact(most);
-    contours.ends.reserve_exact(most);
-    contours.traits.reserve_exact(most);
-    contours.first_face.reserve_exact(most);
-    for want_always in [true, false] {
-        let folds = edges.folds.iter().map(|fold| (fold, true));
-        for (edge, is_fold) in edges.edges.iter().map(|edge| (edge, false)).chain(folds) {
-            let [first, second] = edge.faces();
-            let mut fits = true;
-            let line = match edge.kind() {
-                EdgeKind::Boundary => Some(LineKind::Boundary),
-                EdgeKind::NonManifold => Some(LineKind::Crease),
-                EdgeKind::TwoFace if is_fold => None,
-                EdgeKind::TwoFace => {
-                    // Only on a surface with one side are two faces left that do not fit.
-                    fits = edge.wound_oppositely() == (is_turned(first) != is_turned(second));
-                    let (n0, n1) = (normal_of(first), normal_of(second));
-                    let cos = edges.cos_dihedral(edge).unwrap_or_else(|| if fits { n0.dot(n1) } else { -n0.dot(n1) });
-                    let borrowed_nothing = n0 == Vec3::ZERO || n1 == Vec3::ZERO;
-                    if cos < cos_crease && !borrowed_nothing {
-                        Some(LineKind::Crease)
-                    } else if options.material_borders && edge.joins_two_materials() {
-                        Some(LineKind::MaterialBorder)
-                    } else {
-                        None
-                    }
+    // Per face, since each is in three edges.
+    let planes: Vec<[f32; 4]> = (0..edges.face_normals.len() as u32)
+        .map(|face| {
+            let (normal, on) = match folded.get(&face) {
+                Some(&own) => (wound(own, face), first_corner(model, face)),
+                None => {
+                    (normal_of(face), points.get(face as usize).copied().unwrap_or_else(|| first_corner(model, face)))
                 }
             };
-            if line.is_some() != want_always {
-                continue;
+            normal.extend(-normal.as_dvec3().dot(on - origin.as_dvec3()) as f32).to_array()
+        })
+        .collect();
+    // Of a folded polygon's triangles the planes do not have the polygon's normal.
+    let wound_normal = |face: u32| {
+        let [x, y, z, _] = planes[face as usize];
+        if folded.is_empty() { Vec3::new(x, y, z) } else { normal_of(face) }
+    };
+    // Only on a surface with one side are two faces left that do not fit.
+    let fits = |edge: &Edge| {
+        let [first, second] = edge.faces();
+        edge.kind() != EdgeKind::TwoFace || edge.wound_oppositely() == (is_turned(first) != is_turned(second))
+    };
+    let line_of = |edge: &Edge| match edge.kind() {
+        EdgeKind::Boundary => Some(LineKind::Boundary),
+        EdgeKind::NonManifold => Some(LineKind::Crease),
+        EdgeKind::TwoFace => {
+            let [n0, n1] = edge.faces().map(wound_normal);
+            let cos = if fits(edge) { n0.dot(n1) } else { -n0.dot(n1) };
+            if cos < cos_crease && n0 != Vec3::ZERO && n1 != Vec3::ZERO {
+                Some(LineKind::Crease)
+            } else if options.material_borders && edge.joins_two_materials() {
+                Some(LineKind::MaterialBorder)
+            } else {
+                None
             }
-            let is_cut_out = |face: u32| face == NO_FACE || cut_out[model.face_material[face as usize] as usize];
-            let mut flags = line.map_or(0, |kind| kind as u32 | TRAIT_ALWAYS);
-            if is_cut_out(first) && is_cut_out(second) {
-                flags |= TRAIT_CUT_OUT;
-            }
-            let plane0 = plane_of(first, true);
-            let plane1 = if second == NO_FACE { plane0.map(|x| -x) } else { plane_of(second, fits) };
-            contours.planes.push(EdgePlanes { plane0, plane1 });
-            let [from, to] = edge.ends;
-            contours.ends.push(if is_turned(first) { [to, from] } else { [from, to] });
-            contours.traits.push(flags);
-            contours.first_face.push(first);
         }
-        if want_always {
-            contours.always = contours.ends.len();
+    };
+    const NO_LINE: u8 = u8::MAX;
+    let lines: Vec<u8> = edges.edges.iter().map(|edge| line_of(edge).map_or(NO_LINE, |kind| kind as u8)).collect();
+    let always = lines.iter().filter(|&&line| line != NO_LINE).count();
+    let count = edges.edges.len() + edges.folds.len();
+    let mut contours = ContourEdges {
+        origin,
+        planes: bytemuck::zeroed_vec(count),
+        ends: vec![[0; 2]; count],
+        traits: vec![0; count],
+        first_face: vec![0; count],
+        always,
+    };
+    let is_cut_out = |face: u32| face == NO_FACE || cut_out[model.face_material[face as usize] as usize];
+    let any_cut_out = cut_out.contains(&true);
+    let of_edges = edges.edges.iter().zip(lines).map(|(edge, line)| (edge, line, fits(edge)));
+    // A polygon's triangles are wound alike, and a fold is a silhouette or nothing.
+    let of_folds = edges.folds.iter().map(|fold| (fold, NO_LINE, true));
+    let (mut next_always, mut next) = (0, always);
+    for (edge, line, fits) in of_edges.chain(of_folds) {
+        let place = if line == NO_LINE { &mut next } else { &mut next_always };
+        let [first, second] = edge.faces();
+        let mut flags = if line == NO_LINE { 0 } else { u32::from(line) | TRAIT_ALWAYS };
+        if any_cut_out && is_cut_out(first) && is_cut_out(second) {
+            flags |= TRAIT_CUT_OUT;
         }
+        let plane0 = planes[first as usize];
+        let plane1 = match second {
+            NO_FACE => plane0.map(|x| -x),
+            _ if fits => planes[second as usize],
+            _ => planes[second as usize].map(|x| -x),
+        };
+        let [from, to] = edge.ends;
+        contours.planes[*place] = EdgePlanes { plane0, plane1 };
+        contours.ends[*place] = if is_turned(first) { [to, from] } else { [from, to] };
+        contours.traits[*place] = flags;
+        contours.first_face[*place] = first;
+        *place += 1;
     }
     Ok(contours)
 }

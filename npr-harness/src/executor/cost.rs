@@ -1,57 +1,102 @@
 //! How long the CPU and a software adapter are expected to take, to choose between them.
 //!
-//! Both run on the same cores, so the number of these hardly matters. A device has to be opened and its pipelines compiled,
-//! whatever is drawn; ray casting has to build a hierarchy over all faces, whatever is seen of them.
+//! Both run on the same cores, so their number hardly matters. A device has to be opened and its pipelines compiled,
+//! whatever is drawn, and takes less for each pixel. Ray casting builds a hierarchy over the faces, which takes as long as
+//! their upload.
 //!
-//! The numbers are milliseconds measured on two cores with Mesa 22.3's lavapipe, whole processes less the loading of
-//! models; where both are near each other, either will do.
+//! The numbers were measured on two cores with Mesa 22.3's lavapipe, over the built-in styles, models of 12 to 4.4 million
+//! faces and pictures of 320 × 180 to 2560 × 1440 px; they foretell which of the two is sooner, not how long it takes on
+//! another machine. `cargo bench -p npr-harness --bench orbit` has the two side by side.
 
+use crate::image_ink::InkScale;
 use crate::scene::Scene;
 use crate::shadow::ShadowMethod;
-use crate::style::{Shade, Style};
+use crate::style::{Lines, Shade, Style};
 
-/// What there is to do for pictures of a scene.
+/// What pictures of a scene take either executor, ms.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Work {
-    /// How many faces the scene has.
-    pub faces: f64,
-    /// Samples of all pictures that are only lit.
-    pub plain_samples: f64,
-    /// Samples of all pictures in which strokes are looked up.
-    pub hatched_samples: f64,
-    /// Samples of all pictures in which shadows are cast by volumes.
-    pub shadowed_samples: f64,
-    /// Pictures.
-    pub pictures: f64,
+    /// On the CPU, once for a scene: the hierarchy over the faces, part of which is hidden behind other work.
+    hierarchy_ms: f64,
+    /// On the CPU, all pictures.
+    rays_ms: f64,
+    /// On a software adapter, all pictures and what is made ready for them.
+    adapter_ms: f64,
 }
+
+/// To open a software adapter's device, and to give it back.
+const OPEN_MS: f64 = 46.0;
+/// To compile a picture's pipelines and draw its first pixel.
+const PIPELINES_MS: f64 = 55.0;
+/// For a face: the hierarchy; the scan for lines; the upload.
+const HIERARCHY_MS: f64 = 8e-5;
+const SCAN_MS: f64 = 5e-6;
+const UPLOAD_MS: f64 = 9e-5;
+
+/// For a sample, on the CPU and on a software adapter.
+struct PerSample {
+    cpu_ms: f64,
+    adapter_ms: f64,
+}
+
+/// Light, and lines from edges.
+const LIT: PerSample = PerSample { cpu_ms: 1.1e-4, adapter_ms: 2.5e-5 };
+/// Strokes, besides.
+const HATCHED: PerSample = PerSample { cpu_ms: 5e-5, adapter_ms: 1.4e-4 };
+/// Shadow volumes, or shadow rays, besides.
+const SHADOWED: PerSample = PerSample { cpu_ms: 9e-5, adapter_ms: 1.3e-4 };
+/// Lines in the image, for a pixel of the ink, from the surfaces of the picture.
+const INKED: PerSample = PerSample { cpu_ms: 4e-5, adapter_ms: 3.5e-5 };
+/// The same from surfaces of its own.
+const INKED_APART: PerSample = PerSample { cpu_ms: 1.2e-4, adapter_ms: 3.5e-5 };
 
 impl Work {
     /// Of one picture.
     ///
     /// `samples`: along each axis of a pixel.
-    pub fn new(scene: &Scene, style: &Style, (width, height): (u32, u32), samples: u32) -> Self {
-        let count = f64::from(width) * f64::from(height) * f64::from(samples).powi(2);
-        let volumes = style.shadow.is_some_and(|shadow| shadow.method == ShadowMethod::Volumes);
-        let mut work = Self { faces: scene.model.faces.len() as f64, pictures: 1.0, ..Self::default() };
-        if matches!(style.shade, Shade::Hatch(_)) {
-            work.hatched_samples = count;
-        } else {
-            work.plain_samples = count;
-        }
-        if volumes {
-            work.shadowed_samples = count;
-        }
-        work
+    pub fn new(scene: &Scene, style: &Style, size: (u32, u32), samples: u32) -> Self {
+        Self::sequence(scene, style, size, samples, 1)
     }
 
-    /// With one more picture of the same scene.
+    /// Of so many frames by a renderer that is kept, with whatever moves but the scene's own shape.
+    pub fn sequence(scene: &Scene, style: &Style, (width, height): (u32, u32), samples: u32, frames: u32) -> Self {
+        let pixels = f64::from(width) * f64::from(height);
+        let (faces, frames) = (scene.model.faces.len() as f64, f64::from(frames));
+        let count = pixels * f64::from(samples).powi(2);
+        let ink = match &style.lines {
+            Some(Lines::Image(ink)) => Some(ink.scale),
+            _ => None,
+        };
+        let volumes = style.shadow.is_some_and(|shadow| shadow.method == ShadowMethod::Volumes);
+        let parts = [
+            (LIT, count),
+            (HATCHED, if matches!(style.shade, Shade::Hatch(_)) { count } else { 0.0 }),
+            (SHADOWED, if volumes { count } else { 0.0 }),
+            (INKED, if ink == Some(InkScale::One) && samples == 1 { pixels } else { 0.0 }),
+            (
+                INKED_APART,
+                match ink {
+                    Some(InkScale::Half) => pixels / 4.0,
+                    Some(InkScale::Double) => pixels * 4.0,
+                    Some(InkScale::One) if samples > 1 => pixels,
+                    Some(InkScale::One) | None => 0.0,
+                },
+            ),
+        ];
+        let sum = |of: fn(&PerSample) -> f64| parts.iter().map(|(part, count)| of(part) * count).sum::<f64>();
+        Self {
+            hierarchy_ms: HIERARCHY_MS * faces,
+            rays_ms: frames * (SCAN_MS * faces + sum(|part| part.cpu_ms)),
+            adapter_ms: PIPELINES_MS + UPLOAD_MS * faces + frames * sum(|part| part.adapter_ms),
+        }
+    }
+
+    /// With more pictures of the same scene, each with pipelines of its own.
     pub fn and(self, other: Self) -> Self {
         Self {
-            faces: self.faces.max(other.faces),
-            plain_samples: self.plain_samples + other.plain_samples,
-            hatched_samples: self.hatched_samples + other.hatched_samples,
-            shadowed_samples: self.shadowed_samples + other.shadowed_samples,
-            pictures: self.pictures + other.pictures,
+            hierarchy_ms: self.hierarchy_ms.max(other.hierarchy_ms),
+            rays_ms: self.rays_ms + other.rays_ms,
+            adapter_ms: self.adapter_ms + other.adapter_ms,
         }
     }
 
@@ -62,16 +107,44 @@ impl Work {
 
     /// On the CPU, ms.
     pub fn cpu_ms(&self) -> f64 {
-        7e-4 * self.faces + 1.1e-4 * self.plain_samples + 2.5e-4 * self.hatched_samples + 1e-4 * self.shadowed_samples
+        self.hierarchy_ms + self.rays_ms
     }
 
     /// On a software adapter, from its start on, ms.
     pub fn software_adapter_ms(&self) -> f64 {
-        120.0
-            + 15.0 * self.pictures
-            + 2e-4 * self.faces * self.pictures
-            + 3e-5 * self.plain_samples
-            + 1.5e-4 * self.hatched_samples
-            + 1e-4 * self.shadowed_samples
+        OPEN_MS + self.adapter_ms
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::style::style;
+
+    fn sooner_on_cpu(scene: &Scene, name: &str, size: (u32, u32), frames: u32) -> bool {
+        Work::sequence(scene, &style(name).expect("a style of this crate"), size, 1, frames).is_sooner_on_cpu()
+    }
+
+    /// Measured: 0.02 against 0.1 s; 151 against 177 ms; 604 against 286 ms; 439 against 247 ms.
+    #[test]
+    fn what_was_sooner_when_measured_is_taken() {
+        let scene = Scene::new(npr_mesh::embedded::scene());
+        assert!(sooner_on_cpu(&scene, "cartoon", (320, 180), 1));
+        assert!(sooner_on_cpu(&scene, "hatch", (1280, 720), 1));
+        assert!(!sooner_on_cpu(&scene, "ink-thick", (1280, 720), 1));
+        assert!(!sooner_on_cpu(&scene, "cartoon", (2560, 1440), 1));
+        assert!(!sooner_on_cpu(&scene, "cartoon", (1280, 720), 60));
+    }
+
+    #[test]
+    fn pictures_add_up_and_the_hierarchy_is_built_once() {
+        let scene = Scene::new(npr_mesh::embedded::scene());
+        let cartoon = style("cartoon").expect("a style of this crate");
+        let one = Work::new(&scene, &cartoon, (640, 360), 1);
+        let two = one.and(one);
+        assert_eq!(two.cpu_ms(), 2.0 * one.cpu_ms() - one.hierarchy_ms);
+        assert_eq!(two.software_adapter_ms(), 2.0 * one.software_adapter_ms() - OPEN_MS);
+        let finer = Work::new(&scene, &cartoon, (640, 360), 2);
+        assert!((finer.rays_ms - 4.0 * one.rays_ms).abs() < 4.0 * SCAN_MS * scene.model.faces.len() as f64);
     }
 }

@@ -15,8 +15,8 @@
 //! without cells; two million random faces as large as the scene stay slow, 0.2 ms a ray. Models (bunny, teapot, beetle,
 //! fandisk, rocker arm, suzanne) have no cells.
 
-use super::hierarchy::hierarchy;
-use super::{PADDING, Triangle};
+use super::hierarchy::{Hierarchy, SAMPLE, hierarchy};
+use super::{PADDING, Triangle, threads};
 use glam::{DVec3, Vec3A};
 use obvhs::{aabb::Aabb, bvh2::Bvh2};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -78,16 +78,17 @@ pub struct Cell {
     stalled: u8,
 }
 
-/// Parts of triangles: which of the scene's, and boxes around what of it lies in some cell.
+/// Parts of triangles: of which faces, and boxes around what of them lies in some cell.
 #[derive(Default)]
-struct References {
-    triangles: Vec<u32>,
-    boxes: Vec<Aabb>,
+pub struct References {
+    pub faces: Vec<u32>,
+    /// Padded by [`PADDING`].
+    pub boxes: Vec<Aabb>,
 }
 
 /// What cells are parts of.
 pub struct Whole {
-    /// Empty where there are no cells.
+    /// Per face; empty where there are no cells.
     pub triangles: Vec<Triangle>,
     /// The hierarchy works on (position − centre) / half_size.
     pub center: DVec3,
@@ -108,29 +109,27 @@ impl Whole {
         self.left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, take).is_ok()
     }
 
-    fn corners(&self, triangle: u32) -> [Vec3A; 3] {
-        self.triangles[triangle as usize].corners.map(|c| ((c.as_dvec3() - self.center) / self.half_size).as_vec3a())
+    fn corners(&self, face: u32) -> [Vec3A; 3] {
+        self.triangles[face as usize].corners.map(|c| ((c.as_dvec3() - self.center) / self.half_size).as_vec3a())
     }
 }
 
 impl Tree {
-    /// Of all `triangles`, in `boxes` padded by [`PADDING`]. If it has cells `whole` must get the triangles.
-    pub fn new(triangles: &[Triangle], boxes: &[Aabb]) -> Self {
-        let numbers: Vec<u32> = (0..triangles.len() as u32).collect();
-        Self::of(triangles, &numbers, boxes, Some((0, 0)))
-    }
-
-    fn of(triangles: &[Triangle], numbers: &[u32], boxes: &[Aabb], cells: Option<(u8, u8)>) -> Self {
-        let (bvh, crowds) = hierarchy(boxes, cells.is_some());
+    /// `cells`: how deep in cells it is, and [`Cell::stalled`]; none are made without.
+    pub fn new(references: References, cells: Option<(u8, u8)>, triangle: impl Fn(u32) -> Triangle + Sync) -> Self {
+        let References { faces, boxes } = references;
+        let Hierarchy { bvh, crowds } = hierarchy(boxes, faces, cells.is_some());
         let (level, stalled) = cells.unwrap_or_default();
-        let cells = crowds.into_iter().map(|crowd| {
-            let boxes = crowd.iter().map(|&place| boxes[place as usize]).collect();
-            let triangles = crowd.iter().map(|&place| numbers[place as usize]).collect();
-            Cell::new(References { triangles, boxes }, level, stalled)
+        let cell = |(faces, boxes)| Cell::new(References { faces, boxes }, level, stalled);
+        let in_order = &bvh.primitive_indices;
+        let mut triangles: Vec<Triangle> = bytemuck::zeroed_vec(in_order.len());
+        let piece = in_order.len().div_ceil(threads::count(in_order.len())).max(1);
+        threads::each(triangles.chunks_mut(piece).zip(in_order.chunks(piece)), |(triangles, faces)| {
+            for (place, &face) in triangles.iter_mut().zip(faces) {
+                *place = triangle(face);
+            }
         });
-        let cells = cells.collect();
-        let in_order = bvh.primitive_indices.iter().map(|&place| triangles[numbers[place as usize] as usize]);
-        Self { triangles: in_order.collect(), bvh, cells }
+        Self { triangles, bvh, cells: crowds.into_iter().map(cell).collect() }
     }
 }
 
@@ -149,31 +148,31 @@ impl Cell {
 
     fn halve(&self, references: References, whole: &Whole) -> [Half; 2] {
         let bounds = references.boxes.iter().fold(Aabb::INVALID, |all, one| all.union(one));
-        let count = references.triangles.len();
+        let count = references.faces.len();
         let (axis, at) = plane(&bounds, &references.boxes, whole.left.load(Ordering::Relaxed));
         // Everything might lie on both sides.
         if self.level >= LEVELS || self.stalled >= STALLED || !whole.take(count) {
             return [references, References::default()].map(|half| Half::new(half, None, whole));
         }
         let mut halves = [References::default(), References::default()];
-        for (triangle, bounds) in references.triangles.into_iter().zip(references.boxes) {
+        for (face, bounds) in references.faces.into_iter().zip(references.boxes) {
             let within = (bounds.min[axis] + PADDING as f32, bounds.max[axis] - PADDING as f32);
             let parts = if within.1 <= at {
                 [bounds, Aabb::INVALID]
             } else if within.0 >= at {
                 [Aabb::INVALID, bounds]
             } else {
-                clipped(whole.corners(triangle), &bounds, axis, at)
+                clipped(whole.corners(face), &bounds, axis, at)
             };
             for (half, part) in halves.iter_mut().zip(parts) {
                 if part.min.cmple(part.max).all() {
-                    half.triangles.push(triangle);
+                    half.faces.push(face);
                     half.boxes.push(part);
                 }
             }
         }
-        let least = halves.iter().map(|half| half.triangles.len()).min().unwrap_or(0);
-        let more = halves.iter().map(|half| half.triangles.len()).sum::<usize>().saturating_sub(count);
+        let least = halves.iter().map(|half| half.faces.len()).min().unwrap_or(0);
+        let more = halves.iter().map(|half| half.faces.len()).sum::<usize>().saturating_sub(count);
         whole.left.fetch_add(count - more, Ordering::Relaxed);
         let stalled = if least as f64 > NEARLY * count as f64 { self.stalled + 1 } else { 0 };
         halves.map(|half| Half::new(half, Some((self.level + 1, stalled)), whole))
@@ -184,23 +183,24 @@ impl Half {
     fn new(references: References, cells: Option<(u8, u8)>, whole: &Whole) -> Self {
         let bounds = references.boxes.iter().fold(Aabb::INVALID, |all, one| all.union(one));
         let content = match cells {
-            Some((level, stalled)) if is_crowd(&bounds, references.boxes.iter()) => {
+            Some((level, stalled)) if is_crowd(&bounds, &references.boxes) => {
                 Content::Cell(Cell::new(references, level, stalled))
             }
-            _ => Content::Tree(Tree::of(&whole.triangles, &references.triangles, &references.boxes, cells)),
+            _ => Content::Tree(Tree::new(references, cells, |face| whole.triangles[face as usize])),
         };
         Self { bounds, content }
     }
 }
 
-/// Whether boxes in `bounds` lie so much over one another that they are a cell.
-pub fn is_crowd<'a>(bounds: &Aabb, boxes: impl ExactSizeIterator<Item = &'a Aabb>) -> bool {
+/// Whether boxes in `bounds` lie so much over one another that they are a cell; of many, by a sample of them.
+pub fn is_crowd(bounds: &Aabb, boxes: &[Aabb]) -> bool {
     // Boxes of the padding's size lie over one another whatever is in them.
     if boxes.len() as f32 <= CROWD || bounds.diagonal().max_element() < 64.0 * PADDING as f32 {
         return false;
     }
     let least = CROWD.max(SHARE * boxes.len() as f32);
-    boxes.map(Aabb::half_area).sum::<f32>() > least * bounds.half_area()
+    let step = boxes.len().div_ceil(SAMPLE);
+    step as f32 * boxes.iter().step_by(step).map(Aabb::half_area).sum::<f32>() > least * bounds.half_area()
 }
 
 #[cfg(test)]
@@ -218,7 +218,7 @@ impl Tree {
 impl Cell {
     fn count(&self) -> (usize, u8) {
         let Some(halves) = self.halves.get() else {
-            return (self.references.lock().unwrap_or_else(PoisonError::into_inner).triangles.len(), self.level);
+            return (self.references.lock().unwrap_or_else(PoisonError::into_inner).faces.len(), self.level);
         };
         let [a, b] = [0, 1].map(|half: usize| match &halves[half].content {
             Content::Cell(cell) => cell.count(),

@@ -1,5 +1,7 @@
+use super::hierarchy::{Hierarchy, hierarchy_by};
 use super::*;
-use std::collections::HashMap;
+use npr_mesh::edges::has_zero_area;
+use obvhs::bvh2::Bvh2;
 
 pub(super) const EVERYWHERE: (f64, f64) = (0.0, f64::INFINITY);
 
@@ -447,19 +449,69 @@ fn faces_on_or_within_one_another_take_no_quadratic_time() {
         let mut indices = bvh.primitive_indices.clone();
         indices.sort_unstable();
         assert!(indices.windows(2).all(|pair| pair[0] < pair[1]) && indices.len() == caster.tree.triangles.len());
-        let mut depth = vec![0; bvh.nodes.len()];
-        for (number, node) in bvh.nodes.iter().enumerate() {
-            assert!(node.prim_count <= 8 || node.prim_count == CELL);
-            if !node.is_leaf() {
-                for child in [node.first_index as usize, node.first_index as usize + 1] {
-                    depth[child] = depth[number] + 1;
-                    assert_eq!(node.aabb().union(bvh.nodes[child].aabb()), *node.aabb());
-                }
-            }
-        }
-        assert_eq!(depth.into_iter().max(), Some(bvh.max_depth));
+        assert_eq!(checked_depth(bvh), bvh.max_depth);
 
         let hits = caster.all(DVec3::new(0.0, 0.0, 2.0), DVec3::NEG_Z, EVERYWHERE, any_hit).len();
         assert!(kind == 3 || hits == faces.len(), "kind {kind}: {hits}");
+    }
+}
+
+/// How deep a hierarchy is. Its boxes must hold those below them, and its leaves all of its primitives, each once.
+fn checked_depth(bvh: &Bvh2) -> usize {
+    let (mut deepest, mut open) = (0, vec![(0, 0)]);
+    let mut met = vec![false; bvh.primitive_indices.len()];
+    while let Some((number, depth)) = open.pop() {
+        let node = bvh.nodes[number];
+        deepest = deepest.max(depth);
+        if node.is_leaf() && node.prim_count != CELL {
+            assert!(node.prim_count <= 8);
+            for met in &mut met[node.first_index as usize..][..node.prim_count as usize] {
+                assert!(!std::mem::replace(met, true));
+            }
+        } else if !node.is_leaf() {
+            for child in [node.first_index as usize, node.first_index as usize + 1] {
+                assert_eq!(node.aabb().union(bvh.nodes[child].aabb()), *node.aabb());
+                open.push((child, depth + 1));
+            }
+        }
+    }
+    assert!(met.into_iter().all(|met| met));
+    deepest
+}
+
+#[test]
+fn any_number_of_threads_builds_the_same() {
+    let (mut positions, mut faces) = icosphere(6);
+    // Some are left out, some are there twice, and beside the sphere are two clusters that become cells.
+    faces[100] = [0, 0, 1];
+    faces[70_000] = faces[50];
+    let mut random = Random(22);
+    for number in 0..6_000 {
+        let first = positions.len() as u32;
+        let place = DVec3::X * if number % 2 == 0 { 3.0 } else { -3.0 };
+        positions.extend((0..3).map(|_| (place + random.vector()).as_vec3()));
+        faces.push([first, first + 1, first + 2]);
+    }
+    let count = faces.len();
+    let found = |threads| {
+        let mut found = Boxes::by(&positions, &faces, threads);
+        let alike = duplicates::join(&positions, &faces, &mut found);
+        assert_eq!((found.boxes.len(), alike.len()), (count - 2, 1));
+        found
+    };
+    let built = |threads| {
+        let Boxes { boxes, faces, .. } = found(threads);
+        hierarchy_by(boxes, faces, true, threads)
+    };
+    let Hierarchy { bvh: one, crowds } = built(1);
+    assert_eq!(checked_depth(&one), one.max_depth);
+    assert!(crowds.len() >= 2, "{}", crowds.len());
+    assert_eq!(one.primitive_indices.len() + crowds.iter().map(|crowd| crowd.0.len()).sum::<usize>(), count - 2);
+    for threads in [2, 3, 8] {
+        let Hierarchy { bvh: several, crowds: of_several } = built(threads);
+        assert!(crowds == of_several);
+        assert!(bytemuck::cast_slice::<_, u8>(&one.nodes) == bytemuck::cast_slice::<_, u8>(&several.nodes));
+        assert_eq!(one.primitive_indices, several.primitive_indices);
+        assert_eq!(one.max_depth, several.max_depth);
     }
 }

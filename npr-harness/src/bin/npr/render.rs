@@ -171,16 +171,22 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
     for (material, kind) in &options.inner_lines {
         scene.set_line_kind(material, *kind)?;
     }
-    let camera = Camera::framed(scene.corners(), f64::from(width) / f64::from(height), &framing);
-    let plan = Plan::new(&scene, &style, &camera)?;
-    let prepared_ms = elapsed_ms(start);
+    let mut prepared_ms = elapsed_ms(start);
     let start = Instant::now();
-    let picture = Picture { scene: &scene, style: &style, plan: &plan, camera: &camera, size: options.size, samples };
     let mut executor = Executor::choose_for(backend, &Work::new(&scene, &style, options.size, samples))?;
-    let device_ms = if executor.is_cpu() { 0.0 } else { elapsed_ms(start) };
+    // On the CPU too: adapters were looked for, unless that was asked not to be.
+    let device_ms = elapsed_ms(start);
     check(!executor.is_cpu())?;
     announce(&executor);
     let start = Instant::now();
+    let decide = || {
+        let camera = Camera::framed(scene.corners(), f64::from(width) / f64::from(height), &framing);
+        Plan::new(&scene, &style, &camera).map(|plan| (camera, plan))
+    };
+    let (camera, plan) = if executor.is_cpu() { scene.while_building_rays(decide) } else { decide() }?;
+    prepared_ms += elapsed_ms(start);
+    let start = Instant::now();
+    let picture = Picture { scene: &scene, style: &style, plan: &plan, camera: &camera, size: options.size, samples };
     let bar = progress_bar("rendering");
     let tell = |share| bar.set_position((share * 1000.0) as u64);
     let image = match executor.render_picture(&picture, &tell) {
@@ -219,12 +225,13 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
             folds => format!(" and {folds} folds of polygons"),
         };
         let mut summary = format!(
-            "{}: {width} × {height} px, {} faces, {} lines of {} edges{folds}, {:.0} ms to start the device, {:.0} ms to load, {:.0} ms to prepare, {:.0} ms to render, on {}\n",
+            "{}: {width} × {height} px, {} faces, {} lines of {} edges{folds}, {:.0} ms to {}, {:.0} ms to load, {:.0} ms to prepare, {:.0} ms to render, on {}\n",
             options.output.display(),
             scene.model.faces.len(),
             counts.iter().sum::<usize>(),
             scene.edges.edges.len(),
             device_ms,
+            if executor.is_cpu() { "look for a device" } else { "start the device" },
             loaded_ms,
             prepared_ms,
             drawn_ms,
