@@ -2,8 +2,8 @@
 # Runs all tests.
 #
 # The tests of the GPU parts need a graphics adapter, hardware or software. Where no Vulkan driver is found, Mesa's
-# software driver (lavapipe) is installed on Debian and Ubuntu; elsewhere this script says what to install, and
-# the tests that need an adapter are skipped.
+# software driver (lavapipe) is installed on Debian and Ubuntu, and Mesa's EGL, for OpenGL, with it; elsewhere this script
+# says what to install, and the tests that need an adapter are skipped.
 #
 # NPR_GPU=auto      (default) use an adapter if there is one, else skip what needs one
 # NPR_GPU=required  no adapter is a failure
@@ -29,19 +29,25 @@ if [ -z "${XDG_RUNTIME_DIR:-}" ]; then
     trap 'rm -rf "$XDG_RUNTIME_DIR"' EXIT
 fi
 
-has_loader() {
+# has_library NAME: whether the loader finds it.
+has_library() {
     for ldconfig in ldconfig /sbin/ldconfig /usr/sbin/ldconfig; do
         if command -v "$ldconfig" >/dev/null 2>&1; then
             # No pipe into grep -q: it would end ldconfig early.
-            case "$("$ldconfig" -p 2>/dev/null || true)" in *libvulkan.so.1*) return 0 ;; esac
+            case "$("$ldconfig" -p 2>/dev/null || true)" in *"$1"*) return 0 ;; esac
         fi
     done
     local folders="${LD_LIBRARY_PATH:-}:/usr/lib:/usr/lib64:/usr/local/lib" folder
     local IFS=:
     for folder in $folders; do
-        if [ -n "$folder" ] && [ -e "$folder/libvulkan.so.1" ]; then return 0; fi
+        if [ -n "$folder" ] && [ -e "$folder/$1" ]; then return 0; fi
     done
     return 1
+}
+
+# EGL and Mesa's implementation of it, which has a software rasteriser.
+has_egl() {
+    has_library libEGL.so.1 && has_library libEGL_mesa.so.0
 }
 
 # The manifests of the drivers that the Vulkan loader would find, one a line.
@@ -72,7 +78,7 @@ has_device() {
 
 # A loader, and a software driver or the driver of a device; a hardware driver without a device is of no use.
 has_vulkan() {
-    has_loader || return 1
+    has_library libvulkan.so.1 || return 1
     local found
     found="$(drivers)"
     case "$found" in
@@ -82,8 +88,9 @@ has_vulkan() {
     esac
 }
 
-install_lavapipe() {
-    local as_root=() packages=(mesa-vulkan-drivers libvulkan1)
+# install PACKAGES
+install() {
+    local as_root=() packages=("$@")
     if [ "$(id -u)" != 0 ]; then
         if ! command -v sudo >/dev/null 2>&1; then
             say "not root and no sudo; as root: apt-get install ${packages[*]}"
@@ -94,7 +101,7 @@ install_lavapipe() {
         if [ ! -t 0 ]; then as_root+=(-n); fi
     fi
     as_root+=(env DEBIAN_FRONTEND=noninteractive)
-    say "installing Mesa's software driver: ${as_root[*]} apt-get install -y --no-install-recommends ${packages[*]}"
+    say "installing Mesa's software drivers: ${as_root[*]} apt-get install -y --no-install-recommends ${packages[*]}"
     "${as_root[@]}" apt-get update -qq || say "apt-get update failed; going on with the lists there are"
     "${as_root[@]}" apt-get install -y -qq --no-install-recommends "${packages[@]}"
 }
@@ -115,6 +122,9 @@ prepare_adapter() {
         return
         ;;
     esac
+    if ! has_egl && command -v apt-get >/dev/null 2>&1; then
+        install libegl1 libegl-mesa0 libgl1-mesa-dri || say "going on without OpenGL"
+    fi
     if has_vulkan; then
         say "a Vulkan driver is there: nothing to install"
         return
@@ -123,7 +133,7 @@ prepare_adapter() {
     if [ -n "${VK_DRIVER_FILES:-${VK_ICD_FILENAMES:-}}" ]; then
         say "VK_DRIVER_FILES or VK_ICD_FILENAMES chooses the drivers, so installing one would change nothing"
     elif command -v apt-get >/dev/null 2>&1; then
-        if install_lavapipe && has_vulkan; then
+        if install mesa-vulkan-drivers libvulkan1 && has_vulkan; then
             say "installed"
             return
         fi

@@ -44,7 +44,7 @@ fn hatch_texels(
 // A threshold of a level with `side` texels along a side: 16 bits in two channels, the higher byte in red. Through a
 // sampler that takes the nearest texel of the nearest level: what GLSL makes of `textureLoad` asks for the size of the
 // level, and Mesa's llvmpipe answers all pixels of a group for one's level.
-fn hatch_threshold_texel(map: texture_2d<f32>, nearest: sampler, texel: vec2<u32>, side: u32, level: i32) -> f32 {
+fn hatch_ink_texel(map: texture_2d<f32>, nearest: sampler, texel: vec2<u32>, side: u32, level: i32) -> f32 {
     let bytes = textureSampleLevel(map, nearest, (vec2<f32>(texel) + 0.5) / f32(side), f32(level)).xy;
     return (256.0 * bytes.x + bytes.y) / 257.0;
 }
@@ -56,10 +56,10 @@ fn hatch_ink_of_level(
     let side = textureDimensions(map).x >> u32(level);
     let taps = hatch_taps(uv, side);
     let texels = vec4<f32>(
-        hatch_threshold_texel(map, nearest, taps.low, side, level),
-        hatch_threshold_texel(map, nearest, vec2<u32>(taps.high.x, taps.low.y), side, level),
-        hatch_threshold_texel(map, nearest, vec2<u32>(taps.low.x, taps.high.y), side, level),
-        hatch_threshold_texel(map, nearest, taps.high, side, level),
+        hatch_ink_texel(map, nearest, taps.low, side, level),
+        hatch_ink_texel(map, nearest, vec2<u32>(taps.high.x, taps.low.y), side, level),
+        hatch_ink_texel(map, nearest, vec2<u32>(taps.low.x, taps.high.y), side, level),
+        hatch_ink_texel(map, nearest, taps.high, side, level),
     );
     let ink = vec4<f32>(
         hatch_threshold(texels.x, tone, width), hatch_threshold(texels.y, tone, width),

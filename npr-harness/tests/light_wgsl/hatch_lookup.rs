@@ -107,7 +107,7 @@ const THRESHOLDS: &str = "
     fn texel_of_level(a: vec4<f32>, b: vec4<f32>) -> vec4<f32> {
         let level = i32(b.x);
         let side = textureDimensions(map).x >> u32(level);
-        return vec4(hatch_threshold_texel(map, nearest, vec2<u32>(fract(a.xy) * f32(side)), side, level));
+        return vec4(hatch_ink_texel(map, nearest, vec2<u32>(fract(a.xy) * f32(side)), side, level));
     }
     fn ink_of_level(a: vec4<f32>, b: vec4<f32>) -> vec4<f32> {
         return vec4(hatch_ink_of_level(map, nearest, a.xy, i32(b.x), hatch_softened(b.y, b.z), b.z));
@@ -136,7 +136,7 @@ const INK: &[Check<Arc<Thresholds>>] = &[
         allowed: ink_bound,
     },
     Check {
-        name: "hatch_threshold_texel",
+        name: "hatch_ink_texel",
         wgsl: "texel_of_level(a, b)",
         given: inked,
         rust: |map, g| {
