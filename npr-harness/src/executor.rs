@@ -1,10 +1,12 @@
 //! Which executor renders: a device, or ray casting on the CPU.
 
+mod candidates;
 mod cost;
 
+pub use candidates::Candidates;
 pub use cost::Work;
 
-use crate::camera::{Camera, Projection};
+use crate::camera::Camera;
 use crate::compare::Image;
 use crate::cpu::{self, CpuOptions};
 use crate::error::HarnessError;
@@ -14,7 +16,7 @@ use crate::style::Style;
 use std::fmt;
 
 #[cfg(feature = "gpu")]
-use crate::gpu::{self, DeviceLimits, GpuAdapter, GpuContext, GpuError};
+use crate::gpu::{self, GpuContext, GpuError};
 #[cfg(feature = "gpu")]
 use crate::plan::LineMethod;
 
@@ -114,7 +116,7 @@ impl Executor {
     /// # Errors
     /// If an adapter is required, by `backend` or by the environment, and there is none.
     pub fn choose(backend: Backend) -> Result<Self, HarnessError> {
-        Self::select(backend, None)
+        Ok(Candidates::find(backend)?.choose())
     }
 
     /// Selects the executor for some pictures: where `backend` leaves it open, a software adapter only if it is expected to
@@ -123,49 +125,7 @@ impl Executor {
     /// # Errors
     /// As [`Executor::choose`].
     pub fn choose_for(backend: Backend, work: &Work) -> Result<Self, HarnessError> {
-        Self::select(backend, Some(work))
-    }
-
-    fn select(backend: Backend, work: Option<&Work>) -> Result<Self, HarnessError> {
-        let policy = GpuPolicy::from_env()?;
-        if backend == Backend::Cpu {
-            return Ok(Self::Cpu { why: None });
-        }
-        if policy == GpuPolicy::Off {
-            return match backend {
-                Backend::Gpu => Err(HarnessError::GpuRequired("adapters are off: NPR_GPU=off".into())),
-                _ => Ok(Self::Cpu { why: Some(CpuReason::Unable("NPR_GPU=off".into())) }),
-            };
-        }
-        // Where a device is required no time is compared.
-        let work = work.filter(|_| backend == Backend::Auto && policy == GpuPolicy::Auto);
-        Self::on_device(backend, policy, work)
-    }
-
-    #[cfg(feature = "gpu")]
-    fn on_device(backend: Backend, policy: GpuPolicy, work: Option<&Work>) -> Result<Self, HarnessError> {
-        // A misspelt variable is an error wherever pictures would be made.
-        let limits = DeviceLimits::from_env()?;
-        let opened = GpuAdapter::find().and_then(|adapter| match work {
-            Some(work) if adapter.is_software() && work.is_sooner_on_cpu() => {
-                Ok(Self::Cpu { why: Some(CpuReason::Sooner { adapter: adapter.describe() }) })
-            }
-            _ => Ok(Self::Gpu(Box::new(adapter.open(limits)?))),
-        });
-        match opened {
-            Ok(executor) => Ok(executor),
-            Err(error) if policy == GpuPolicy::Required => Err(HarnessError::GpuRequired(error.to_string())),
-            Err(error) if backend == Backend::Gpu => Err(error.into()),
-            Err(error) => Ok(Self::Cpu { why: Some(CpuReason::Unable(error.to_string())) }),
-        }
-    }
-
-    #[cfg(not(feature = "gpu"))]
-    fn on_device(backend: Backend, policy: GpuPolicy, _: Option<&Work>) -> Result<Self, HarnessError> {
-        if backend == Backend::Gpu || policy == GpuPolicy::Required {
-            return Err(HarnessError::NoGpuInBuild);
-        }
-        Ok(Self::Cpu { why: Some(CpuReason::Unable("this build has no GPU executor".into())) })
+        Ok(Candidates::find(backend)?.choose_for(work))
     }
 
     /// The CPU, for a picture that a device could not make, and why: not where a device was asked for, by `backend` or by
@@ -209,15 +169,17 @@ impl Executor {
         match self {
             #[cfg(feature = "gpu")]
             Self::Gpu(context) => {
-                let parallel = matches!(picture.camera.projection, Projection::Orthographic { .. });
-                let usable = context.usable();
-                let mut methods = usable.methods(picture.plan, parallel, picture.size, picture.samples)?;
-                if let Some(fault) = context.refusal() {
-                    methods.push(Reason { pass: "compute shaders", why: format!("refused by the driver: {fault}") });
-                }
+                let parallel = matches!(picture.camera.projection, crate::camera::Projection::Orthographic { .. });
+                let (capabilities, no_compute) = context.for_one_picture();
+                let mut methods = capabilities.methods(picture.plan, parallel, picture.size, picture.samples)?;
+                methods.extend(no_compute.map(|why| Reason { pass: "compute shaders", why }));
                 Ok(methods)
             }
-            Self::Cpu { .. } => Ok(Vec::new()),
+            Self::Cpu { .. } => {
+                // In a build without devices nothing depends on it.
+                let _ = picture;
+                Ok(Vec::new())
+            }
         }
     }
 
@@ -259,7 +221,7 @@ impl Executor {
                 let render = |capabilities| {
                     gpu::render(context, capabilities, scene, style, plan, camera, size, samples, LineMethod::Auto)
                 };
-                let capabilities = context.usable();
+                let (capabilities, _) = context.for_one_picture();
                 let compute = capabilities.compute;
                 match render(capabilities) {
                     // What drivers promise and refuse all the same is mostly compute shaders.
@@ -299,8 +261,11 @@ impl Executor {
         let is_final = false;
         let cpu = Self::instead(backend, error)?;
         let image = cpu.render_picture(picture, progress)?;
-        let Self::Cpu { why } = &cpu else { unreachable!("the CPU is what there is instead") };
-        let why = why.clone();
+        let why = match &cpu {
+            Self::Cpu { why } => why.clone(),
+            #[cfg(feature = "gpu")]
+            Self::Gpu(_) => None,
+        };
         if is_final {
             *self = cpu;
         }

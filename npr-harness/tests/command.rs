@@ -246,7 +246,7 @@ fn a_rendering_says_what_took_which_time() {
         assert!(json[part].as_f64().is_some_and(|ms| ms > 0.0), "{part}: {}", json[part]);
     }
     let said = text(&render(&["-o", "a.png"], &folder).stdout);
-    let parts = [", 0 ms to look for a device, ", " ms to load, ", " ms to prepare, ", " ms to render, on CPU"];
+    let parts = [", 0 ms to wait for devices, ", " ms to load, ", " ms to prepare, ", " ms to render, on CPU"];
     let mut rest = said.as_str();
     for part in parts {
         rest = rest.split_once(part).unwrap_or_else(|| panic!("{part:?} in its place in {said}")).1;
@@ -272,4 +272,20 @@ fn shells_get_scripts_that_know_every_command_and_flag() {
     read.stdin.take().expect("piped").write_all(&script).expect("bash reads it");
     let read = read.wait_with_output().expect("it ends");
     assert!(read.status.success(), "{}", text(&read.stderr));
+}
+
+/// As before `head`.
+#[test]
+fn a_reader_that_has_had_enough_ends_nothing() {
+    let folder = Folder::new();
+    let mut child = Command::new(env!("CARGO_BIN_EXE_npr"))
+        .arg("styles")
+        .current_dir(&folder.0)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("it starts");
+    drop(child.stdout.take());
+    let done = child.wait_with_output().expect("it ends");
+    assert!(done.status.success() && done.stderr.is_empty(), "{}", text(&done.stderr));
 }

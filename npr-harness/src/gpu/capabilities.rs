@@ -101,10 +101,9 @@ impl Capabilities {
                     LineMethod::Strokes,
                     "found on the CPU, drawn by compute shaders: a software rasteriser is slower at thin rectangles",
                 ),
-                (false, _) => (
-                    LineMethod::Rectangles,
-                    "found on the CPU, drawn as rectangles: the adapter has no compute shaders",
-                ),
+                (false, _) => {
+                    (LineMethod::Rectangles, "found on the CPU, drawn as rectangles: no compute shaders are used")
+                }
                 (true, false) => (
                     LineMethod::Rectangles,
                     "found on the CPU, drawn as rectangles: the adapter's compute shaders cannot write pictures",
@@ -130,9 +129,10 @@ impl Capabilities {
                 ImageLineMethod::Compute,
                 "compute shaders, where hard and opaque: a software rasteriser is slower at it",
             ),
-            (true, false) => {
-                (ImageLineMethod::Fragment, "fragment shader: the adapter's compute shaders cannot write pictures")
-            }
+            (true, false) => (
+                ImageLineMethod::Fragment,
+                "fragment shader: no compute shaders are used, or they cannot write pictures",
+            ),
             (false, _) => (ImageLineMethod::Fragment, "fragment shader"),
         }
     }

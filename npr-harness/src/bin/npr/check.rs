@@ -3,7 +3,7 @@
 use crate::loading::Loading;
 use crate::paths;
 use crate::style::known_style;
-use crate::terminal::{announce, progress_bar};
+use crate::terminal::{announce, progress_bar, say};
 use clap::Args;
 use npr_harness::check;
 use npr_harness::error::HarnessError;
@@ -35,11 +35,12 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
     announce(&executor);
     let bar = progress_bar("checking");
     if !options.json {
-        println!("on {}", executor.describe());
+        say(format_args!("on {}\n", executor.describe()))?;
     }
     let tell = |metric: &check::Metric| {
         if !options.json {
-            bar.suspend(|| println!("{metric}"));
+            // What cannot be written now cannot be at the end, and is an error there.
+            let _ = bar.suspend(|| say(format_args!("{metric}\n")));
         }
     };
     let loading = options.loading.options();
@@ -48,9 +49,9 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
     })?;
     bar.finish_and_clear();
     if options.json {
-        println!("{}", serde_json::to_string_pretty(&report)?);
+        say(format_args!("{}\n", serde_json::to_string_pretty(&report)?))?;
     } else {
-        print!("{}", report.summary());
+        say(format_args!("{}", report.summary()))?;
     }
     Ok(report.passed())
 }

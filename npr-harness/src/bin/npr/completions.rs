@@ -1,12 +1,15 @@
 //! `npr completions`.
 
 use crate::Cli;
+use crate::terminal::say;
 use clap::CommandFactory;
 use clap_complete::{Shell, generate};
+use npr_harness::error::HarnessError;
 
-pub fn print(shell: Shell) {
+pub fn print(shell: Shell) -> Result<bool, HarnessError> {
     // In memory first: `generate` panics where it cannot write.
     let mut script = Vec::new();
     generate(shell, &mut Cli::command(), "npr", &mut script);
-    print!("{}", String::from_utf8_lossy(&script));
+    say(format_args!("{}", String::from_utf8_lossy(&script)))?;
+    Ok(true)
 }

@@ -1,6 +1,6 @@
 //! `npr` without a command.
 
-use crate::terminal::{announce, progress_bar};
+use crate::terminal::{announce, progress_bar, say};
 use npr_harness::error::HarnessError;
 use npr_harness::executor::{Backend, Executor};
 use npr_harness::gallery;
@@ -11,11 +11,11 @@ pub fn run() -> Result<bool, HarnessError> {
     let backend = Backend::Auto;
     let mut executor = Executor::choose_for(backend, &gallery::work())?;
     announce(&executor);
-    println!("on {}", executor.describe());
+    say(format_args!("on {}\n", executor.describe()))?;
     let bar = progress_bar("gallery");
     let tell = |share| bar.set_position((share * 1000.0) as u64);
     let rows = gallery::render(&mut executor, backend, Path::new("npr-out"), &tell)?;
     bar.finish_and_clear();
-    print!("{}", gallery::table(&rows));
+    say(format_args!("{}", gallery::table(&rows)))?;
     Ok(true)
 }

@@ -1,6 +1,7 @@
 //! `npr inspect`.
 
 use crate::loading::{Loading, load};
+use crate::terminal::say;
 use clap::Args;
 use npr_harness::error::HarnessError;
 use npr_harness::inspect::inspect;
@@ -24,9 +25,9 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
     let name = input.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     let inspection = inspect(&name, &loaded.model, loaded.warnings);
     if options.json {
-        println!("{}", serde_json::to_string_pretty(&inspection)?);
+        say(format_args!("{}\n", serde_json::to_string_pretty(&inspection)?))?;
     } else {
-        print!("{inspection}");
+        say(format_args!("{inspection}"))?;
     }
     Ok(true)
 }

@@ -59,15 +59,9 @@ fn main() -> ExitCode {
         Some(Command::Inspect(options)) => inspect::run(&options),
         Some(Command::Check(options)) => check::run(&options),
         Some(Command::Tam(options)) => tam::run(&options),
-        Some(Command::Styles) => {
-            style::list();
-            Ok(true)
-        }
+        Some(Command::Styles) => style::list(),
         Some(Command::Style { name }) => style::print(&name),
-        Some(Command::Completions { shell }) => {
-            completions::print(shell);
-            Ok(true)
-        }
+        Some(Command::Completions { shell }) => completions::print(shell),
     };
     match done {
         Ok(true) => ExitCode::SUCCESS,

@@ -1,5 +1,6 @@
 //! Where `npr render` writes its picture.
 
+use crate::terminal::say;
 use npr_harness::compare::{Image, PictureFormat};
 use npr_harness::error::{HarnessError, PathRole};
 use npr_hatch::files::{check_place, write_file};
@@ -51,10 +52,13 @@ impl<'a> Destination<'a> {
     }
 
     /// The summary goes beside the picture, never into it.
-    pub fn summarize(self, summary: &str) {
+    pub fn summarize(self, summary: &str) -> Result<(), HarnessError> {
         match self {
-            Self::File(..) => print!("{summary}"),
-            Self::StandardOutput => eprint!("{summary}"),
+            Self::File(..) => say(format_args!("{summary}")),
+            Self::StandardOutput => {
+                eprint!("{summary}");
+                Ok(())
+            }
         }
     }
 }

@@ -3,12 +3,12 @@
 use crate::loading::{Loading, load};
 use crate::picture::Destination;
 use crate::style::{known_style, style_file};
-use crate::terminal::{announce, one_line, progress_bar};
+use crate::terminal::{announce, one_line, progress_bar, say};
 use clap::{Args, ValueEnum};
 use glam::{DVec3, DVec4};
 use npr_harness::camera::{Camera, Framing};
 use npr_harness::error::HarnessError;
-use npr_harness::executor::{Backend, Executor, Picture, Work};
+use npr_harness::executor::{Backend, Candidates, Executor, Picture, Work};
 use npr_harness::picture_limits::{MEMORY_BYTES, MOST_SAMPLES, check_picture};
 use npr_harness::plan::Plan;
 use npr_harness::plan::Reason;
@@ -151,6 +151,8 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
     let check = |on_device| check_picture(&style, options.size, samples, on_device, memory as u64);
     // Which executor it will be depends on the model; what neither could hold is known at once.
     check(backend == Backend::Gpu)?;
+    // On another thread: a model can be read while a driver starts.
+    let looking = std::thread::spawn(move || Candidates::find(backend));
     let start = Instant::now();
     let loaded = load(&options.input, &options.loading)?;
     let loaded_ms = elapsed_ms(start);
@@ -173,8 +175,9 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
     }
     let mut prepared_ms = elapsed_ms(start);
     let start = Instant::now();
-    let mut executor = Executor::choose_for(backend, &Work::new(&scene, &style, options.size, samples))?;
-    // On the CPU too: adapters were looked for, unless that was asked not to be.
+    let candidates = looking.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
+    let mut executor = candidates.choose_for(&Work::new(&scene, &style, options.size, samples));
+    // What of it was not over before.
     let device_ms = elapsed_ms(start);
     check(!executor.is_cpu())?;
     announce(&executor);
@@ -207,8 +210,8 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
     if options.json {
         let listed = |of: &[Reason]| of.iter().map(|r| json!({"pass": r.pass, "why": r.why})).collect::<Vec<_>>();
         let warnings: Vec<_> = warnings.iter().map(|w| json!({"text": w.text, "count": w.count})).collect();
-        println!(
-            "{}",
+        say(format_args!(
+            "{}\n",
             json!({
                 "input": options.input, "output": options.output, "style": style.name,
                 "width": width, "height": height, "executor": executor.describe(),
@@ -218,7 +221,7 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
                 "passes": listed(&plan.passes), "left_out": listed(&plan.left_out), "methods": listed(&methods),
                 "warnings": warnings,
             })
-        );
+        ))?;
     } else {
         let folds = match scene.edges.folds.len() {
             0 => String::new(),
@@ -231,7 +234,7 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
             counts.iter().sum::<usize>(),
             scene.edges.edges.len(),
             device_ms,
-            if executor.is_cpu() { "look for a device" } else { "start the device" },
+            if executor.is_cpu() { "wait for devices" } else { "start the device" },
             loaded_ms,
             prepared_ms,
             drawn_ms,
@@ -243,7 +246,7 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
                 summary.push_str(&format!("  method  {pass:<36} {}\n", one_line(why)));
             }
         }
-        destination.summarize(&summary);
+        destination.summarize(&summary)?;
     }
     Ok(true)
 }

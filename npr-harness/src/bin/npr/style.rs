@@ -1,19 +1,21 @@
 //! `npr styles`, `npr style`, and the style that a flag names.
 
 use crate::paths;
+use crate::terminal::say;
 use npr_harness::error::{HarnessError, PathRole};
 use npr_harness::style::{Style, style, styles};
 use npr_harness::suggest::nearest;
 use std::path::Path;
 
-pub fn list() {
+pub fn list() -> Result<bool, HarnessError> {
     for style in styles() {
-        println!("{:<16}{}", style.name, style.about);
+        say(format_args!("{:<16}{}\n", style.name, style.about))?;
     }
+    Ok(true)
 }
 
 pub fn print(name: &str) -> Result<bool, HarnessError> {
-    print!("{}", known_style(name)?.to_toml()?);
+    say(format_args!("{}", known_style(name)?.to_toml()?))?;
     Ok(true)
 }
 

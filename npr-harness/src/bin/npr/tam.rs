@@ -1,7 +1,7 @@
 //! `npr tam`: tonal art maps into a folder, and out of a file.
 
 use crate::paths;
-use crate::terminal::spinner;
+use crate::terminal::{say, spinner};
 use clap::Args;
 use npr_harness::error::{HarnessError, PathRole};
 use npr_harness::hatch::read_map;
@@ -193,9 +193,9 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
     let write_s = start.elapsed().as_secs_f64();
     let found: Vec<Found> = (0..map.tam.tones.len()).map(|tone| found(&map.tam, tone)).collect();
     if options.json {
-        print_json(options, &map, &found, &files, write_s);
+        print_json(options, &map, &found, &files, write_s)?;
     } else {
-        println!("{}", table(options, &map, &found, &files, write_s));
+        say(format_args!("{}\n", table(options, &map, &found, &files, write_s)))?;
     }
     Ok(true)
 }
@@ -268,14 +268,20 @@ fn found(tam: &Tam, tone: usize) -> Found {
     Found { asked, mean: first + f64::from(asked), largest_error }
 }
 
-fn print_json(options: &Options, map: &Map, found: &[Found], files: &[PathBuf], write_s: f64) {
+fn print_json(
+    options: &Options,
+    map: &Map,
+    found: &[Found],
+    files: &[PathBuf],
+    write_s: f64,
+) -> Result<(), HarnessError> {
     let tones: Vec<_> = found
         .iter()
         .map(|found| json!({"asked": found.asked, "found": found.mean, "largest_error": found.largest_error}))
         .collect();
     let effort = map.effort.as_ref();
-    println!(
-        "{}",
+    say(format_args!(
+        "{}\n",
         json!({
             "input": options.map, "output": options.output,
             "side": map.tam.side, "levels": map.tam.levels(), "tones": tones, "thresholds": map.thresholds.is_some(),
@@ -286,7 +292,7 @@ fn print_json(options: &Options, map: &Map, found: &[Found], files: &[PathBuf], 
             "write_s": write_s,
             "files": files,
         })
-    );
+    ))
 }
 
 /// In one piece: a reader that has had enough after a few lines, such as `head`, breaks no pipe.

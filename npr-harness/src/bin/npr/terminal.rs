@@ -1,16 +1,28 @@
 //! What is said to people: lines on standard error, progress bars.
 
+use npr_harness::error::{HarnessError, PathRole};
 use npr_harness::executor::{CpuReason, Executor};
-use std::io::IsTerminal;
+use std::fmt;
+use std::io::{self, IsTerminal, Write};
 
 /// Names in files may hold anything; no line break of theirs, and nothing that commands a terminal, is printed.
 pub fn one_line(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
 }
 
+/// Writes to standard output. A reader that has had enough, such as `head`, is no error: the work goes on.
+pub fn say(text: fmt::Arguments<'_>) -> Result<(), HarnessError> {
+    match io::stdout().lock().write_fmt(text) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            Err(HarnessError::Unusable { role: PathRole::Output, path: "-".into(), source: error })
+        }
+        _ => Ok(()),
+    }
+}
+
 /// A bar on a terminal, nothing elsewhere.
 pub fn progress_bar(what: &str) -> indicatif::ProgressBar {
-    if !std::io::stderr().is_terminal() {
+    if !io::stderr().is_terminal() {
         return indicatif::ProgressBar::hidden();
     }
     let bar = indicatif::ProgressBar::new(1000);
@@ -22,7 +34,7 @@ pub fn progress_bar(what: &str) -> indicatif::ProgressBar {
 }
 
 pub fn spinner(what: &str) -> indicatif::ProgressBar {
-    if !std::io::stderr().is_terminal() {
+    if !io::stderr().is_terminal() {
         return indicatif::ProgressBar::hidden();
     }
     let bar = indicatif::ProgressBar::new_spinner();
