@@ -84,6 +84,9 @@ impl PictureRays {
 /// What of the picture's width and height a fitted model takes up.
 const FILL: f64 = 0.9;
 
+/// Where the near plane of a framed view lies at most, as a share of the depth of the nearest point.
+const NEAR: f64 = 0.1;
+
 impl Camera {
     /// Looks at all of `points` so that they just fit, with a margin.
     ///
@@ -117,12 +120,16 @@ impl Camera {
                     distance.max(p.z + (p.x.abs() / tan.x).max(p.y.abs() / tan.y))
                 });
                 let distance = fitting.max(size * 1e-3) * framing.distance;
+                // As far away as is safe: OpenGL's depths are multiples of 2⁻²⁴ of the near plane's, at any distance. By a
+                // power of two, so that other devices' depths are rounded the same.
+                let (least, nearest) = (distance * 1e-3, distance - (high.z - middle.z));
+                let octaves = (NEAR * nearest / least).max(1.0).log2().floor();
                 Self {
                     eye: center + back * distance,
                     target: center,
                     up,
                     projection: Projection::Perspective { fov_y_rad },
-                    near: distance * 1e-3,
+                    near: least * octaves.exp2(),
                 }
             }
             None => {
