@@ -125,6 +125,10 @@ prepare_adapter() {
     if ! has_egl && command -v apt-get >/dev/null 2>&1; then
         install libegl1 libegl-mesa0 libgl1-mesa-dri || say "going on without OpenGL"
     fi
+    if [ "${VK_DRIVER_FILES:-${VK_ICD_FILENAMES:-}}" ] && ! has_vulkan && has_egl; then
+        say "VK_DRIVER_FILES or VK_ICD_FILENAMES hides Vulkan: the tests use OpenGL"
+        return
+    fi
     if has_vulkan; then
         say "a Vulkan driver is there: nothing to install"
         return

@@ -1,7 +1,7 @@
 //! A frame's cost: plain Lambert, all other light, and lines, on one adapter, same targets, same culling.
 //!
 //! `cargo bench -p npr-harness --bench frame`. Minimum and median of interleaved rounds; read the ratios. The figures
-//! that were measured stand in the README.
+//! that were measured stand in docs/speed.md.
 #![allow(clippy::print_stdout)]
 
 mod common;

@@ -1,7 +1,7 @@
 //! What strokes cost: encodings, mappings, and weights at vertices or pixels, against a plain Lambert pass.
 //!
 //! `cargo bench -p npr-harness --bench hatch`. Minimum and median of interleaved rounds; read the ratios. The figures
-//! that were measured stand in the README.
+//! that were measured stand in docs/speed.md.
 #![allow(clippy::print_stdout)]
 
 mod common;

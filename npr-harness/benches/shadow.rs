@@ -1,7 +1,7 @@
 //! What shadows cost: volumes and maps against the same frame without, and shadow lines against the objects' alone.
 //!
 //! `cargo bench -p npr-harness --bench shadow`. Minimum and median of interleaved rounds; read the ratios. The figures
-//! that were measured stand in the README.
+//! that were measured stand in docs/speed.md.
 #![allow(clippy::print_stdout)]
 
 mod common;

@@ -15,7 +15,9 @@ use crate::camera::{Camera, Framing};
 use crate::compare::{Comparison, Image, ReportRow, Tolerance, compare, html_report, leave_behind};
 use crate::cpu::Sight;
 use crate::error::HarnessError;
-use crate::executor::{Backend, Executor, Picture};
+#[cfg(feature = "gpu")]
+use crate::executor::GpuPolicy;
+use crate::executor::{Executor, Picture};
 use crate::gallery::{painted_camera, painted_scene, still_life_camera};
 use crate::line_truth::{accuracy, drawn_centreline, true_lines};
 use crate::plan::Plan;
@@ -107,6 +109,8 @@ impl Limit {
 pub struct Report {
     /// Where the pictures were made.
     pub executor: String,
+    /// Whether a device made them.
+    pub on_device: bool,
     /// What could not be checked, and why.
     pub skipped: Vec<String>,
     /// One after the other.
@@ -116,9 +120,9 @@ pub struct Report {
 }
 
 impl Report {
-    /// Whether every limit holds.
+    /// Whether every limit holds, and not everything was skipped.
     pub fn passed(&self) -> bool {
-        self.metrics.iter().all(|metric| metric.pass)
+        self.metrics.iter().all(|metric| metric.pass) && !(self.metrics.is_empty() && self.on_device)
     }
 }
 
@@ -385,7 +389,7 @@ impl Checker<'_> {
         Ok(())
     }
 
-    /// A picture, or `None`, noted as skipped, where the device cannot make it and is not required.
+    /// A picture, or `None`, noted as skipped, where it is beyond the device's limits and no device is required.
     fn render(
         &mut self,
         model: &str,
@@ -393,15 +397,18 @@ impl Checker<'_> {
         technique: &str,
         picture: &Picture<'_>,
     ) -> Result<Option<Image>, HarnessError> {
-        match self.executor.render_picture(picture, &|_| {}) {
-            Ok(image) => Ok(Some(image)),
-            Err(error) => {
-                if let Executor::Cpu { why: Some(why) } = Executor::instead(Backend::Auto, error)? {
-                    self.skipped.push(format!("{technique} of {model} ({view}): {why}"));
-                }
-                Ok(None)
-            }
+        let error = match self.executor.render_picture(picture, &|_| {}) {
+            Ok(image) => return Ok(Some(image)),
+            Err(error) => error,
+        };
+        #[cfg(feature = "gpu")]
+        if matches!(&error, HarnessError::Gpu(fault) if fault.is_limit())
+            && GpuPolicy::from_env()? != GpuPolicy::Required
+        {
+            self.skipped.push(format!("{technique} of {model} ({view}): {error}"));
+            return Ok(None);
         }
+        Err(error)
     }
 
     fn leave(
@@ -454,7 +461,8 @@ impl Checker<'_> {
             left_behind.push(html_report(self.out, &self.rows)?);
             left_behind.extend(self.rows.into_iter().flat_map(|row| row.images));
         }
-        Ok(Report { executor: self.executor.describe(), skipped, metrics: self.metrics, left_behind })
+        let on_device = !self.executor.is_cpu();
+        Ok(Report { executor: self.executor.describe(), on_device, skipped, metrics: self.metrics, left_behind })
     }
 }
 

@@ -212,6 +212,9 @@ pub enum HarnessError {
     /// The build has no device executor.
     #[error("this build has no GPU executor (the feature `gpu` is off)")]
     NoGpuInBuild,
+    /// A device was asked for, and none is to be looked for.
+    #[error("a device was asked for (--backend gpu), and NPR_GPU=off says to look for none")]
+    GpuOff,
     /// A device was required and there is none.
     #[error("NPR_GPU=required, but {0}")]
     GpuRequired(String),

@@ -16,7 +16,7 @@ use crate::style::Style;
 use std::fmt;
 
 #[cfg(feature = "gpu")]
-use crate::gpu::{self, GpuContext, GpuError};
+use crate::gpu::{self, GpuContext, GpuError, REFUSED};
 #[cfg(feature = "gpu")]
 use crate::plan::LineMethod;
 
@@ -50,11 +50,12 @@ impl GpuPolicy {
     /// # Errors
     /// [`HarnessError::Policy`] for anything else.
     pub fn from_env() -> Result<Self, HarnessError> {
-        match std::env::var("NPR_GPU").as_deref() {
-            Err(_) | Ok("" | "auto") => Ok(Self::Auto),
-            Ok("required") => Ok(Self::Required),
-            Ok("off") => Ok(Self::Off),
-            Ok(other) => Err(HarnessError::Policy(other.to_owned())),
+        let value = std::env::var_os("NPR_GPU").unwrap_or_default();
+        match value.to_string_lossy().as_ref() {
+            "" | "auto" => Ok(Self::Auto),
+            "required" => Ok(Self::Required),
+            "off" => Ok(Self::Off),
+            other => Err(HarnessError::Policy(other.to_owned())),
         }
     }
 }
@@ -138,6 +139,8 @@ impl Executor {
             return Err(error);
         }
         match &error {
+            // A device takes more than the CPU does.
+            HarnessError::PictureMemory { .. } => Ok(Self::Cpu { why: Some(CpuReason::Unable(error.to_string())) }),
             #[cfg(feature = "gpu")]
             HarnessError::Gpu(fault) if fault.is_of_the_device() => {
                 Ok(Self::Cpu { why: Some(CpuReason::Unable(fault.to_string())) })
@@ -170,10 +173,8 @@ impl Executor {
             #[cfg(feature = "gpu")]
             Self::Gpu(context) => {
                 let parallel = matches!(picture.camera.projection, crate::camera::Projection::Orthographic { .. });
-                let (capabilities, no_compute) = context.for_one_picture();
-                let mut methods = capabilities.methods(picture.plan, parallel, picture.size, picture.samples)?;
-                methods.extend(no_compute.map(|why| Reason { pass: "compute shaders", why }));
-                Ok(methods)
+                let Picture { scene, plan, size, samples, .. } = *picture;
+                Ok(context.for_one_picture().methods(scene, plan, parallel, size, samples)?)
             }
             Self::Cpu { .. } => {
                 // In a build without devices nothing depends on it.
@@ -221,12 +222,12 @@ impl Executor {
                 let render = |capabilities| {
                     gpu::render(context, capabilities, scene, style, plan, camera, size, samples, LineMethod::Auto)
                 };
-                let (capabilities, _) = context.for_one_picture();
+                let capabilities = context.for_one_picture();
                 let compute = capabilities.compute;
                 match render(capabilities) {
                     // What drivers promise and refuse all the same is mostly compute shaders.
                     Err(GpuError::Device { fault }) if compute => {
-                        let image = render(context.capabilities.clone().without_compute())?;
+                        let image = render(context.capabilities.clone().without_compute(REFUSED))?;
                         context.note_refusal(fault);
                         Ok(image)
                     }

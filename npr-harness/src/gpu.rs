@@ -19,6 +19,7 @@ mod targets;
 pub use adapter::{DeviceLimits, GpuAdapter};
 pub use capabilities::{Capabilities, ImageLineMethod, VolumeMethod};
 pub use context::GpuContext;
+pub(crate) use context::REFUSED;
 pub use error::GpuError;
 pub use scene::GpuScene;
 pub use surface::wgsl as surface_wgsl;
@@ -61,7 +62,7 @@ pub struct GpuRenderer<'a> {
 impl<'a> GpuRenderer<'a> {
     /// Makes what does not depend on scene or style, for all that the device can do.
     pub fn new(context: &'a GpuContext) -> Self {
-        Self::with_capabilities(context, context.capabilities.clone())
+        Self::with_capabilities(context, context.usable())
     }
 
     /// The same, making use of no more than `capabilities`.

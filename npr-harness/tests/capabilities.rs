@@ -1,10 +1,11 @@
-//! Each capability of an adapter taken away in turn: the picture stays within the limits of `npr check`, and the methods
+//! Each capability of an adapter taken away in turn: the picture stays within the largest difference of `npr check`, and the methods
 //! name the reason; what cannot be known beforehand falls to the next method, and at last to the CPU.
 #![cfg(feature = "gpu")]
 
 mod common;
 
 use common::device;
+use glam::Vec4;
 use npr_harness::camera::{Camera, Framing};
 use npr_harness::check::{PLACES, Reference, Shot, magnitude};
 use npr_harness::compare::{Image, Tolerance, compare};
@@ -16,7 +17,7 @@ use npr_harness::gpu::{Capabilities, DeviceLimits, GpuAdapter, GpuContext, GpuEr
 use npr_harness::plan::{LineMethod, Plan};
 use npr_harness::scene::Scene;
 use npr_harness::style::{Style, style};
-use npr_mesh::embedded;
+use npr_mesh::{AlphaMode, Material, Texture, Wrap, embedded};
 
 const SIZE: (u32, u32) = (192, 108);
 
@@ -134,7 +135,7 @@ fn without_a_capability_the_picture_is_right_and_the_reason_named() {
     for ((what, capabilities), (.., of_style, said)) in cases.iter().zip(CASES) {
         let style = named(of_style);
         let plan = Plan::new(&shown.scene, &style, &shown.camera).expect("a good style");
-        let methods = capabilities.methods(&plan, false, SIZE, 1).expect("a small picture");
+        let methods = capabilities.methods(&shown.scene, &plan, false, SIZE, 1).expect("a small picture");
         assert!(methods.iter().any(|method| method.why.contains(said)), "{what}: {methods:?}");
     }
 }
@@ -145,6 +146,7 @@ fn lines_are_found_on_the_cpu_for_the_reason_that_is_there() {
     let all = Capabilities {
         software: false,
         compute: true,
+        no_compute: "the adapter has no compute shaders",
         vertex_storage: true,
         indirect_draws: true,
         picture_storage: true,
@@ -154,7 +156,7 @@ fn lines_are_found_on_the_cpu_for_the_reason_that_is_there() {
         texture_px: 2048,
         buffer_bytes: 1 << 28,
     };
-    assert_eq!(all.lines(), (LineMethod::OnDevice, "found and drawn on the device"));
+    assert_eq!(all.lines(), (LineMethod::OnDevice, "found and drawn on the device".to_owned()));
     for (missing, reason) in [
         (Capabilities { compute: false, ..all.clone() }, "compute shaders"),
         (Capabilities { vertex_storage: false, ..all.clone() }, "storage buffers in vertex shaders"),
@@ -177,8 +179,8 @@ fn shadow_volumes_in_a_parallel_view_need_unclipped_depth() {
     }
     let clipped = Capabilities { unclipped_depth: false, ..context.capabilities.clone() };
     let plan = Plan::new(&shown.scene, &style, &shown.camera).expect("a good style");
-    assert!(matches!(clipped.methods(&plan, true, SIZE, 1), Err(GpuError::ParallelVolumes)));
-    clipped.methods(&plan, false, SIZE, 1).expect("perspective views have no far plane");
+    assert!(matches!(clipped.methods(&shown.scene, &plan, true, SIZE, 1), Err(GpuError::ParallelVolumes)));
+    clipped.methods(&shown.scene, &plan, false, SIZE, 1).expect("perspective views have no far plane");
     assert!(matches!(shown.render(&context, &clipped, &style, &plan), Err(GpuError::ParallelVolumes)));
 }
 
@@ -194,12 +196,12 @@ fn under_webgl2_limits_pictures_are_right_or_the_texture_is_named() {
     // Ink at twice the size of 1280 × 720.
     let style = named("ink-thick");
     let plan = Plan::new(&shown.scene, &style, &shown.camera).expect("a good style");
-    let refused = context.capabilities.methods(&plan, false, (1280, 720), 1);
+    let refused = context.capabilities.methods(&shown.scene, &plan, false, (1280, 720), 1);
     let Err(GpuError::TooLarge { what: "the ink", width: 2560, height: 1440, limit: 2048 }) = refused else {
         panic!("{refused:?}")
     };
     let (scene, camera) = (&shown.scene, &shown.camera);
-    let samples = |samples| context.capabilities.methods(&plan, false, (960, 540), samples);
+    let samples = |samples| context.capabilities.methods(scene, &plan, false, (960, 540), samples);
     samples(2).expect("1920 × 1080 samples");
     assert!(matches!(samples(3), Err(GpuError::TooLarge { what: "the picture's samples", .. })));
 
@@ -216,7 +218,7 @@ fn under_webgl2_limits_pictures_are_right_or_the_texture_is_named() {
     executor.render_picture(&picture, &|_| {}).expect("without compute shaders it can");
     let methods = executor.methods(&picture).expect("a small picture");
     let says = |text: &str| methods.iter().any(|method| method.why.contains(text));
-    assert!(says("found on the CPU") && says("refused by the driver"), "{methods:?}");
+    assert!(says("found on the CPU") && says("the driver refused"), "{methods:?}");
 }
 
 #[test]
@@ -247,5 +249,31 @@ fn what_a_device_cannot_make_the_cpu_makes_unless_a_device_is_required() {
         let (_, why) = executor.render_or_instead(Backend::Auto, &small, &|_| {}).expect("the CPU makes it");
         assert!(matches!(&why, Some(CpuReason::Unable(why)) if why.contains("lost")), "{why:?}");
         assert!(executor.is_cpu(), "a lost device makes no further picture");
+    }
+}
+
+#[test]
+fn a_texture_beyond_the_limits_is_refused_by_name() {
+    let Some(context) = context(DeviceLimits::Webgl2) else { return };
+    let mut model =
+        common::cards(1, 1.0, |_| Material { texture: Some(0), ..common::plain(Vec4::ONE, AlphaMode::Opaque, true) });
+    let texels = |width: u32| Texture {
+        width,
+        height: 1,
+        rgba8: vec![128; 4 * width as usize],
+        ..common::waves(1, 1, [Wrap::Repeat; 2], true)
+    };
+    for (width, fits) in [(2048, true), (2049, false)] {
+        model.textures = vec![texels(width)];
+        let scene = Scene::new(model.clone());
+        let camera = Camera::framed(scene.corners(), 1.0, &Framing::default());
+        let style = named("toon");
+        let plan = Plan::new(&scene, &style, &camera).expect("a good style");
+        let methods = context.capabilities.methods(&scene, &plan, false, SIZE, 1);
+        let uploaded = GpuRenderer::new(&context).upload(&scene, &plan, LineMethod::Auto).map(|_| ());
+        for refused in [methods.map(|_| ()), uploaded] {
+            let named = matches!(refused, Err(GpuError::TooLarge { what: "a texture of the model", limit: 2048, .. }));
+            assert!(if fits { refused.is_ok() } else { named }, "{width}: {refused:?}");
+        }
     }
 }

@@ -246,7 +246,7 @@ fn a_rendering_says_what_took_which_time() {
         assert!(json[part].as_f64().is_some_and(|ms| ms > 0.0), "{part}: {}", json[part]);
     }
     let said = text(&render(&["-o", "a.png"], &folder).stdout);
-    let parts = [", 0 ms to wait for devices, ", " ms to load, ", " ms to prepare, ", " ms to render, on CPU"];
+    let parts = [", 0 ms to wait for the device, ", " ms to load, ", " ms to prepare, ", " ms to render, on CPU"];
     let mut rest = said.as_str();
     for part in parts {
         rest = rest.split_once(part).unwrap_or_else(|| panic!("{part:?} in its place in {said}")).1;

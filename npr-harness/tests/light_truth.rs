@@ -63,7 +63,7 @@ fn borders_on_real_models() {
     }
 }
 
-/// For the table in the README.
+/// For a table of docs/accuracy.md.
 #[test]
 #[ignore = "a table: minutes, and 3 GB of memory"]
 fn table_of_borders() {

@@ -90,7 +90,7 @@ fn the_device_sorts_out_what_casts_as_the_scan_does() {
     }
 }
 
-/// For the table in the README.
+/// For a table of docs/accuracy.md.
 #[test]
 #[ignore = "a table: minutes"]
 fn table_of_masks_and_lines() {
@@ -185,7 +185,7 @@ fn states_that_differ_are_told() {
     assert!((loose.loose - one).abs() < 1e-12 && loose.acne == 0.0, "{loose:?}");
 }
 
-/// For the table in the README: what a map of so many texels gets wrong, on pictures of 640 × 360 px.
+/// For a table of docs/accuracy.md: what a map of so many texels gets wrong, on pictures of 640 × 360 px.
 #[test]
 #[ignore = "a table: a minute"]
 fn table_of_maps() {

@@ -43,7 +43,7 @@ pub struct OutlineUniform {
 
 const _: () = assert!(size_of::<OutlineUniform>() == 144);
 
-/// A line as a scan on the CPU sends it: 56 bytes.
+/// A line as a scan on the CPU sends it: 52 bytes.
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub struct LineRecord {
@@ -150,8 +150,9 @@ const EDGE_NUMBER_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBuffer
 impl LinePass {
     /// Makes the pipelines for a colour target of `color_format`.
     ///
-    /// `on_device`: also those of [`LineSource::OnDevice`], which need storage buffers in vertex shaders and indirect
-    /// drawing ([`wgpu::DownlevelFlags::VERTEX_STORAGE`], [`wgpu::DownlevelFlags::INDIRECT_EXECUTION`]).
+    /// `on_device`: also those of [`LineSource::OnDevice`], which need compute shaders, storage buffers in vertex shaders and
+    /// indirect drawing ([`wgpu::DownlevelFlags::COMPUTE_SHADERS`], [`wgpu::DownlevelFlags::VERTEX_STORAGE`],
+    /// [`wgpu::DownlevelFlags::INDIRECT_EXECUTION`]).
     pub fn new(device: &wgpu::Device, color_format: wgpu::TextureFormat, on_device: bool) -> Self {
         let layout = |label, entries: &[wgpu::BindGroupLayoutEntry]| {
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })

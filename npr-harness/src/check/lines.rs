@@ -7,7 +7,7 @@ use crate::camera::{Camera, Projection};
 use crate::cpu::{self, CpuOptions};
 use crate::error::HarnessError;
 #[cfg(feature = "gpu")]
-use crate::executor::Executor;
+use crate::executor::{Executor, Picture};
 use crate::plan::Plan;
 use crate::scene::Scene;
 use crate::style::Lines;
@@ -62,7 +62,7 @@ impl Checker<'_> {
         use crate::plan::LineMethod;
         use std::collections::BTreeSet;
         let Executor::Gpu(context) = self.executor else { return Ok(()) };
-        if !context.capabilities.can_find_lines() {
+        if !context.usable().can_find_lines() {
             self.skipped.push(format!("line finder of {model}, {view}: {} cannot run it", context.describe()));
             return Ok(());
         }
@@ -94,6 +94,13 @@ impl Checker<'_> {
         self.add("segments", "on the CPU", "width", metric, on_cpu, limit);
         #[cfg(feature = "gpu")]
         if let Executor::Gpu(context) = self.executor {
+            // A driver that refuses what it promised is found out by this picture, which falls to the next method.
+            let scene = Scene::new(npr_mesh::embedded::cube());
+            let style = one_px_style(Lines::Fins(black(1.0)));
+            let camera = &Camera::framed(scene.corners(), 1.0, &Default::default());
+            let plan = &Plan::new(&scene, &style, camera)?;
+            let picture = Picture { scene: &scene, style: &style, plan, camera, size: (16, 16), samples: 1 };
+            self.executor.render_picture(&picture, &|_| {})?;
             let renderer = crate::gpu::GpuRenderer::new(context);
             let targets = renderer.targets(SIZE.0, SIZE.1)?;
             let on_gpu = largest_width_error(size, |scene, width_px, camera| {

@@ -28,7 +28,7 @@ impl Candidates {
         }
         if policy == GpuPolicy::Off {
             return match backend {
-                Backend::Gpu => Err(HarnessError::GpuRequired("adapters are off: NPR_GPU=off".into())),
+                Backend::Gpu => Err(HarnessError::GpuOff),
                 _ => Ok(Self::unable("NPR_GPU=off".into())),
             };
         }

@@ -143,8 +143,8 @@ mod tests {
         let cartoon = style("cartoon").expect("a style of this crate");
         let one = Work::new(&scene, &cartoon, (640, 360), 1);
         let two = one.and(one);
-        assert_eq!(two.cpu_ms(), 2.0 * one.cpu_ms() - one.hierarchy_ms);
-        assert_eq!(two.software_adapter_ms(), 2.0 * one.software_adapter_ms() - OPEN_MS);
+        approx::assert_relative_eq!(two.cpu_ms(), 2.0 * one.cpu_ms() - one.hierarchy_ms);
+        approx::assert_relative_eq!(two.software_adapter_ms(), 2.0 * one.software_adapter_ms() - OPEN_MS);
         let finer = Work::new(&scene, &cartoon, (640, 360), 2);
         assert!((finer.rays_ms - 4.0 * one.rays_ms).abs() < 4.0 * SCAN_MS * scene.model.faces.len() as f64);
     }

@@ -23,10 +23,11 @@ impl DeviceLimits {
     /// # Errors
     /// [`GpuError::Limits`] for anything else.
     pub fn from_env() -> Result<Self, GpuError> {
-        match std::env::var("NPR_GPU_LIMITS").as_deref() {
-            Err(_) | Ok("" | "adapter") => Ok(Self::Adapter),
-            Ok("webgl2") => Ok(Self::Webgl2),
-            Ok(other) => Err(GpuError::Limits { name: other.to_owned() }),
+        let value = std::env::var_os("NPR_GPU_LIMITS").unwrap_or_default();
+        match value.to_string_lossy().as_ref() {
+            "" | "adapter" => Ok(Self::Adapter),
+            "webgl2" => Ok(Self::Webgl2),
+            other => Err(GpuError::Limits { name: other.to_owned() }),
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::GpuError;
 use crate::plan::{LineMethod, Plan, Reason};
+use crate::scene::Scene;
 use crate::shadow::ShadowMethod;
 use npr_hatch::upload::TamChannels;
 use npr_outline::line_strokes::STROKE_FORMAT;
@@ -14,6 +15,8 @@ pub struct Capabilities {
     pub software: bool,
     /// Whether it runs compute shaders, in groups of 64 invocations, over the four storage buffers that they need here.
     pub compute: bool,
+    /// Why not, where it does not or they are not used.
+    pub no_compute: &'static str,
     /// Whether vertex shaders read the three storage buffers that edges lie in.
     pub vertex_storage: bool,
     /// Whether a draw call's arguments can lie in a buffer.
@@ -52,6 +55,8 @@ pub enum VolumeMethod {
     OnCpu,
 }
 
+const NO_PICTURE_STORAGE: &str = "the adapter's compute shaders cannot write pictures";
+
 impl Capabilities {
     /// Reads them from an adapter and the device that was opened on it, whose limits and features may be less.
     pub fn new(adapter: &wgpu::Adapter, device: &wgpu::Device) -> Self {
@@ -66,6 +71,7 @@ impl Capabilities {
             compute: flags.contains(DownlevelFlags::COMPUTE_SHADERS)
                 && limits.max_compute_invocations_per_workgroup >= 64
                 && buffers >= 4,
+            no_compute: "the adapter has no compute shaders",
             vertex_storage: flags.contains(DownlevelFlags::VERTEX_STORAGE) && buffers >= 3,
             indirect_draws: flags.contains(DownlevelFlags::INDIRECT_EXECUTION),
             picture_storage: stored.contains(wgpu::TextureUsages::STORAGE_BINDING)
@@ -78,9 +84,17 @@ impl Capabilities {
         }
     }
 
-    /// What is left without compute shaders and what goes with them: all passes are triangles then.
-    pub fn without_compute(self) -> Self {
-        Self { compute: false, vertex_storage: false, indirect_draws: false, picture_storage: false, ..self }
+    /// What is left without compute shaders and what goes with them, and why they are not used: all passes are triangles
+    /// then.
+    pub fn without_compute(self, no_compute: &'static str) -> Self {
+        Self {
+            compute: false,
+            no_compute,
+            vertex_storage: false,
+            indirect_draws: false,
+            picture_storage: false,
+            ..self
+        }
     }
 
     /// Whether lines can be found on the device, whoever asks for that.
@@ -94,46 +108,31 @@ impl Capabilities {
     }
 
     /// How lines from edges are found and drawn, and why so.
-    pub fn lines(&self) -> (LineMethod, &'static str) {
-        if self.software {
-            return match (self.compute, self.picture_storage) {
-                (true, true) => (
-                    LineMethod::Strokes,
-                    "found on the CPU, drawn by compute shaders: a software rasteriser is slower at thin rectangles",
-                ),
-                (false, _) => {
-                    (LineMethod::Rectangles, "found on the CPU, drawn as rectangles: no compute shaders are used")
-                }
-                (true, false) => (
-                    LineMethod::Rectangles,
-                    "found on the CPU, drawn as rectangles: the adapter's compute shaders cannot write pictures",
-                ),
-            };
-        }
-        match (self.compute, self.vertex_storage, self.indirect_draws) {
-            (true, true, true) => (LineMethod::OnDevice, "found and drawn on the device"),
-            (false, ..) => (LineMethod::Rectangles, "found on the CPU, since the adapter has no compute shaders"),
-            (true, false, _) => {
-                (LineMethod::Rectangles, "found on the CPU, since the adapter has no storage buffers in vertex shaders")
-            }
-            (true, true, false) => {
-                (LineMethod::Rectangles, "found on the CPU, since the adapter has no draws with arguments in a buffer")
-            }
+    pub fn lines(&self) -> (LineMethod, String) {
+        let rectangles = |why: &str| (LineMethod::Rectangles, format!("found on the CPU, drawn as rectangles: {why}"));
+        match (self.compute, self.software) {
+            (false, _) => rectangles(self.no_compute),
+            (true, true) if self.picture_storage => (
+                LineMethod::Strokes,
+                "found on the CPU, drawn by compute shaders: a software rasteriser is slower at thin rectangles".into(),
+            ),
+            (true, true) => rectangles(NO_PICTURE_STORAGE),
+            (true, false) if !self.vertex_storage => rectangles("the adapter has no storage buffers in vertex shaders"),
+            (true, false) if !self.indirect_draws => rectangles("the adapter has no draws with arguments in a buffer"),
+            (true, false) => (LineMethod::OnDevice, "found and drawn on the device".into()),
         }
     }
 
     /// How lines are found in the image, and why so.
-    pub fn image_lines(&self) -> (ImageLineMethod, &'static str) {
-        match (self.software, self.can_stroke()) {
-            (true, true) => (
+    pub fn image_lines(&self) -> (ImageLineMethod, String) {
+        match (self.software, self.compute, self.picture_storage) {
+            (true, true, true) => (
                 ImageLineMethod::Compute,
-                "compute shaders, where hard and opaque: a software rasteriser is slower at it",
+                "compute shaders, where hard and opaque: a software rasteriser is slower at it".into(),
             ),
-            (true, false) => (
-                ImageLineMethod::Fragment,
-                "fragment shader: no compute shaders are used, or they cannot write pictures",
-            ),
-            (false, _) => (ImageLineMethod::Fragment, "fragment shader"),
+            (true, false, _) => (ImageLineMethod::Fragment, format!("fragment shader: {}", self.no_compute)),
+            (true, true, false) => (ImageLineMethod::Fragment, format!("fragment shader: {NO_PICTURE_STORAGE}")),
+            (false, ..) => (ImageLineMethod::Fragment, "fragment shader".into()),
         }
     }
 
@@ -172,6 +171,7 @@ impl Capabilities {
     /// [`GpuError::TooLarge`] with the texture that would be, [`GpuError::ParallelVolumes`].
     pub fn methods(
         &self,
+        scene: &Scene,
         plan: &Plan,
         parallel: bool,
         size: (u32, u32),
@@ -183,11 +183,11 @@ impl Capabilities {
         let mut methods = Vec::new();
         let mut add = |pass, why: &str| methods.push(Reason { pass, why: why.to_owned() });
         if plan.contours.is_some() {
-            add("lines", self.lines().1);
+            add("lines", &self.lines().1);
         }
         if let Some(image) = &plan.image {
             self.check_size("the ink", image.ink.scale.size(size))?;
-            add("lines in the image", self.image_lines().1);
+            add("lines in the image", &self.image_lines().1);
         }
         match plan.shadow.as_ref().map(|shadow| shadow.style.method) {
             Some(ShadowMethod::Volumes) if parallel && !self.unclipped_depth => return Err(GpuError::ParallelVolumes),
@@ -200,11 +200,21 @@ impl Capabilities {
                 };
                 add("shadow volumes", stencil);
             }
-            Some(ShadowMethod::Map { side }) => self.check_size("the shadow map", (side, side))?,
+            Some(ShadowMethod::Map { side }) => {
+                self.check_size("the shadow map", (side, side))?;
+                add("shadow map", "depths of 32-bit floats");
+            }
             None => {}
         }
-        if plan.hatch.is_some() {
+        if let Some(hatch) = &plan.hatch {
+            let side = hatch.tam()?.side;
+            self.check_size("the tonal art map", (side, side))?;
             add("tonal art map", self.tonal_art_map().1);
+        }
+        if plan.looks_up() {
+            for texture in &scene.model.textures {
+                self.check_size("a texture of the model", (texture.width, texture.height))?;
+            }
         }
         if !self.exact_depth {
             add("depth", "multiples of 2^-24: OpenGL brings depths from 0..1 to -1..1 and back");

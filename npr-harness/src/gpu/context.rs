@@ -5,6 +5,9 @@ use super::adapter::{DeviceLimits, GpuAdapter};
 use super::capabilities::Capabilities;
 use std::sync::{Arc, Mutex, OnceLock};
 
+/// Why compute shaders are not used that were promised.
+pub(crate) const REFUSED: &str = "the driver refused the compute shaders that it had promised";
+
 /// A device to render on.
 pub struct GpuContext {
     /// Makes resources.
@@ -63,20 +66,20 @@ impl GpuContext {
         Self { device, queue, info, capabilities, refusal: OnceLock::new(), faults }
     }
 
-    /// What is made use of for a single picture, and why no compute shaders, where there would be some.
-    ///
-    /// Software adapters compile them in 10 to 40 ms and draw a frame by them in 2 to 8 ms less (lavapipe, Mesa 22.3).
-    pub(crate) fn for_one_picture(&self) -> (Capabilities, Option<String>) {
+    /// What is made use of: all that was promised and not refused.
+    pub(crate) fn usable(&self) -> Capabilities {
         let capabilities = self.capabilities.clone();
-        let why = match self.refusal.get() {
-            _ if !capabilities.compute => return (capabilities, None),
-            Some(fault) => format!("refused by the driver: {fault}"),
-            None if capabilities.software => {
-                "not for one picture: a software adapter takes longer to compile them than they save".to_owned()
-            }
-            None => return (capabilities, None),
-        };
-        (capabilities.without_compute(), Some(why))
+        if self.refusal.get().is_some() { capabilities.without_compute(REFUSED) } else { capabilities }
+    }
+
+    /// The same for a single picture. Software adapters compile compute shaders in 10 to 40 ms and draw a frame by them in
+    /// 2 to 8 ms less (lavapipe, Mesa 22.3).
+    pub(crate) fn for_one_picture(&self) -> Capabilities {
+        let capabilities = self.usable();
+        if capabilities.software && capabilities.compute {
+            return capabilities.without_compute("for one picture compute shaders are not worth compiling");
+        }
+        capabilities
     }
 
     /// A picture was made without compute shaders that could not be made with them.

@@ -130,6 +130,19 @@ impl GpuError {
         }
     }
 
+    /// Whether it is a limit of the device, and not a fault.
+    pub fn is_limit(&self) -> bool {
+        match self {
+            Self::TooLarge { .. }
+            | Self::RampTooLarge { .. }
+            | Self::BufferTooLarge { .. }
+            | Self::TooManyDraws { .. }
+            | Self::ParallelVolumes => true,
+            Self::Outline(_) | Self::Hatch(_) => self.is_of_the_device(),
+            _ => false,
+        }
+    }
+
     /// Whether the device makes no further picture.
     pub(crate) fn is_final(&self) -> bool {
         matches!(self, Self::Lost { .. } | Self::OutOfMemory { .. })

@@ -128,7 +128,7 @@ impl GpuScene {
             None => None,
         };
         let faces = split.as_ref().map_or(&model.faces, |split| &split.faces);
-        let materials = materials(context, pass, scene, plan)?;
+        let materials = materials(context, capabilities, pass, scene, plan)?;
         let (indices, batches, blended_faces) = batches(scene, faces, &materials.alike);
         let indices = if indices.is_empty() {
             None
@@ -233,7 +233,13 @@ fn batches(scene: &Scene, faces: &[[u32; 3]], alike: &[usize]) -> (Vec<u32>, Vec
     (indices, batches, blended)
 }
 
-fn materials(context: &GpuContext, pass: &SurfacePass, scene: &Scene, plan: &Plan) -> Result<Materials, GpuError> {
+fn materials(
+    context: &GpuContext,
+    capabilities: &Capabilities,
+    pass: &SurfacePass,
+    scene: &Scene,
+    plan: &Plan,
+) -> Result<Materials, GpuError> {
     let white = Texture {
         name: "white".into(),
         width: 1,
@@ -243,7 +249,8 @@ fn materials(context: &GpuContext, pass: &SurfacePass, scene: &Scene, plan: &Pla
         smooth: true,
     };
     let of_model: &[Texture] = if plan.looks_up() { &scene.model.textures } else { &[] };
-    let textures: Vec<_> = of_model.iter().chain([&white]).map(|texture| upload_texture(context, texture)).collect();
+    let upload = |texture| upload_texture(context, capabilities, texture);
+    let textures: Vec<_> = of_model.iter().chain([&white]).map(upload).collect::<Result<_, _>>()?;
     // A uniform's dynamic offset is a multiple of this.
     let stride = size_of::<MaterialUniform>()
         .next_multiple_of(context.device.limits().min_uniform_buffer_offset_alignment as usize);
@@ -295,16 +302,16 @@ fn materials(context: &GpuContext, pass: &SurfacePass, scene: &Scene, plan: &Pla
     Ok(Materials { alike, groups: textures.iter().map(group).collect(), places })
 }
 
-fn upload_texture(context: &GpuContext, texture: &Texture) -> (wgpu::TextureView, wgpu::Sampler, [f32; 2], u32) {
+/// A texture with its mip levels, what it is read with, its size and its number of levels.
+type Uploaded = (wgpu::TextureView, wgpu::Sampler, [f32; 2], u32);
+
+fn upload_texture(context: &GpuContext, capabilities: &Capabilities, texture: &Texture) -> Result<Uploaded, GpuError> {
     let levels = MipMapped::new(texture).levels;
-    let limit = context.device.limits().max_texture_dimension_2d;
-    // Of a texture that the device cannot hold, the levels that it can.
-    let fits = |&(w, h, ref level): &(u32, u32, Vec<u8>)| w.max(h) <= limit && u32::try_from(level.len()).is_ok();
-    let fitting: Vec<_> = levels.iter().skip_while(|level| !fits(level)).collect();
-    let (width, height, _) = *fitting[0];
+    capabilities.check_size("a texture of the model", (texture.width, texture.height))?;
+    let (width, height) = (texture.width, texture.height);
     let mut bytes = Vec::new();
     // A texture's levels halve, rounding down, exactly as those of `MipMapped` do.
-    for (_, _, level) in &fitting {
+    for (_, _, level) in &levels {
         bytes.extend_from_slice(level);
     }
     let uploaded = context.device.create_texture_with_data(
@@ -312,7 +319,7 @@ fn upload_texture(context: &GpuContext, texture: &Texture) -> (wgpu::TextureView
         &wgpu::TextureDescriptor {
             label: Some(&texture.name),
             size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-            mip_level_count: fitting.len() as u32,
+            mip_level_count: levels.len() as u32,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
             format: wgpu::TextureFormat::Rgba8UnormSrgb,
@@ -336,5 +343,5 @@ fn upload_texture(context: &GpuContext, texture: &Texture) -> (wgpu::TextureView
         mipmap_filter: wgpu::MipmapFilterMode::Linear,
         ..Default::default()
     });
-    (uploaded.create_view(&Default::default()), sampler, [width as f32, height as f32], fitting.len() as u32)
+    Ok((uploaded.create_view(&Default::default()), sampler, [width as f32, height as f32], levels.len() as u32))
 }

@@ -27,7 +27,7 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
     if options.json {
         say(format_args!("{}\n", serde_json::to_string_pretty(&inspection)?))?;
     } else {
-        say(format_args!("{inspection}"))?;
+        say(format_args!("{inspection}\n"))?;
     }
     Ok(true)
 }

@@ -67,7 +67,7 @@ fn main() -> ExitCode {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::FAILURE,
         Err(error) => {
-            eprintln!("npr: {}", terminal::one_line(&error.to_string()));
+            terminal::tell(&format!("npr: {}", terminal::one_line(&error.to_string())));
             ExitCode::FAILURE
         }
     }

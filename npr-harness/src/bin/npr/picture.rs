@@ -1,6 +1,6 @@
 //! Where `npr render` writes its picture.
 
-use crate::terminal::say;
+use crate::terminal::{say, tell};
 use npr_harness::compare::{Image, PictureFormat};
 use npr_harness::error::{HarnessError, PathRole};
 use npr_hatch::files::{check_place, write_file};
@@ -56,7 +56,7 @@ impl<'a> Destination<'a> {
         match self {
             Self::File(..) => say(format_args!("{summary}")),
             Self::StandardOutput => {
-                eprint!("{summary}");
+                tell(summary.trim_end());
                 Ok(())
             }
         }

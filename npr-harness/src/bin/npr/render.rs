@@ -3,7 +3,7 @@
 use crate::loading::{Loading, load};
 use crate::picture::Destination;
 use crate::style::{known_style, style_file};
-use crate::terminal::{announce, one_line, progress_bar, say};
+use crate::terminal::{announce, one_line, progress_bar, say, tell};
 use clap::{Args, ValueEnum};
 use glam::{DVec3, DVec4};
 use npr_harness::camera::{Camera, Framing};
@@ -158,7 +158,7 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
     let loaded_ms = elapsed_ms(start);
     let warn = |warnings: &[Warning]| {
         for warning in warnings {
-            eprintln!("npr: {}", one_line(&format!("{}: warning: {warning}", options.input.display())));
+            tell(&format!("npr: {}", one_line(&format!("{}: warning: {warning}", options.input.display()))));
         }
     };
     warn(&loaded.warnings);
@@ -179,7 +179,10 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
     let mut executor = candidates.choose_for(&Work::new(&scene, &style, options.size, samples));
     // What of it was not over before.
     let device_ms = elapsed_ms(start);
-    check(!executor.is_cpu())?;
+    if let Err(error) = check(!executor.is_cpu()) {
+        executor = Executor::instead(backend, error)?;
+        check(false)?;
+    }
     announce(&executor);
     let start = Instant::now();
     let decide = || {
@@ -228,13 +231,12 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
             folds => format!(" and {folds} folds of polygons"),
         };
         let mut summary = format!(
-            "{}: {width} × {height} px, {} faces, {} lines of {} edges{folds}, {:.0} ms to {}, {:.0} ms to load, {:.0} ms to prepare, {:.0} ms to render, on {}\n",
+            "{}: {width} × {height} px, {} faces, {} lines of {} edges{folds}, {:.0} ms to wait for the device, {:.0} ms to load, {:.0} ms to prepare, {:.0} ms to render, on {}\n",
             options.output.display(),
             scene.model.faces.len(),
             counts.iter().sum::<usize>(),
             scene.edges.edges.len(),
             device_ms,
-            if executor.is_cpu() { "wait for devices" } else { "start the device" },
             loaded_ms,
             prepared_ms,
             drawn_ms,

@@ -10,6 +10,12 @@ pub fn one_line(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
 }
 
+/// Writes a line to standard error, where somebody reads it.
+pub fn tell(text: &str) {
+    // There is no other place to say that this one is closed or full.
+    let _ = writeln!(io::stderr().lock(), "{text}");
+}
+
 /// Writes to standard output. A reader that has had enough, such as `head`, is no error: the work goes on.
 pub fn say(text: fmt::Arguments<'_>) -> Result<(), HarnessError> {
     match io::stdout().lock().write_fmt(text) {
@@ -46,6 +52,6 @@ pub fn spinner(what: &str) -> indicatif::ProgressBar {
 /// Says why the CPU renders, where a device was wanted and is not there or cannot.
 pub fn announce(executor: &Executor) {
     if let Executor::Cpu { why: Some(why @ CpuReason::Unable(_)) } = executor {
-        eprintln!("npr: rendering on the CPU: {}", one_line(&why.to_string()));
+        tell(&format!("npr: rendering on the CPU: {}", one_line(&why.to_string())));
     }
 }
