@@ -61,6 +61,9 @@ mod model;
 mod shade;
 mod uniform;
 
+/// The crate of the vectors and matrices in this API.
+pub use glam;
+
 pub use error::GoochError;
 pub use model::{Gooch, Highlight, LISTING_7_K_D, Tones};
 pub use shade::{
@@ -73,3 +76,8 @@ pub use uniform::GoochUniform;
 ///
 /// They take [`GoochUniform`] by value, as WGSL cannot pass a uniform by reference.
 pub const WGSL: &str = include_str!("gooch.wgsl");
+
+/// Compiles the example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadMe;

@@ -45,3 +45,26 @@ pub mod shadow_truth;
 pub mod style;
 pub mod suggest;
 pub mod texture;
+
+/// The crate of the vectors and matrices in this API.
+pub use glam;
+/// The crate of Gooch shading, whose types styles have.
+pub use npr_gooch;
+/// The crate of hatching, whose types styles have.
+pub use npr_hatch;
+/// The crate of lines in the image, whose types styles have.
+pub use npr_imagespace;
+/// The crate of models, which scenes are made of.
+pub use npr_mesh;
+/// The crate of lines from edges, whose types plans have.
+pub use npr_outline;
+/// The crate of banded light, whose types styles have.
+pub use npr_toon;
+/// The crate of the devices, textures and encoders in this API.
+#[cfg(feature = "gpu")]
+pub use wgpu;
+
+/// Compiles the example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadMe;

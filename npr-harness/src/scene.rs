@@ -47,8 +47,9 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Finds a model's edges and prepares it.
+    /// Finds a model's edges and prepares it. Faces without material get [`npr_mesh::Material::default`].
     pub fn new(mut model: Model) -> Self {
+        model.fill_face_material();
         let bounds = model.bounds();
         let (origin, scale) = normalize(&mut model, bounds);
         let moved = origin != DVec3::ZERO || scale != 1.0;

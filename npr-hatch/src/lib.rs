@@ -87,6 +87,12 @@ pub mod threshold;
 pub mod upload;
 pub mod weights;
 
+/// The crate of the vectors and matrices in this API.
+pub use glam;
+/// The crate of the devices, textures and encoders in this API.
+#[cfg(feature = "wgpu")]
+pub use wgpu;
+
 pub use draw::{Drawing, Extent, Mark, draw};
 pub use error::HatchError;
 pub use parameters::{MAX_CANDIDATES, MAX_SIDE, MAX_TONES, MIN_SIDE, Placement, TamParameters, even_tones};
@@ -103,3 +109,8 @@ pub const WGSL: &str = include_str!("hatch.wgsl");
 
 /// Lookups in textures that the caller hands on, to put after [`WGSL`]: as little bound, as well named.
 pub const LOOKUP_WGSL: &str = include_str!("lookup.wgsl");
+
+/// Compiles the example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadMe;

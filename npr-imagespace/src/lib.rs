@@ -78,6 +78,12 @@ pub mod region;
 pub mod resample;
 pub mod shadow;
 
+/// The crate of the vectors and matrices in this API.
+pub use glam;
+/// The crate of the devices, textures and encoders in this API.
+#[cfg(feature = "wgpu")]
+pub use wgpu;
+
 pub use error::ImageSpaceError;
 
 /// The functions of this crate in WGSL: no bindings, no entry points, every name begins with `ink_`, `INK_` or `Ink`.
@@ -107,3 +113,8 @@ pub const WGSL: &str = concat!(
     include_str!("resample.wgsl"),
     include_str!("artist.wgsl"),
 );
+
+/// Compiles the example of the README.
+#[cfg(all(doctest, feature = "wgpu"))]
+#[doc = include_str!("../README.md")]
+struct ReadMe;

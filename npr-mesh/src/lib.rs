@@ -58,8 +58,16 @@ pub mod subdivide;
 pub mod triangulate;
 pub mod weld;
 
+/// The crate of the vectors and matrices in this API.
+pub use glam;
+
 pub use error::LoadError;
 pub use limits::Limits;
 #[cfg(any(feature = "obj", feature = "gltf"))]
 pub use load::{LoadOptions, Loaded, Warning, load};
 pub use model::{AlphaMode, Material, Model, Texture, Wrap};
+
+/// Compiles the example of the README.
+#[cfg(all(doctest, any(feature = "obj", feature = "gltf")))]
+#[doc = include_str!("../README.md")]
+struct ReadMe;

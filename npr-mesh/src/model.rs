@@ -21,7 +21,8 @@ pub struct Model {
     pub colors: Vec<Vec4>,
     /// Three vertices each, counter-clockwise seen from outside.
     pub faces: Vec<[u32; 3]>,
-    /// Per face: its material, an index into [`Model::materials`].
+    /// Per face, or empty where faces have no material: its material, an index into [`Model::materials`]. A face without
+    /// material is opaque.
     pub face_material: Vec<u32>,
     /// Per face, or empty where all are of one: the mesh that it belongs to, from 0. In a glTF file a node's mesh, in
     /// an `.obj` an object or group; what is appended stays a mesh of its own.
@@ -30,7 +31,7 @@ pub struct Model {
     /// cut from. Faces of one polygon stand next to each other and their numbers ascend. An edge between two
     /// faces of one polygon is a diagonal that triangulation added: it is never a line.
     pub face_polygon: Vec<u32>,
-    /// At least one wherever there is a face.
+    /// At least as many as [`Model::face_material`] refers to.
     pub materials: Vec<Material>,
     /// Images that the materials refer to.
     pub textures: Vec<Texture>,
@@ -108,11 +109,30 @@ pub enum Wrap {
 }
 
 impl Model {
+    /// The material of a face, or `None` where it has none.
+    pub fn material_of(&self, face: u32) -> Option<&Material> {
+        self.materials.get(*self.face_material.get(face as usize)? as usize)
+    }
+
+    /// Where faces have no material ([`Model::face_material`] is empty): adds [`Material::default`] and gives it to all of
+    /// them.
+    pub fn fill_face_material(&mut self) {
+        if self.face_material.is_empty() && !self.faces.is_empty() {
+            self.face_material = vec![self.materials.len() as u32; self.faces.len()];
+            self.materials.push(Material::default());
+        }
+    }
+
     /// Adds all of `other` to this scene.
     ///
     /// Optional arrays that only one side has are filled up on the other: texture coordinates with zeros,
-    /// colours with white, polygons with one per face. The other's meshes stay apart from those of this scene.
+    /// colours with white, polygons with one per face, materials with [`Material::default`]. The other's meshes stay apart
+    /// from those of this scene.
     pub fn append(&mut self, other: &Model) {
+        let has_materials = !self.face_material.is_empty() || !other.face_material.is_empty();
+        if has_materials {
+            self.fill_face_material();
+        }
         let first_vertex = self.positions.len() as u32;
         let first_material = self.materials.len() as u32;
         let first_texture = self.textures.len() as u32;
@@ -143,6 +163,10 @@ impl Model {
             other.materials.iter().map(|m| Material { texture: m.texture.map(|t| t + first_texture), ..m.clone() }),
         );
         self.textures.extend_from_slice(&other.textures);
+        if has_materials && other.face_material.is_empty() && !other.faces.is_empty() {
+            self.face_material.resize(self.faces.len(), self.materials.len() as u32);
+            self.materials.push(Material::default());
+        }
     }
 
     /// The corners of the smallest axis-aligned box around all vertices that a face uses, or `None` without faces.

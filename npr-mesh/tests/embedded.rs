@@ -283,6 +283,30 @@ fn meshes_that_are_appended_stay_apart() {
 }
 
 #[test]
+fn faces_without_material_get_one_beside_others_that_have_some() {
+    let (with, count) = (cube(), cube().faces.len());
+    let without = Model { face_material: vec![], materials: vec![], ..with.clone() };
+    let numbers = |of: u32| vec![of; count];
+    for (first, second) in [(&with, &without), (&without, &with)] {
+        let mut both = first.clone();
+        both.append(second);
+        assert_eq!(both.face_material, [numbers(0), numbers(1)].concat());
+        assert_eq!(both.materials.len(), 2);
+        let (given, face) = if first.materials.is_empty() { (0, 0) } else { (1, count as u32) };
+        assert_eq!(both.materials[given], Material::default());
+        assert_eq!(both.material_of(face), Some(&both.materials[given]));
+    }
+    let mut neither = without.clone();
+    neither.append(&without);
+    assert!(neither.face_material.is_empty() && neither.materials.is_empty());
+    assert_eq!(neither.material_of(0), None);
+    // Nothing appended to nothing needs no material.
+    let mut only = with.clone();
+    only.append(&Model::default());
+    assert_eq!((only.face_material, only.materials), (with.face_material, with.materials));
+}
+
+#[test]
 fn subdivision_multiplies_faces_by_four() {
     let model = teapot(4);
     let twice = subdivide_midpoint(&subdivide_midpoint(&model));

@@ -98,7 +98,8 @@ pub const TRAIT_CUT_OUT: u32 = 1 << 9;
 
 /// Sorts the edges of a model by whether they are lines for every eye, and makes their planes.
 ///
-/// `edges`: of this model, best found with [`npr_mesh::edges::EdgeOptions::skip_redundant`].
+/// `edges`: of this model, best found with [`npr_mesh::edges::EdgeOptions::skip_redundant`]. Where the model's
+/// `face_polygon` is empty each face is a polygon by itself; where its `face_material` is, faces are opaque.
 ///
 /// A face of zero area borrows the plane of its neighbour over its longest edge, so that a sliver between two
 /// faces passes their silhouette and their crease on instead of swallowing them.
@@ -176,7 +177,8 @@ pub fn contour_edges(model: &Model, edges: &Edges, options: &ContourOptions) -> 
         always,
     };
     let is_cut_out = |face: u32| face == NO_FACE || cut_out[model.face_material[face as usize] as usize];
-    let any_cut_out = cut_out.contains(&true);
+    // Faces without material are opaque.
+    let any_cut_out = !model.face_material.is_empty() && cut_out.contains(&true);
     let of_edges = edges.edges.iter().zip(lines).map(|(edge, line)| (edge, line, fits(edge)));
     // A polygon's triangles are wound alike, and a fold is a silhouette or nothing.
     let of_folds = edges.folds.iter().map(|fold| (fold, NO_LINE, true));

@@ -58,5 +58,18 @@ pub mod shadow_mask;
 pub mod shadow_pass;
 pub mod shadow_volume;
 
+/// The crate of the vectors and matrices in this API.
+pub use glam;
+/// The crate of the models and edges in this API.
+pub use npr_mesh;
+/// The crate of the devices, textures and encoders in this API.
+#[cfg(feature = "wgpu")]
+pub use wgpu;
+
 pub use contour::{ContourEdges, ContourOptions, LineKind, contour_edges};
 pub use error::OutlineError;
+
+/// Compiles the example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadMe;

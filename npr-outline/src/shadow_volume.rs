@@ -99,15 +99,15 @@ pub struct ShadowCasters {
 
 /// Whether a face casts at all, whatever its place.
 fn casts(model: &Model, edges: &Edges, face: usize) -> bool {
-    let blended =
-        model.materials.get(model.face_material[face] as usize).map(|m| m.alpha_mode) == Some(AlphaMode::Blend);
+    let blended = model.material_of(face as u32).is_some_and(|material| material.alpha_mode == AlphaMode::Blend);
     !blended && edges.skipped.get(face) != Some(&true)
 }
 
 /// Gathers what casts.
 ///
 /// `edges`: of this model's triangles, found without polygons (an empty `face_polygon`), so that diagonals are among
-/// them: a polygon may be warped, and its triangles then face a light differently.
+/// them: a polygon may be warped, and its triangles then face a light differently. Where the model's `face_material` is
+/// empty, all faces are opaque.
 pub fn shadow_casters(model: &Model, edges: &Edges) -> ShadowCasters {
     let origin = model.bounds().map_or(Vec3::ZERO, |(low, high)| low.midpoint(high));
     let corner = |v: u32| model.positions[v as usize];

@@ -68,6 +68,9 @@ pub mod source;
 pub mod table;
 mod uniform;
 
+/// The crate of the vectors and matrices in this API.
+pub use glam;
+
 pub use bands::{Bands, Highlight};
 pub use error::ToonError;
 pub use light::{
@@ -100,3 +103,8 @@ pub const WGSL: &str = concat!(
 /// The name of the override in [`WGSL`] that says how many bands its functions look at: 1..=[`MAX_BANDS`], at least
 /// as many as [`ToonUniform::count`], by default all.
 pub const TOON_BANDS_OVERRIDE: &str = "toon_bands";
+
+/// Compiles the example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadMe;

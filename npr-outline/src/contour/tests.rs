@@ -362,6 +362,23 @@ fn borders_of_materials_and_cut_outs_are_marked() {
 }
 
 #[test]
+fn empty_arrays_mean_that_faces_have_no_polygon_and_no_material() {
+    let mut model = embedded::cube();
+    // A material that no face has cuts nothing out.
+    model.materials = vec![Material { alpha_mode: AlphaMode::Mask { cutoff: 0.5 }, ..Material::default() }];
+    model.face_material.clear();
+    let contours = contours_of(&model, &ContourOptions { material_borders: true, ..ContourOptions::default() });
+    assert_eq!(contours.always, 12);
+    assert!(contours.traits.iter().all(|&t| t & TRAIT_CUT_OUT == 0));
+    // The diagonals of the six sides are edges then, which are no creases.
+    model.face_polygon.clear();
+    let contours = contours_of(&model, &ContourOptions::default());
+    assert_eq!((contours.always, contours.ends.len()), (12, 18));
+    let bare = Model { positions: model.positions, faces: model.faces, ..Model::default() };
+    assert_eq!(contours_of(&bare, &ContourOptions::default()), contours);
+}
+
+#[test]
 fn an_edge_of_three_faces_is_a_line_for_every_eye() {
     let mut model = ridge_with_sliver(0.5);
     model.positions.push(Vec3::new(0.0, 1.0, 0.0));

@@ -55,6 +55,18 @@ fn layers(casters: &ShadowCasters, point: DVec3, light: DVec4) -> i32 {
 }
 
 #[test]
+fn faces_without_material_cast() {
+    let cube = embedded::cube();
+    // A material that no face has lets no light through.
+    let blend = vec![Material { alpha_mode: AlphaMode::Blend, ..Material::default() }];
+    let without = Model { face_material: vec![], face_polygon: vec![], materials: blend, ..cube.clone() };
+    assert_eq!(casters_of(&without), casters_of(&cube));
+    assert_eq!(casters_of(&without).faces.len(), 12);
+    let bare = Model { positions: cube.positions.clone(), faces: cube.faces.clone(), ..Model::default() };
+    assert_eq!(casters_of(&bare), casters_of(&cube));
+}
+
+#[test]
 fn a_square_shadows_what_is_behind_it_whichever_way_it_is_wound() {
     let positions = vec![Vec3::ZERO, Vec3::X, Vec3::new(1.0, 0.0, 1.0), Vec3::Z];
     for faces in [vec![[0, 1, 2], [0, 2, 3]], vec![[0, 2, 1], [0, 3, 2]], vec![[0, 1, 2], [0, 3, 2]]] {
