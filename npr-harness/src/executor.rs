@@ -226,9 +226,11 @@ impl Executor {
                 let compute = capabilities.compute;
                 match render(capabilities) {
                     // What drivers promise and refuse all the same is mostly compute shaders.
-                    Err(GpuError::Device { fault }) if compute => {
+                    Err(error @ (GpuError::Device { .. } | GpuError::Outline(_))) if compute => {
+                        // What else it reported is of the same attempt.
+                        let _ = context.wait();
                         let image = render(context.capabilities.clone().without_compute(REFUSED))?;
-                        context.note_refusal(fault);
+                        context.note_refusal(error.to_string());
                         Ok(image)
                     }
                     done => Ok(done?),

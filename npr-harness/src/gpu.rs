@@ -91,7 +91,10 @@ impl<'a> GpuRenderer<'a> {
     /// [`GpuError::BufferTooLarge`].
     pub fn upload(&self, scene: &Scene, plan: &Plan, method: LineMethod) -> Result<GpuScene, GpuError> {
         let capabilities = &self.capabilities;
-        let lines = if method == LineMethod::Auto { capabilities.lines().0 } else { method };
+        let lines = match (method, &plan.contours) {
+            (LineMethod::Auto, Some(contours)) => capabilities.lines(contours.device_bytes(&scene.model.positions)).0,
+            (method, _) => method,
+        };
         let on_device = lines == LineMethod::OnDevice;
         let mut uploaded = GpuScene::new(self.context, capabilities, &self.surface, scene, plan)?;
         if let (true, Some(contours)) = (on_device, &plan.contours) {

@@ -154,19 +154,20 @@ fn lines_are_found_on_the_cpu_for_the_reason_that_is_there() {
         float_stencil: true,
         exact_depth: true,
         texture_px: 2048,
-        buffer_bytes: 1 << 28,
+        storage_bytes: 1 << 27,
     };
-    assert_eq!(all.lines(), (LineMethod::OnDevice, "found and drawn on the device".to_owned()));
+    assert_eq!(all.lines(1 << 27), (LineMethod::OnDevice, "found and drawn on the device".to_owned()));
     for (missing, reason) in [
+        (Capabilities { storage_bytes: 1 << 19, ..all.clone() }, "so many edges"),
         (Capabilities { compute: false, ..all.clone() }, "compute shaders"),
         (Capabilities { vertex_storage: false, ..all.clone() }, "storage buffers in vertex shaders"),
         (Capabilities { indirect_draws: false, ..all.clone() }, "draws with arguments in a buffer"),
     ] {
-        let (method, why) = missing.lines();
+        let (method, why) = missing.lines(1 << 20);
         assert_eq!(method, LineMethod::Rectangles, "{reason}");
         assert!(why.contains(reason), "{why}");
     }
-    assert_eq!(Capabilities { software: true, ..all }.lines().0, LineMethod::Strokes);
+    assert_eq!(Capabilities { software: true, ..all }.lines(1 << 20).0, LineMethod::Strokes);
 }
 
 #[test]
@@ -208,11 +209,11 @@ fn under_webgl2_limits_pictures_are_right_or_the_texture_is_named() {
     // A driver that refuses what it promised: the next method is taken.
     let promised = &mut context.capabilities;
     (promised.software, promised.compute) = (false, true);
-    (promised.vertex_storage, promised.indirect_draws) = (true, true);
+    (promised.vertex_storage, promised.indirect_draws, promised.storage_bytes) = (true, true, 1 << 27);
     let cartoon = named("cartoon");
     let plan = Plan::new(scene, &cartoon, camera).expect("a good style");
     let refused = shown.render(&context, &context.capabilities, &cartoon, &plan);
-    assert!(matches!(refused, Err(GpuError::Device { .. })), "{refused:?}");
+    assert!(matches!(refused, Err(GpuError::Device { .. } | GpuError::Outline(_))), "{refused:?}");
     let executor = Executor::Gpu(Box::new(context));
     let picture = Picture { scene, style: &cartoon, plan: &plan, camera, size: SIZE, samples: 1 };
     executor.render_picture(&picture, &|_| {}).expect("without compute shaders it can");

@@ -241,12 +241,12 @@ fn a_rendering_says_what_took_which_time() {
     let folder = with_model();
     let done = render(&["-o", "a.png", "--json"], &folder);
     let json: Value = serde_json::from_slice(&done.stdout).expect("JSON on standard output");
-    assert!(json["device_ms"].as_f64().is_some_and(|ms| (0.0..5.0).contains(&ms)), "no device is looked for");
+    assert!(json["device_ms"].as_f64().is_some_and(|ms| ms >= 0.0), "{}", json["device_ms"]);
     for part in ["load_ms", "prepare_ms", "render_ms"] {
         assert!(json[part].as_f64().is_some_and(|ms| ms > 0.0), "{part}: {}", json[part]);
     }
     let said = text(&render(&["-o", "a.png"], &folder).stdout);
-    let parts = [", 0 ms to wait for the device, ", " ms to load, ", " ms to prepare, ", " ms to render, on CPU"];
+    let parts = [" ms to wait for the device, ", " ms to load, ", " ms to prepare, ", " ms to render, on CPU"];
     let mut rest = said.as_str();
     for part in parts {
         rest = rest.split_once(part).unwrap_or_else(|| panic!("{part:?} in its place in {said}")).1;

@@ -404,3 +404,47 @@ fn thresholds_have_every_tone() {
     }
     assert_eq!(thresholds.to_u8(7), [127]);
 }
+
+/// A black stroke and a faint one on 8 × 8 texels: all that is known of the order follows from the two.
+#[test]
+fn what_no_stroke_inks_follows_the_inked_darkest_neighbourhood_first_around_the_borders() {
+    // Along x, 4 texels long and 1 wide, with no taper: they cover whole texels.
+    let stroke = |x: u32, row: u32, pressure| Stroke {
+        centre: [x << 29, (2 * row + 1) << 28],
+        direction: [1.0, 0.0],
+        length: 0.5,
+        bow: 0.0,
+        pressure,
+    };
+    // 255 in columns 0..4 of row 0; 64 in columns 6, 7, 0 and 1 of row 5, which is less than half and so not ink.
+    let layers = [vec![stroke(2, 0, 1.0), stroke(0, 5, 0.25)], vec![]];
+    // The black one is drawn last, after the faint one so often that its rank is larger than any darkness.
+    let mut marks = vec![vec![Mark { layer: 0, index: 1 }; 3000], vec![], vec![], vec![]];
+    marks[0].push(Mark { layer: 0, index: 0 });
+    let parameters = TamParameters { side: 8, width_px: 1.0, taper: 0.0, ..TamParameters::default() };
+    let tam = Tam { tones: vec![0.5], side: 8, images: vec![vec![255; 64], vec![255; 16], vec![255; 4], vec![255]] };
+    let drawing = Drawing { tam, layers, marks, extents: vec![Extent { whole: [2, 0], part: [0; 2] }; 4] };
+    let thresholds = Thresholds::new(&drawing, &parameters, None);
+    thresholds.validate().unwrap();
+
+    // Ink of the 3 × 3 texels around each, and twice that of its own, both borders being neighbours. Equally dark ones are
+    // in the order of rows.
+    #[rustfmt::skip]
+    let darkness = [
+        9999, 9998, 9997, 9996,  255,    0,    0,  255,
+         510,  765,  765,  510,  255,    0,    0,  255,
+           0,    0,    0,    0,    0,    0,    0,    0,
+           0,    0,    0,    0,    0,    0,    0,    0,
+         192,  128,   64,    0,    0,   64,  128,  192,
+         320,  256,   64,    0,    0,   64,  256,  320,
+         192,  128,   64,    0,    0,   64,  128,  192,
+         510,  765,  765,  510,  255,    0,    0,  255,
+    ];
+    let mut expected: Vec<usize> = (0..64).collect();
+    expected.sort_by_key(|&texel| -darkness[texel]);
+    let mut order: Vec<usize> = (0..64).collect();
+    order.sort_by_key(|&texel| std::cmp::Reverse(thresholds.levels[0][texel]));
+    assert_eq!(order, expected);
+    // Where nothing is drawn all texels are alike.
+    assert!(thresholds.levels[1..].iter().all(|level| level.is_sorted_by(|a, b| a > b)));
+}

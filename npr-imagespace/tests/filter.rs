@@ -7,6 +7,7 @@ use npr_imagespace::filter::fused::*;
 use npr_imagespace::filter::ink_ramp;
 use npr_imagespace::filter::inker::*;
 use npr_imagespace::filter::normal::*;
+use npr_imagespace::filter::printed::ink_printed_inker;
 use npr_imagespace::filter::region::*;
 use npr_imagespace::format::printed::{CLEAR, CLEAR_PRINTED, ink_printed_encode};
 use npr_imagespace::format::texel::*;
@@ -160,6 +161,106 @@ fn bends_are_found_and_slopes_and_what_is_no_depth_are_not() {
     let parallel = |taps| ink_depth_bend(10.0, taps, 0.5, true, 0.0, 0.5);
     assert_eq!(parallel([4.0, 10.0, 16.0, 10.0]), 0.0);
     assert_eq!(parallel([4.0, 10.0, 16.6, 10.0]), 1.0);
+}
+
+#[test]
+fn a_soft_step_of_depth_ramps_around_a_share_of_the_nearer_side() {
+    // All in 1/z, of which the larger is the nearer side: the threshold is 1/4 of it, and the ramp twice as wide.
+    let ink = |centre: f32, taps: [f32; 4], weight| {
+        ink_depth_step_soft(1.0 / centre, taps.map(|tap| 1.0 / tap), 0.25, 2.0, weight)
+    };
+    for (tap, expected) in [(1.0, 0.0), (0.875, 0.25), (0.75, 0.5), (0.625, 0.75), (0.5, 1.0), (0.25, 1.0)] {
+        for place in 0..4 {
+            let mut taps = [1.0; 4];
+            taps[place] = tap;
+            // From the nearer side, and from one of three on the other.
+            assert!((ink(1.0, taps, 1.0) - expected).abs() < 1e-6, "{tap} {place}");
+            assert!((ink(1.0, taps, 0.5) - 0.5 * expected).abs() < 1e-6, "{tap} {place}");
+            let mut taps = [tap; 4];
+            taps[place] = 1.0;
+            assert!((ink(tap, taps, 0.5) - 0.5 * expected).abs() < 1e-6, "{tap} {place}");
+        }
+    }
+    // Half as near, half the threshold.
+    assert!((ink(0.5, [0.5, 0.375, 0.5, 0.5], 1.0) - 0.5).abs() < 1e-6);
+    // Taps add up, to 1 at most.
+    assert!((ink(1.0, [0.875, 0.75, 1.0, 1.0], 0.5) - 0.375).abs() < 1e-6);
+    assert!((ink(1.0, [0.75; 4], 0.5) - 1.0).abs() < 1e-6);
+    assert_eq!(ink(1.0, [0.5; 4], 0.5), 1.0);
+    // Each tap across the border of the background counts in full, from either side.
+    for none in [f32::INFINITY, f32::NAN, 0.0, -1.0] {
+        let step = |centre, taps| ink_depth_step_soft(centre, taps, 0.25, 2.0, 0.25);
+        assert_eq!(step(1.0, [1.0, none, 1.0, 1.0]), 0.25);
+        assert_eq!(step(none, [1.0, none, 1.0, 1.0]), 0.75);
+        assert_eq!(step(none, [none; 4]), 0.0);
+    }
+}
+
+#[test]
+fn a_hard_step_of_depth_is_more_than_a_share_of_the_nearer_side() {
+    // In 1/z the farther of each pair is exactly half of the nearer, and half is what may be.
+    for (near, far) in [(1.0f32, 2.0f32), (2.0, 4.0), (16.0, 32.0)] {
+        for place in 0..4 {
+            let step = |centre: f32, tap: f32| {
+                let mut taps = [centre; 4];
+                taps[place] = tap;
+                ink_depth_step(centre, taps, 0.5)
+            };
+            assert_eq!([step(near, far), step(far, near)], [false; 2], "{near} {place}");
+            assert_eq!([step(near, far.next_up()), step(far.next_up(), near)], [true; 2], "{near} {place}");
+        }
+    }
+}
+
+#[test]
+fn a_soft_inker_ramps_around_the_square_of_its_step_and_twice_what_normals_differ_by() {
+    // δ = 1/5, 51 steps of 8 bits: the limit is 1/25, and half of that the width of the ramp.
+    let soft = Inker { depth_delta: 0.2, softness: 0.5, ..Default::default() };
+    let flat = [DVec3::Z; 4];
+    let of_bytes = |d0: f64, d1: f64| (d0 * d0 + d1 * d1) / 65025.0;
+    for (d0, d1, expected) in [
+        (0.0, 0.0, 0.0),
+        (51.0, 0.0, 0.5),
+        (0.0, -51.0, 0.5),
+        (-45.0, 24.0, 0.5),
+        (52.0, 0.0, (of_bytes(52.0, 0.0) - 0.04) / 0.02 + 0.5),
+        (30.0, 40.0, (of_bytes(50.0, 0.0) - 0.04) / 0.02 + 0.5),
+        (60.0, 0.0, 1.0),
+    ] {
+        let depths = [128.0 + d0, 128.0 + d1, 128.0, 128.0].map(|code: f64| code / 255.0);
+        assert!((ink_inker(&soft, flat, depths) - expected).abs() < 1e-6, "{d0} {d1}");
+    }
+    // A flat face near by: N is 4 (0.4 + z)², so 0.64, 0.81 and 1.
+    for (depth, expected) in [(0.0, 0.72), (0.05, 0.38), (0.1001, 0.0)] {
+        assert!((ink_inker(&soft, flat, [depth; 4]) - expected).abs() < 1e-5, "{depth}");
+    }
+    assert_eq!(ink_inker(&soft, [DVec3::Z, DVec3::Z, DVec3::X, DVec3::Z], [0.5; 4]), 1.0);
+}
+
+#[test]
+fn the_inker_on_bytes_is_the_inker_on_what_they_stand_for() {
+    // 128 stands for 1/255, as close to 0 as bytes are.
+    let texel = |depth: u8| [128, 128, 255, depth];
+    let ink = |form, taps| ink_printed_inker(&Inker { form, ..Default::default() }, taps);
+    // √(1/512) is 11.27 steps of 8 bits.
+    for place in 0..4 {
+        for (step, expected) in [(11, 0.0), (12, 1.0), (-11, 0.0), (-12, 1.0)] {
+            let mut taps = [texel(128); 4];
+            taps[place] = texel((128 + step) as u8);
+            assert_eq!(ink(InkerForm::Explicit, taps), expected, "{place} {step}");
+        }
+        // A normal to the side, and one turned round.
+        for normal in [[255, 128, 128], [128, 0, 128], [128, 128, 0]] {
+            let mut taps = [texel(128); 4];
+            taps[place] = [normal[0], normal[1], normal[2], 128];
+            assert_eq!(ink(InkerForm::Explicit, taps), 1.0, "{place} {normal:?}");
+        }
+    }
+    // As printed 1/4 + d₁ > 1/2 is ink: 64 steps, in one direction.
+    let of_second_pair = |near: u8, far: u8| ink(InkerForm::Printed, [texel(128), texel(far), texel(128), texel(near)]);
+    assert_eq!([of_second_pair(100, 163), of_second_pair(100, 164), of_second_pair(164, 100)], [0.0, 1.0, 0.0]);
+    assert_eq!(ink(InkerForm::Repaired, [texel(128); 4]), 0.0);
+    assert_eq!(ink(InkerForm::Repaired, [texel(128), texel(129), texel(128), texel(128)]), 1.0);
 }
 
 #[test]

@@ -136,8 +136,8 @@ fn depths_a_gap_apart_are_told_apart_and_half_a_gap_are_not() {
     println!("smallest gap told apart, near {} far {}", range.near, range.far);
     for format in DepthFormat::ALL {
         for depth in [1.0, 3.3, 10.0, 47.0, 100.0, 300.0] {
-            // At near everything is clamped.
-            if depth - 1.5 * format.gap(depth, &range) < f64::from(range.near) {
+            // Within 8 bits' rounding of near everything is clamped.
+            if format == DepthFormat::Unorm8 && depth == 1.0 {
                 continue;
             }
             let (gap, fused) = (format.gap(depth, &range), largest_fused_gap(format, depth, &range));
@@ -155,6 +155,32 @@ fn depths_a_gap_apart_are_told_apart_and_half_a_gap_are_not() {
     for format in DepthFormat::ALL.into_iter().skip(1) {
         assert_ne!(format.encode(a, &range), format.encode(b, &range), "{format:?}");
     }
+}
+
+#[test]
+fn a_gap_is_what_the_bits_of_its_format_leave() {
+    // 255 units over 255 steps, and over 257 times as many.
+    let range = DepthRange::new(1.0, 256.0).unwrap();
+    for depth in [1.0, 2.0, 100.0, 256.0] {
+        assert_eq!(DepthFormat::Unorm8.gap(depth, &range), 1.0);
+        for format in [DepthFormat::Unorm16, DepthFormat::Packed2x8] {
+            assert!((format.gap(depth, &range) * 257.0 - 1.0).abs() < 1e-12, "{format:?} at {depth}");
+        }
+    }
+    // Floats: 10 and 23 bits below the leading one.
+    for (depth, exponent) in [(0.3, -2), (1.0, 0), (1.99, 0), (2.0, 1), (3.3, 1), (100.0, 6), (255.9, 7), (256.0, 8)] {
+        assert_eq!(DepthFormat::Half.gap(depth, &range), 2f64.powi(exponent - 10), "{depth}");
+        assert_eq!(DepthFormat::Float.gap(depth, &range), 2f64.powi(exponent - 23), "{depth}");
+        // More bits than an f32 has, and near is taken off in f32: twice its spacing.
+        assert_eq!(DepthFormat::Packed4x8.gap(depth, &range), 2f64.powi(exponent - 22), "{depth}");
+    }
+    // Near the eye in a deep range 32 bits are coarser than that: 2^13 over 2^32 steps.
+    let deep = DepthRange::new(2f32.powi(-10), 8192.0).unwrap();
+    for depth in [2f64.powi(-10), 2f64.powi(-9)] {
+        let gap = DepthFormat::Packed4x8.gap(depth, &deep);
+        assert!((gap * 2f64.powi(19) - 1.0).abs() < 1e-6, "{gap} at {depth}");
+    }
+    assert_eq!(DepthFormat::Packed4x8.gap(8000.0, &deep), 2f64.powi(12 - 22));
 }
 
 #[test]

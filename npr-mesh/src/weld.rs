@@ -160,6 +160,41 @@ mod tests {
     }
 
     #[test]
+    fn a_tolerance_joins_across_every_border_of_a_cell_from_both_sides() {
+        // One end at each side of a corner that eight cells share, in the middle of the grid and at 0.
+        for corner in [Vec3::ZERO, Vec3::ONE, Vec3::new(-3.0, 2.0, 5.0)] {
+            for step in 0..27 {
+                let side = Vec3::new((step % 3) as f32, (step / 3 % 3) as f32, (step / 9) as f32) - 1.0;
+                let (here, there) = (corner - side * 0.125, corner + side * 0.125);
+                assert_eq!(weld_within(&[here, there], 1.0), [0, 0], "{here} {there}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_distance_equal_to_the_tolerance_is_within_it() {
+        for axis in [Vec3::X, Vec3::Y, Vec3::Z, Vec3::NEG_X, Vec3::NEG_Y, Vec3::NEG_Z] {
+            assert_eq!(weld_within(&[Vec3::ZERO, axis], 1.0), [0, 0], "{axis}");
+            assert_eq!(weld_within(&[Vec3::ZERO, axis * 1.0f32.next_up()], 1.0), [0, 1], "{axis}");
+        }
+        // The sides 3, 4 and 5 of a right triangle.
+        assert_eq!(weld_within(&[Vec3::ZERO, Vec3::new(0.0, -3.0, 4.0)], 5.0), [0, 0]);
+        assert_eq!(weld_within(&[Vec3::ZERO, Vec3::new(0.0, -3.0, 4.0)], 5.0f32.next_down()), [0, 1]);
+    }
+
+    #[test]
+    fn the_nearest_representative_wins_and_of_two_equally_near_ones_the_lower() {
+        let weld_along = |axis: Vec3, at: [f32; 3]| weld_within(&at.map(|x| axis * x), 1.0);
+        for axis in [Vec3::X, Vec3::Y, Vec3::Z] {
+            // Half way between two representatives in two cells, whichever of the cells comes first.
+            assert_eq!(weld_along(axis, [0.0, 1.5, 0.75]), [0, 1, 0], "{axis}");
+            assert_eq!(weld_along(axis, [1.5, 0.0, 0.75]), [0, 1, 0], "{axis}");
+            assert_eq!(weld_along(axis, [0.0, 1.5, 1.0]), [0, 1, 1], "{axis}");
+            assert_eq!(weld_along(axis, [1.5, 0.0, 0.5]), [0, 1, 1], "{axis}");
+        }
+    }
+
+    #[test]
     fn no_vertices_weld_to_none() {
         assert!(weld_exact(&[]).is_empty());
     }

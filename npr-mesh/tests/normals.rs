@@ -230,6 +230,45 @@ fn given_normals_stay_and_are_made_unit() {
 }
 
 #[test]
+fn unit_normals_are_kept_bit_for_bit() {
+    // Unit up to the rounding of f32: to normalise these once more moves the last bit of many.
+    let normals: Vec<Vec3> = (0..1000)
+        .map(|i| {
+            let (sin, cos) = (2.4 * i as f32).sin_cos();
+            Vec3::new(cos, sin, 0.002 * i as f32 - 1.0).normalize()
+        })
+        .collect();
+    let mut mesh = model(&vec![Vec3::ZERO; normals.len()], &[]);
+    mesh.normals = normals.clone();
+    let bits = |normals: &[Vec3]| normals.iter().map(|n| n.to_array().map(f32::to_bits)).collect::<Vec<_>>();
+    assert_eq!(bits(&filled(mesh).normals), bits(&normals));
+}
+
+#[test]
+fn a_normal_is_missing_only_if_it_is_zero_or_not_finite() {
+    // Each given normal is made unit, whatever its length; each missing one, at a vertex of no face, points up.
+    let tiny = f32::from_bits(1);
+    let cases = [
+        (Vec3::new(tiny, 0.0, 0.0), Vec3::X),
+        (Vec3::new(0.0, 0.0, -f32::MAX), Vec3::NEG_Z),
+        (Vec3::new(0.0, -0.999, 0.0), Vec3::NEG_Y),
+        (Vec3::new(1.001, 0.0, 0.0), Vec3::X),
+        (Vec3::new(0.0, 3.0, -4.0), Vec3::new(0.0, 0.6, -0.8)),
+        (Vec3::ZERO, Vec3::Y),
+        (Vec3::new(-0.0, 0.0, -0.0), Vec3::Y),
+        (Vec3::new(1.0, f32::INFINITY, 0.0), Vec3::Y),
+        (Vec3::new(1.0, 0.0, f32::NEG_INFINITY), Vec3::Y),
+        (Vec3::new(1.0, f32::NAN, 0.0), Vec3::Y),
+    ];
+    let mut mesh = model(&[Vec3::ZERO; 10], &[]);
+    mesh.normals = cases.iter().map(|case| case.0).collect();
+    let mesh = filled(mesh);
+    for ((given, expected), normal) in cases.into_iter().zip(mesh.normals) {
+        assert!(normal.distance(expected) < 1e-7, "{given}: {normal}");
+    }
+}
+
+#[test]
 fn unused_vertices_and_short_arrays_end_up_unit() {
     let mut mesh = model(&[Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::ONE], &[[0, 1, 2]]);
     mesh.normals.clear();
@@ -246,6 +285,37 @@ fn triangles_of_one_polygon_are_never_parted() {
     assert!(filled(quad.clone()).positions.len() > 4);
     quad.face_polygon = vec![0, 0];
     assert_eq!(filled(quad).positions.len(), 4);
+}
+
+#[test]
+fn every_corner_of_a_polygon_has_the_polygon_s_normal_and_not_its_triangle_s() {
+    // Pentagons that are not flat, triangles and quads, none of which touch: 120 faces, more than are measured at a time.
+    let corners =
+        [(0.0, 0.0, 0.0), (2.0, 0.0, 0.5), (3.0, 1.0, 0.0), (1.0, 3.0, 1.0), (0.0, 2.0, 0.25)].map(Vec3::from);
+    let (mut polygons, mut positions, mut faces) = (Vec::new(), Vec::new(), Vec::new());
+    let mut face_polygon = Vec::new();
+    for polygon in 0..60u32 {
+        let (first, count) = (positions.len() as u32, 3 + polygon as usize % 3);
+        let moved = Vec3::new(8.0 * polygon as f32, 0.0, 0.0);
+        positions.extend(corners[..count].iter().map(|&corner| corner + moved));
+        faces.extend((1..count as u32 - 1).map(|i| [first, first + i, first + i + 1]));
+        face_polygon.resize(faces.len(), polygon);
+        polygons.push(first as usize..positions.len());
+    }
+    let mut mesh = model(&positions, &faces);
+    assert_eq!(mesh.faces.len(), 120);
+    mesh.face_polygon = face_polygon;
+    let mesh = filled(mesh);
+    assert_eq!(mesh.positions, positions, "nothing is split");
+    for polygon in polygons {
+        // Newell's normal: the sum of the cross products of successive corners.
+        let at = |i: usize| (positions[polygon.start + i % polygon.len()] - positions[polygon.start]).as_dvec3();
+        let newell: glam::DVec3 = (0..polygon.len()).map(|i| at(i).cross(at(i + 1))).sum();
+        for vertex in polygon {
+            let normal = mesh.normals[vertex];
+            assert!(normal.distance(newell.normalize().as_vec3()) < 1e-6, "{vertex}: {normal}");
+        }
+    }
 }
 
 #[test]

@@ -337,6 +337,11 @@ pub fn outline_is_silhouette(planes: &EdgePlanes, eye: Vec4) -> bool {
 }
 
 impl ContourEdges {
+    /// The largest buffer that finding these edges' lines on a device takes, bytes.
+    pub fn device_bytes(&self, positions: &[Vec3]) -> u64 {
+        size_of_val(&self.planes[..]).max(size_of_val(positions)) as u64
+    }
+
     /// The eye in the planes' own coordinates. `eye` is a world-space point with w = 1 or direction with w = 0.
     pub fn local_eye(&self, eye: DVec4) -> Vec4 {
         (eye - self.origin.as_dvec3().extend(0.0) * eye.w).as_vec4()

@@ -215,7 +215,7 @@ impl LinePass {
     ) -> Result<EdgesOnDevice, OutlineError> {
         let pipelines = self.on_device.as_ref().expect("the pass was made for lines found on the device");
         let limit = storage_limit(device);
-        let bytes = (size_of_val(&contours.planes[..]).max(size_of_val(positions))) as u64;
+        let bytes = contours.device_bytes(positions);
         if bytes > limit {
             return Err(OutlineError::TooManyEdges { bytes, limit });
         }

@@ -78,6 +78,42 @@ fn vectors() {
     assert_eq!(toon_n_dot_h_of(-0.2064291, 0.20689194, -1.0), 0.0);
 }
 
+#[test]
+fn n_dot_h_of_dot_products_is_that_of_the_vectors() {
+    // L and E are (±3/5, 0, 4/5): L·E is 7/25, and |L + E| is 8/5.
+    for (n_dot_l, n_dot_e, l_dot_e, expected) in [
+        (1.0, 1.0, 1.0, 1.0),
+        (0.5, 0.5, 1.0, 0.5),
+        (-1.0, -1.0, 1.0, -1.0),
+        // N halfway between, N = L, N = E, N = X, N = Y.
+        (0.8, 0.8, 0.28, 1.0),
+        (1.0, 0.28, 0.28, 0.8),
+        (0.28, 1.0, 0.28, 0.8),
+        (0.6, -0.6, 0.28, 0.0),
+        (0.0, 0.0, 0.28, 0.0),
+        // At right angles, and 2 atan(4/3) apart.
+        (1.0, 0.0, 0.0, std::f64::consts::FRAC_1_SQRT_2),
+        (0.6, 0.6, -0.28, 1.0),
+        // Opposite, and a rounding beyond.
+        (1.0, -1.0, -1.0, 0.0),
+        (1.0, -0.5, -1.0 - 1e-15, 0.0),
+    ] {
+        assert_abs_diff_eq!(toon_n_dot_h_of(n_dot_l, n_dot_e, l_dot_e), expected, epsilon = 1e-15);
+    }
+    // The vectors' own, for unit vectors that are not nearly opposite.
+    let unit = |i: i32| {
+        let (sin, cos) = (2.4 * f64::from(i)).sin_cos();
+        DVec3::new(cos, sin, f64::from(i % 7) / 3.0 - 1.0).normalize()
+    };
+    for i in 0..1000 {
+        let (n, l, e) = (unit(i), unit(3 * i + 1), unit(5 * i + 2));
+        if l.dot(e) > -0.99 {
+            let of_dots = toon_n_dot_h_of(n.dot(l), n.dot(e), l.dot(e));
+            assert_abs_diff_eq!(of_dots, toon_n_dot_h(n, l, e), epsilon = 1e-12);
+        }
+    }
+}
+
 /// The mean of the hard bands over a pixel, by 256 samples of an N·L that is linear across it.
 fn sampled(bands: &Bands, n_dot_l: f64, width: f64) -> DVec3 {
     let at = |i: i32| n_dot_l + width * ((f64::from(i) + 0.5) / 256.0 - 0.5);

@@ -50,6 +50,25 @@ fn bands_are_a_hard_ramp() {
 }
 
 #[test]
+fn the_first_stop_of_bands_is_at_minus_1_or_1_below_a_negative_threshold() {
+    let grays = [0.125, 0.25, 0.5];
+    for (thresholds, at) in [
+        (vec![], vec![-1.0]),
+        (vec![0.25], vec![-1.0, 0.25]),
+        (vec![0.0], vec![-1.0, 0.0]),
+        (vec![-0.25], vec![-1.25, -0.25]),
+        (vec![-1.0, 0.5], vec![-2.0, -1.0, 0.5]),
+        (vec![-3.0, -2.5], vec![-4.0, -3.0, -2.5]),
+        (vec![2.0, 3.0], vec![-1.0, 2.0, 3.0]),
+    ] {
+        let tones = grays[..at.len()].iter().map(|&gray| Vec3::splat(gray)).collect();
+        let bands = Bands { thresholds, tones, highlight: None, antialias: false };
+        let expected: Vec<_> = at.into_iter().zip(grays).collect();
+        assert_eq!(Ramp::from_bands(&bands).unwrap(), ramp(RampBlend::Hard, &expected));
+    }
+}
+
+#[test]
 fn one_stop_is_flat_and_not_a_number_is_dark() {
     for blend in [RampBlend::Hard, RampBlend::Smooth] {
         assert_eq!(toon_ramp(&ramp(blend, &[(0.5, 0.5)]), -3.0, 0.1), DVec3::splat(0.5));
@@ -200,6 +219,10 @@ fn what_is_refused() {
     assert_eq!(
         hard(&[(0.5, 0.0), (0.5, 1.0)]).validate(),
         Err(ToonError::StopOrder { index: 1, value: 0.5, before: 0.5 })
+    );
+    assert_eq!(
+        hard(&[(0.0, 0.0), (0.75, 0.5), (0.5, 1.0)]).validate(),
+        Err(ToonError::StopOrder { index: 2, value: 0.5, before: 0.75 })
     );
     assert!(matches!(hard(&[(f32::NAN, 0.0)]).validate(), Err(ToonError::StopNotFinite { index: 0, .. })));
     assert!(matches!(hard(&[(0.0, 0.0), (1.0, -0.1)]).validate(), Err(ToonError::StopColor { index: 1, .. })));

@@ -33,8 +33,8 @@ pub struct Capabilities {
     pub exact_depth: bool,
     /// The longest side of a texture, px.
     pub texture_px: u32,
-    /// The largest buffer, bytes.
-    pub buffer_bytes: u64,
+    /// The largest storage buffer, bytes.
+    pub storage_bytes: u64,
 }
 
 /// How lines are found in the image.
@@ -80,7 +80,7 @@ impl Capabilities {
             float_stencil: features.contains(wgpu::Features::DEPTH32FLOAT_STENCIL8),
             exact_depth: info.backend != wgpu::Backend::Gl,
             texture_px: limits.max_texture_dimension_2d,
-            buffer_bytes: limits.max_buffer_size,
+            storage_bytes: limits.max_storage_buffer_binding_size.min(limits.max_buffer_size),
         }
     }
 
@@ -107,8 +107,11 @@ impl Capabilities {
         self.compute && self.picture_storage
     }
 
-    /// How lines from edges are found and drawn, and why so.
-    pub fn lines(&self) -> (LineMethod, String) {
+    /// How lines from edges are found and drawn, and why so. On the device edges take [`ContourEdges::device_bytes`] in one
+    /// buffer.
+    ///
+    /// [`ContourEdges::device_bytes`]: npr_outline::ContourEdges::device_bytes
+    pub fn lines(&self, edge_bytes: u64) -> (LineMethod, String) {
         let rectangles = |why: &str| (LineMethod::Rectangles, format!("found on the CPU, drawn as rectangles: {why}"));
         match (self.compute, self.software) {
             (false, _) => rectangles(self.no_compute),
@@ -119,6 +122,9 @@ impl Capabilities {
             (true, true) => rectangles(NO_PICTURE_STORAGE),
             (true, false) if !self.vertex_storage => rectangles("the adapter has no storage buffers in vertex shaders"),
             (true, false) if !self.indirect_draws => rectangles("the adapter has no draws with arguments in a buffer"),
+            (true, false) if edge_bytes > self.storage_bytes => {
+                rectangles("so many edges do not fit the adapter's storage buffers")
+            }
             (true, false) => (LineMethod::OnDevice, "found and drawn on the device".into()),
         }
     }
@@ -182,8 +188,8 @@ impl Capabilities {
         self.check_size("the picture's samples", (size.0.saturating_mul(samples), size.1.saturating_mul(samples)))?;
         let mut methods = Vec::new();
         let mut add = |pass, why: &str| methods.push(Reason { pass, why: why.to_owned() });
-        if plan.contours.is_some() {
-            add("lines", &self.lines().1);
+        if let Some(contours) = &plan.contours {
+            add("lines", &self.lines(contours.device_bytes(&scene.model.positions)).1);
         }
         if let Some(image) = &plan.image {
             self.check_size("the ink", image.ink.scale.size(size))?;

@@ -143,14 +143,8 @@ fn convex_polygons_are_not_fans() {
 
 #[test]
 fn a_pentagram_is_not_taken_for_a_convex_polygon() {
-    let corners: Vec<_> = (0..5)
-        .map(|i| {
-            let angle = TAU * (2 * i) as f64 / 5.0;
-            DVec3::new(angle.cos(), angle.sin(), 0.0).as_vec3()
-        })
-        .collect();
-    assert!(!is_strictly_convex(&project(&corners).unwrap()));
-    assert_eq!(triangulate(&corners).len(), 3);
+    assert!(!is_strictly_convex(&project(&pentagram()).unwrap()));
+    assert_eq!(triangulate(&pentagram()).len(), 3);
 }
 
 #[test]
@@ -214,15 +208,122 @@ fn an_outline_that_goes_round_and_round_ends() {
     assert!(start.elapsed().as_secs() < 5, "took {:?}", start.elapsed());
 }
 
+fn pentagram() -> Vec<Vec3> {
+    (0..5)
+        .map(|i| {
+            let angle = TAU * (2 * i) as f64 / 5.0;
+            DVec3::new(angle.cos(), angle.sin(), 0.0).as_vec3()
+        })
+        .collect()
+}
+
 #[test]
-fn a_large_tangle_ends() {
+fn polygons_that_are_clipped_share_one_budget_of_tests() {
+    // All corners are on a circle, so each is an ear. The first is compared with the two corners that are not its own,
+    // the next with the one that is left: 3 tests.
+    let mut triangles = Vec::new();
+    let mut left = 10;
+    for expected in [7, 4, 1, 0, 0] {
+        triangulate_within(&pentagram(), &mut triangles, &mut left);
+        assert_eq!((left, triangles.len()), (expected, 3));
+    }
+    // And where there is more than one polygon may take.
+    let mut left = EAR_TESTS + 10;
+    triangulate_within(&pentagram(), &mut triangles, &mut left);
+    assert_eq!(left, EAR_TESTS + 7);
+    // What needs no ears takes none.
+    for corners in [ell(), star(5), flat(&[(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])] {
+        triangulate_within(&corners, &mut triangles, &mut left);
+        assert_eq!(left, EAR_TESTS + 7);
+    }
+}
+
+#[test]
+fn an_ear_is_empty_only_if_no_corner_is_inside_or_on_a_side() {
+    let ear = [DVec2::new(0.0, 0.0), DVec2::new(4.0, 1.0), DVec2::new(1.0, 4.0)];
+    let is_empty_with = |x: f64, y: f64| {
+        let flat = [ear[0], ear[1], ear[2], DVec2::new(x, y)];
+        let mut tests_left = 5;
+        let empty = is_empty(&flat, &[1, 2, 3, 0], [0, 1, 2], &mut tests_left);
+        assert_eq!(tests_left, 4);
+        empty
+    };
+    // In it, and in the middle of each side.
+    for (x, y) in [(1.5, 1.5), (3.5, 1.0), (1.0, 3.5), (0.5, 0.5), (2.0, 0.5), (2.5, 2.5), (0.5, 2.0)] {
+        assert!(!is_empty_with(x, y), "{x} {y}");
+    }
+    // Beyond each side, within the ear's box.
+    for (x, y) in [(2.0, 0.4), (3.5, 0.1), (2.6, 2.5), (3.5, 3.5), (0.4, 2.0), (0.1, 3.5)] {
+        assert!(is_empty_with(x, y), "{x} {y}");
+    }
+    // Beyond each side, out of the box, and at the ear's own corners.
+    for (x, y) in [(5.0, 1.0), (-1.0, 0.0), (1.0, 5.0), (1.0, -1.0), (0.0, 0.0), (4.0, 1.0), (1.0, 4.0)] {
+        assert!(is_empty_with(x, y), "{x} {y}");
+    }
+    // Without a test left nothing is known of the others.
+    let with_another = [ear[0], ear[1], ear[2], DVec2::new(9.0, 9.0)];
+    assert!(!is_empty(&with_another, &[1, 2, 3, 0], [0, 1, 2], &mut 0));
+}
+
+#[test]
+fn clipped_ears_of_a_simple_outline_keep_its_area() {
+    for corners in [ell(), star(5), star(50), comb(3), comb(40), spiral(40)] {
+        let flat = project(&corners).unwrap();
+        let mut triangles = Vec::new();
+        clip_ears(&flat, &mut triangles, &mut { EAR_TESTS });
+        assert_eq!(triangles.len(), corners.len() - 2);
+        let (mut whole, mut sum) = (0.0, 0.0);
+        for i in 0..flat.len() {
+            whole += flat[i].perp_dot(flat[(i + 1) % flat.len()]);
+        }
+        for [a, b, c] in triangles {
+            let area = turn(flat[a as usize], flat[b as usize], flat[c as usize]);
+            assert!(area >= -1e-12, "turned over by {area}");
+            sum += area;
+        }
+        assert!((sum - whole).abs() < 1e-9, "{sum} for {whole}");
+    }
+}
+
+#[test]
+fn a_polygon_far_from_the_origin_is_projected_and_cut_as_at_the_origin() {
+    // 3 by 4: the longer side of the box is from -1 to 1, the shorter from -3/4 to 3/4.
+    let (at_origin, triangles) = (project(&ell()).unwrap(), triangulate(&ell()));
+    // Whole numbers, which f32 holds exactly up to 2^24.
+    for offset in [Vec3::ZERO, Vec3::new(1e6, -2e6, 3e6), Vec3::new(-8e6, 0.0, 0.0), Vec3::splat(1.6e7)] {
+        let corners: Vec<Vec3> = ell().iter().map(|&corner| corner + offset).collect();
+        let flat = project(&corners).unwrap();
+        let (low, high) = (flat.iter().copied().reduce(DVec2::min), flat.iter().copied().reduce(DVec2::max));
+        let (low, high) = (low.unwrap(), high.unwrap());
+        assert!(low.abs_diff_eq(-high, 1e-12) && (high.max_element() - 1.0).abs() < 1e-12, "{low} {high}");
+        assert!((high.min_element() - 0.75).abs() < 1e-12, "{low} {high}");
+        assert!(flat.iter().zip(&at_origin).all(|(a, b)| a.abs_diff_eq(*b, 1e-12)), "{offset}");
+        assert_eq!(check(&corners), triangles, "{offset}");
+    }
+}
+
+fn tangle(corners: usize) -> Vec<Vec3> {
     let mut state = 1u64;
     let mut random = || {
         state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
         (state >> 40) as f32 / (1 << 24) as f32
     };
-    let corners: Vec<_> = (0..3000).map(|_| Vec3::new(random(), random(), random())).collect();
-    assert_eq!(triangulate(&corners).len(), 2998);
+    (0..corners).map(|_| Vec3::new(random(), random(), random())).collect()
+}
+
+#[test]
+fn a_large_tangle_ends() {
+    assert_eq!(triangulate(&tangle(3000)).len(), 2998);
+}
+
+#[test]
+fn one_tangle_does_not_take_what_other_polygons_of_its_file_need() {
+    // Far more corners than can all be compared with each other.
+    let (mut triangles, mut left) = (Vec::new(), 3 * EAR_TESTS);
+    for expected in [2 * EAR_TESTS, EAR_TESTS, 0, 0] {
+        triangulate_within(&tangle(12_000), &mut triangles, &mut left);
+        assert_eq!((left, triangles.len()), (expected, 11_998));
+    }
 }
 
 proptest! {

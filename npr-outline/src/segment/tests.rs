@@ -231,6 +231,41 @@ fn a_line_on_a_plane_is_seen_however_it_slants() {
 }
 
 #[test]
+fn the_plane_through_four_pixels_is_before_a_point_by_its_depth_there_less_the_slack() {
+    // Depths of the plane a + b x + c y at the centres of four pixels, x to the right and y down.
+    let quad = |a: f64, b: f64, c: f64| DVec4::new(a, a + b, a + c, a + b + c);
+    let before = |quad, x: f64, y: f64, depth, per_px| outline_plane_before(quad, DVec2::new(x, y), depth, per_px);
+    let cases = [
+        // A plane at one depth, wherever the point is.
+        (before(quad(0.5, 0.0, 0.0), 0.5, 0.5, 0.25, 0.0), 0.25),
+        (before(quad(0.5, 0.0, 0.0), 0.0, 1.0, 0.75, 0.0), -0.25),
+        // 1/100 of what a pixel is wide in depth.
+        (before(quad(0.5, 0.0, 0.0), 0.5, 0.5, 0.25, 2.0), 0.25 - 0.02),
+        // 1/128 of each slope, whatever its sign.
+        (before(quad(0.5, 0.25, 0.0), 0.5, 0.5, 0.5, 0.0), 0.125 - 0.25 / 128.0),
+        (before(quad(0.5, -0.25, 0.0), 0.25, 0.5, 0.25, 0.0), 0.1875 - 0.25 / 128.0),
+        (before(quad(0.5, 0.0, 0.25), 0.5, 0.75, 0.25, 0.0), 0.4375 - 0.25 / 128.0),
+        (before(quad(0.5, 0.0, -0.25), 0.5, 0.25, 0.25, 0.0), 0.1875 - 0.25 / 128.0),
+        (before(quad(0.5, 0.25, -0.125), 1.0, 0.0, 0.5, 1.0), 0.25 - 0.01 - 0.375 / 128.0),
+        (before(quad(0.5, -0.125, 0.25), 0.0, 1.0, 0.5, 1.0), 0.25 - 0.01 - 0.375 / 128.0),
+    ];
+    for (i, (value, expected)) in cases.into_iter().enumerate() {
+        assert!((value - expected).abs() < 1e-15, "{i}: {value} for {expected}");
+    }
+    // One corner off the plane of the other three by 1/4: the best plane's mean is 1/16 off and each of its slopes 1/8,
+    // and the whole 1/4 is taken off, whichever corner it is and to whichever side.
+    for corner in 0..4 {
+        for off in [0.25, -0.25] {
+            let mut quad = [0.5; 4];
+            quad[corner] += off;
+            let value = before(DVec4::from(quad), 0.5, 0.5, 0.25, 0.0);
+            let expected = 0.25 + off / 4.0 - 0.25 / 128.0 - 0.25;
+            assert!((value - expected).abs() < 1e-15, "{corner} {off}: {value} for {expected}");
+        }
+    }
+}
+
+#[test]
 fn a_silhouette_before_the_background_is_seen_and_hidden_behind_a_nearer_plane() {
     let view = perspective();
     let ends = [DVec3::new(-1.0, 0.3, -5.0), DVec3::new(1.2, 0.5, -5.5)];

@@ -204,6 +204,40 @@ fn a_way_without_end_ends_in_the_volumes_that_its_direction_meets() {
     assert_eq!(casters.endless(far(DVec3::Y), DVec3::NEG_Y), 0);
 }
 
+#[test]
+fn a_way_without_end_through_a_closed_solid_ends_in_one_volume_and_from_within_in_none() {
+    let cube = embedded::cube();
+    let (low, high) = cube.bounds().unwrap();
+    let (middle, half) = ((low + high).as_dvec3() * 0.5, (high - low).as_dvec3() * 0.5);
+    let casters = casters_of(&cube);
+    assert!(!casters.open);
+    for light in [DVec3::new(2.5, 3.0, 3.5), DVec3::new(-4.0, 1.5, 0.2), DVec3::new(0.1, -3.0, 0.2)] {
+        let light = middle + half * light;
+        for aside in [DVec3::new(0.01, 0.02, 0.03), DVec3::new(0.3, -0.4, 0.2), DVec3::new(-0.45, 0.15, -0.4)] {
+            // In through one face that is turned to the light, out through one that is turned away and does not cast.
+            let direction = middle + half * aside - light;
+            assert_eq!(casters.endless(near(light), direction), 1, "{light} {aside}");
+            assert_eq!(casters.endless(near(light), -direction), 0, "away: {light} {aside}");
+            let along = direction.normalize();
+            let beside = along + along.any_orthonormal_vector() * 3.0;
+            assert_eq!(casters.endless(near(light), beside), 0, "beside: {light} {aside}");
+        }
+    }
+    // Within, every face is turned away from the light.
+    for direction in [DVec3::new(1.0, 0.2, 0.3), DVec3::new(-0.1, -1.0, 0.3), DVec3::new(0.2, 0.1, -1.0)] {
+        assert_eq!(casters.endless(near(middle + half * 0.1), direction), 0, "{direction}");
+    }
+}
+
+#[test]
+fn a_stencil_says_shadow_from_1_to_127() {
+    let expected =
+        [(0, false), (1, true), (2, true), (126, true), (127, true), (128, false), (129, false), (255, false)];
+    for (count, is_in_shadow) in expected {
+        assert_eq!(outline_in_shadow(count), is_in_shadow, "{count}");
+    }
+}
+
 /// Corners of a lattice, so that faces share edges and corners, fold, coincide and lose their area.
 fn lattice() -> impl Strategy<Value = (Vec<Vec3>, Vec<[u32; 3]>)> {
     let corner = prop::array::uniform3(0..3i8).prop_map(|c| Vec3::from(c.map(f32::from)));
