@@ -15,9 +15,7 @@ use crate::camera::{Camera, Framing};
 use crate::compare::{Comparison, Image, ReportRow, Tolerance, compare, html_report, leave_behind};
 use crate::cpu::Sight;
 use crate::error::HarnessError;
-#[cfg(feature = "gpu")]
-use crate::executor::GpuPolicy;
-use crate::executor::{Executor, Picture};
+use crate::executor::{Executor, GpuPolicy, Picture};
 use crate::gallery::{painted_camera, painted_scene, still_life_camera};
 use crate::line_truth::{accuracy, drawn_centreline, true_lines};
 use crate::plan::Plan;
@@ -401,10 +399,7 @@ impl Checker<'_> {
             Ok(image) => return Ok(Some(image)),
             Err(error) => error,
         };
-        #[cfg(feature = "gpu")]
-        if matches!(&error, HarnessError::Gpu(fault) if fault.is_limit())
-            && GpuPolicy::from_env()? != GpuPolicy::Required
-        {
+        if error.is_device_limit() && GpuPolicy::from_env()? != GpuPolicy::Required {
             self.skipped.push(format!("{technique} of {model} ({view}): {error}"));
             return Ok(None);
         }

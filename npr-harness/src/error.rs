@@ -298,3 +298,14 @@ pub enum HarnessError {
     #[error("could not write JSON: {0}")]
     Json(#[from] serde_json::Error),
 }
+
+impl HarnessError {
+    /// Whether a device cannot make the picture for a limit that it has.
+    pub(crate) fn is_device_limit(&self) -> bool {
+        match self {
+            #[cfg(feature = "gpu")]
+            Self::Gpu(fault) => fault.is_limit(),
+            _ => false,
+        }
+    }
+}

@@ -409,3 +409,11 @@ fn pictures_of_too_many_pixels_are_not_decoded() {
         assert!(said.contains("65535"), "{said}");
     }
 }
+
+#[test]
+fn an_empty_table_of_kinds_is_named_in_words() {
+    for text in ["[lines]\n", "paper = \"#ffffff\"\n\n[shade]\n"] {
+        let said = Style::from_toml(text, Path::new("s.toml")).expect_err("no kind").to_string();
+        assert!(said.starts_with("s.toml:") && said.contains("the table is empty"), "{said}");
+    }
+}

@@ -156,6 +156,10 @@ fn position(text: &str, offset: usize) -> (usize, usize) {
 /// Names what was probably meant, where the parser says which names it knows:
 /// "unknown field `a`, expected one of `b`, `c`".
 fn with_suggestion(message: &str) -> String {
+    // What serde says of an empty table for one of several kinds.
+    if message.starts_with("wanted exactly 1 element, found 0") {
+        return "the table is empty: it holds one table, whose name says of which kind it is".to_owned();
+    }
     let unknown = ["unknown field `", "unknown variant `"].iter().find_map(|&start| {
         let (name, known) = message.strip_prefix(start)?.split_once("`, expected ")?;
         Some((start, name, known))
