@@ -240,6 +240,16 @@ fn a_fold_through_pixels_leaves_their_shadows_open_and_no_others() {
     assert!(columns.iter().all(|x| (12..=20).contains(x)), "{columns:?}");
 }
 
+#[test]
+fn faces_without_material_have_the_default_one() {
+    let with = Model { materials: vec![npr_mesh::Material::default()], ..embedded::cube() };
+    let without = Model { face_material: Vec::new(), materials: Vec::new(), ..with.clone() };
+    let camera = camera(DVec3::new(3.0, 4.0, 5.0), PERSPECTIVE);
+    let [with, without] =
+        [with, without].map(|model| frame(&Scene::new(model), &named("cartoon"), &camera, (32, 24), 1).image());
+    assert_eq!(with, without);
+}
+
 /// Where threads cannot be started, such as on wasm32-unknown-unknown, the caller's has to do.
 #[test]
 fn one_thread_is_the_callers() {
