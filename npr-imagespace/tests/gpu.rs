@@ -24,3 +24,5 @@ mod separate;
 mod steps;
 #[path = "gpu/targets.rs"]
 mod targets;
+#[path = "gpu/texel.rs"]
+mod texel;

@@ -10,7 +10,7 @@ mod device;
 use device::{COLOR_FORMAT, Gpu, Picture, gpu};
 use glam::dcamera::rh::proj::directx as proj;
 use glam::dcamera::rh::view::look_at_mat4;
-use glam::{DMat4, DVec2, DVec3, Vec3};
+use glam::{DMat4, DVec2, DVec3, Vec3, Vec4};
 use npr_mesh::edges::{EdgeOptions, Edges, find};
 use npr_mesh::{Model, embedded};
 use npr_outline::contour::{ContourOptions, contour_edges, outline_facing};
@@ -22,7 +22,8 @@ use npr_outline::line_strokes::{LineStrokes, StrokeTargets};
 use npr_outline::normal_format::{NormalFormat, fibonacci_sphere};
 use npr_outline::segment::{LineView, ScreenSegment, outline_coverage, outline_is_visible, outline_project};
 use npr_outline::shadow_mask::{MASK_FORMAT, ShadowMaskPass};
-use npr_outline::shadow_volume::outline_in_shadow;
+use npr_outline::shadow_pass::SHADOW_WGSL;
+use npr_outline::shadow_volume::{outline_in_shadow, outline_turn};
 use std::collections::BTreeSet;
 
 const FOV: f64 = 1.0;
@@ -433,6 +434,87 @@ fn printed_fins_are_those_of_the_rasteriser() {
             }
         }
     }
+}
+
+/// A plane through the light, and planes that pass it by a little on either side; x and w of the plane decide.
+#[test]
+fn a_face_exactly_edge_on_is_turned_towards_the_light() {
+    let Some(gpu) = gpu() else { return };
+    let planes = [[0.0, 0.0], [-0.0, 0.0], [0.5, -0.5], [-0.5, 0.5], [0.5, -0.25], [-0.5, 0.25], [0.5, -0.75]];
+    let expected = [1, 1, 1, 1, 1, -1, -1];
+    let cases: String = (planes.iter().enumerate())
+        .map(|(i, [x, w])| format!("case {i}u: {{ plane.x = {x:?}; plane.w = {w:?}; }}\n"))
+        .collect();
+    let source = format!(
+        "{SHADOW_WGSL}
+        @vertex fn vs(@builtin(vertex_index) i: u32) -> @builtin(position) vec4<f32> {{
+            return vec4<f32>(f32(i & 1u) * 4.0 - 1.0, f32(i >> 1u) * 4.0 - 1.0, 0.0, 1.0);
+        }}
+        @fragment fn fs(@builtin(position) p: vec4<f32>) -> @location(0) vec4<u32> {{
+            var plane = vec4<f32>(0.0);
+            switch u32(p.x) {{
+                {cases}
+                default: {{}}
+            }}
+            return vec4<u32>(u32(outline_turn(plane, vec4<f32>(1.0, 2.0, 3.0, 1.0)) + 1));
+        }}"
+    );
+    let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: None,
+        source: wgpu::ShaderSource::Wgsl(source.into()),
+    });
+    let format = wgpu::TextureFormat::R8Uint;
+    let pipeline = gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: None,
+        layout: None,
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: Some("vs"),
+            compilation_options: Default::default(),
+            buffers: &[],
+        },
+        primitive: Default::default(),
+        depth_stencil: None,
+        multisample: Default::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: Some("fs"),
+            compilation_options: Default::default(),
+            targets: &[Some(format.into())],
+        }),
+        multiview_mask: None,
+        cache: None,
+    });
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size: wgpu::Extent3d { width: planes.len() as u32, height: 1, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+        view_formats: &[],
+    });
+    let view = texture.create_view(&Default::default());
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations::default(),
+            })],
+            ..Default::default()
+        });
+        pass.set_pipeline(&pipeline);
+        pass.draw(0..3, 0..1);
+    }
+    gpu.queue.submit([encoder.finish()]);
+    let found: Vec<i32> = gpu.read_texture(&texture, 1).into_iter().map(|turn| i32::from(turn) - 1).collect();
+    assert_eq!(found, expected);
+    let light = Vec4::new(1.0, 2.0, 3.0, 1.0);
+    assert_eq!(planes.map(|[x, w]| outline_turn([x, 0.0, 0.0, w], light)), expected);
 }
 
 /// All counts that a stencil can hold, in bands of the picture; nothing outside of the area.

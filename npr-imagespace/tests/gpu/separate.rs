@@ -291,6 +291,29 @@ fn depth_buffers_and_small_formats_are_read() {
     count.report("depth buffers", 20);
 }
 
+/// Depths whose differences are exact, so that no rounding decides.
+#[test]
+fn a_plain_measure_equal_to_its_threshold_is_ink() {
+    let Some(gpu) = gpu() else { return };
+    let size = [6, 1];
+    // In a row each neighbour is two of the four taps; the first and the last are on one side of the pixel.
+    for (form, threshold) in [(DepthPlain::Any, 0.25), (DepthPlain::Sum, 0.5), (DepthPlain::SumPrinted, 0.5)] {
+        let filter = depth_test(SeparateDepthTest::Plain { form, threshold });
+        let pass = SeparatePass::new(&gpu.device, &filter, InkTarget::Ink);
+        for (far, is_reached) in [(0.75f32, true), (0.75f32.next_down(), false), (0.75f32.next_up(), true)] {
+            let texels: Texels =
+                [0.5, 0.5, 0.5, far, far, far].map(|depth| SeparateTexel { depth, ..NOTHING }).to_vec();
+            let views = textures(gpu, size, &texels);
+            let got = drawn(gpu, size, InkTarget::Ink, &Composite::default(), None, |encoder, onto| {
+                let depth = SeparateTextures { depth: Some(&views[1]), ..Default::default() };
+                pass.record(&gpu.device, encoder, &filter, &depth, onto).unwrap();
+            });
+            assert_eq!(got, filter_separate(&filter, &texels, px(size)).unwrap(), "{form:?} {far}");
+            assert_eq!(got.contains(&255), is_reached, "{form:?} {far}");
+        }
+    }
+}
+
 /// Beside the far end what was drawn is told from what was not by the number alone.
 #[test]
 fn a_cleared_depth_buffer_is_background_even_beside_the_far_end() {
