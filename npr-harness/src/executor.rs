@@ -204,7 +204,7 @@ impl Executor {
         self.render_picture(&Picture { scene, style, plan, camera, size, samples }, progress)
     }
 
-    /// The same.
+    /// Renders a picture, without compute shaders where the driver refuses those that it promised.
     ///
     /// # Errors
     /// [`HarnessError`].
@@ -226,11 +226,11 @@ impl Executor {
                 let compute = capabilities.compute;
                 match render(capabilities) {
                     // What drivers promise and refuse all the same is mostly compute shaders.
-                    Err(error @ (GpuError::Device { .. } | GpuError::Outline(_))) if compute => {
+                    Err(GpuError::Device { .. } | GpuError::Outline(_)) if compute => {
                         // What else it reported is of the same attempt.
                         let _ = context.wait();
                         let image = render(context.capabilities.clone().without_compute(REFUSED))?;
-                        context.note_refusal(error.to_string());
+                        context.note_refusal();
                         Ok(image)
                     }
                     done => Ok(done?),

@@ -18,8 +18,8 @@ pub struct GpuContext {
     pub info: wgpu::AdapterInfo,
     /// What it can do, as the driver promises.
     pub capabilities: Capabilities,
-    /// What the driver said of compute shaders that it refused although it had promised them.
-    refusal: OnceLock<String>,
+    /// Set once the driver has refused compute shaders that it had promised.
+    refused: OnceLock<()>,
     faults: Arc<Mutex<Faults>>,
 }
 
@@ -63,13 +63,13 @@ impl GpuContext {
                 faults.lost.get_or_insert_with(|| one_line(&format!("{reason:?} {message}")));
             }
         });
-        Self { device, queue, info, capabilities, refusal: OnceLock::new(), faults }
+        Self { device, queue, info, capabilities, refused: OnceLock::new(), faults }
     }
 
     /// What is made use of: all that was promised and not refused.
     pub(crate) fn usable(&self) -> Capabilities {
         let capabilities = self.capabilities.clone();
-        if self.refusal.get().is_some() { capabilities.without_compute(REFUSED) } else { capabilities }
+        if self.refused.get().is_some() { capabilities.without_compute(REFUSED) } else { capabilities }
     }
 
     /// The same for a single picture. Software adapters compile compute shaders in 10 to 40 ms and draw a frame by them in
@@ -83,8 +83,8 @@ impl GpuContext {
     }
 
     /// A picture was made without compute shaders that could not be made with them.
-    pub(crate) fn note_refusal(&self, fault: String) {
-        self.refusal.get_or_init(|| fault);
+    pub(crate) fn note_refusal(&self) {
+        self.refused.get_or_init(|| ());
     }
 
     /// Whether the adapter runs on the CPU.

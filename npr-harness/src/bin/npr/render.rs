@@ -180,8 +180,8 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
     // What of it was not over before.
     let device_ms = elapsed_ms(start);
     if let Err(error) = check(!executor.is_cpu()) {
+        // What the CPU takes was checked before.
         executor = Executor::instead(backend, error)?;
-        check(false)?;
     }
     announce(&executor);
     let start = Instant::now();
@@ -195,15 +195,11 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
     let picture = Picture { scene: &scene, style: &style, plan: &plan, camera: &camera, size: options.size, samples };
     let bar = progress_bar("rendering");
     let tell = |share| bar.set_position((share * 1000.0) as u64);
-    let image = match executor.render_picture(&picture, &tell) {
-        Ok(image) => image,
-        Err(error) => {
-            executor = Executor::instead(backend, error)?;
-            check(false)?;
-            announce(&executor);
-            executor.render_picture(&picture, &tell)?
-        }
-    };
+    let (image, why_cpu) = executor.render_or_instead(backend, &picture, &tell)?;
+    if why_cpu.is_some() {
+        executor = Executor::Cpu { why: why_cpu };
+        announce(&executor);
+    }
     // Afterwards: a driver may have refused what it had promised.
     let methods = executor.methods(&picture)?;
     bar.finish_and_clear();
