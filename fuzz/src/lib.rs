@@ -4,10 +4,14 @@
 //! good end, a panic is none, and neither is a number that is not finite.
 
 use npr_harness::camera::{Camera, Framing};
+use npr_harness::capabilities::Capabilities;
 use npr_harness::cpu::{self, CpuOptions};
+use npr_harness::hatch::HatchSource;
 use npr_harness::plan::Plan;
 use npr_harness::scene::Scene;
-use npr_harness::style::{HatchSource, Shade, Style, styles};
+use npr_harness::shade::Shade;
+use npr_harness::style::{Style, styles};
+use npr_harness::view::View;
 use npr_hatch::{sheet, store};
 use npr_mesh::{Model, embedded};
 use std::path::{Path, PathBuf};
@@ -122,9 +126,9 @@ fn draw(scene: &Scene, style: &Style, number: usize) {
     let fov_y_rad = if number.is_multiple_of(3) { None } else { Some(0.6) };
     let framing = Framing { fov_y_rad, yaw_rad: number as f64 % 6.0, ..Framing::default() };
     let camera = Camera::framed(scene.corners(), f64::from(SIZE.0) / f64::from(SIZE.1), &framing);
-    let Ok(plan) = Plan::new(scene, style, &camera) else { return };
+    let Ok(plan) = Plan::new(scene, style, &View::new(camera, SIZE), &Capabilities::RAY_CASTER) else { return };
     let options = CpuOptions { threads: 1, ..CpuOptions::default() };
-    let frame = cpu::render(scene, style, &plan, &camera, SIZE, &options, &|_| {});
+    let frame = cpu::render(scene, &plan, &options, &|_| {});
     assert!(frame.color.iter().all(|color| color.is_finite()), "a colour that is not finite");
     assert!(frame.depth.iter().all(|depth| depth.is_finite()), "a depth that is not finite");
 }

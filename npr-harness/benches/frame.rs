@@ -6,15 +6,19 @@
 
 mod common;
 
-use npr_harness::gpu::GpuContext;
-use npr_harness::image_ink::ImageInk;
-use npr_harness::plan::LineMethod;
-use npr_harness::style::{Lines, Shade, Style, style};
+use common::Case;
+use npr_harness::edge_lines::EdgeLineMethod;
+use npr_harness::gpu;
+use npr_harness::image_lines::ImageInk;
+use npr_harness::plan::Plan;
+use npr_harness::shade::Shade;
+use npr_harness::shade::lambert::Lambert;
+use npr_harness::style::{Lines, Style, style};
 use npr_imagespace::format::texel::TexelLayout;
 use npr_toon::normal::NormalUse;
 
 fn main() {
-    let context = match GpuContext::new() {
+    let context = match gpu::open() {
         Ok(context) => context,
         Err(error) => return println!("skipped: {error}"),
     };
@@ -25,60 +29,42 @@ fn main() {
         Shade::Toon(bands) => Shade::Toon(npr_toon::Bands { highlight: None, ..bands.clone() }),
         other => other.clone(),
     };
-    let lambert = Shade::Lambert { ambient: 0.25 };
-    let found = |layout| Some(Lines::Image(ImageInk { layout, ..ImageInk::default() }));
-    let light = |name: &str| Style { lines: None, ..style(name).expect("a style of this crate") };
-    let mut cases: Vec<(&str, Style, LineMethod, u32)> = [
-        ("Lambert", Style { shade: lambert.clone(), lines: None, ..base.clone() }, LineMethod::Rectangles),
-        ("toon", Style { lines: None, ..base.clone() }, LineMethod::Rectangles),
-        (
-            "toon without highlight",
-            Style { shade: without_highlight.clone(), lines: None, ..base.clone() },
-            LineMethod::Rectangles,
-        ),
-        (
-            "the same, normals as interpolated",
-            Style { shade: without_highlight.clone(), normals: NormalUse::Interpolated, lines: None, ..base.clone() },
-            LineMethod::Rectangles,
-        ),
-        (
-            "the same, light per vertex",
-            Style { shade: without_highlight.clone(), normals: NormalUse::PerVertex, lines: None, ..base.clone() },
-            LineMethod::Rectangles,
-        ),
-        ("Gooch with a highlight", light("gooch"), LineMethod::Rectangles),
-        ("smooth ramp of half-Lambert", light("wash"), LineMethod::Rectangles),
-        ("two lights, one near, 2D ramp", light("two-lights"), LineMethod::Rectangles),
-        ("toon + image lines", Style { lines: found(TexelLayout::Wide), ..base.clone() }, LineMethod::Rectangles),
-        (
-            "toon + image lines, narrow texels",
-            Style { lines: found(TexelLayout::Narrow), ..base.clone() },
-            LineMethod::Rectangles,
-        ),
-        (
-            "the same without highlight",
-            Style { shade: without_highlight, lines: found(TexelLayout::Narrow), ..base.clone() },
-            LineMethod::Rectangles,
-        ),
-        ("Lambert + lines as strokes", Style { shade: lambert, ..base.clone() }, LineMethod::Strokes),
-        ("toon + lines as strokes", base.clone(), LineMethod::Strokes),
-        ("toon + lines as rectangles", base.clone(), LineMethod::Rectangles),
-        ("toon + lines found on the device", base.clone(), LineMethod::OnDevice),
-        (
-            "toon + printed fins, all edges",
-            Style { lines: style("printed-fins").and_then(|s| s.lines), ..base.clone() },
-            LineMethod::Rectangles,
-        ),
+    let lambert = Shade::Lambert(Lambert { ambient: 0.25 });
+    let found = |layout| Lines::image(ImageInk { layout, ..ImageInk::default() });
+    let light = |name: &str| Style { lines: Lines::NONE, ..style(name).expect("a style of this crate") };
+    let with = |shade: &Shade| Style { shade: shade.clone(), lines: Lines::NONE, ..base.clone() };
+    let as_normals = |normals| Style { normals, ..with(&without_highlight) };
+    let printed = style("printed-fins").expect("a style of this crate").lines;
+    let mut cases: Vec<Case<'_>> = [
+        ("Lambert", with(&lambert)),
+        ("toon", with(&base.shade)),
+        ("toon without highlight", with(&without_highlight)),
+        ("the same, normals as interpolated", as_normals(NormalUse::Interpolated)),
+        ("the same, light per vertex", as_normals(NormalUse::PerVertex)),
+        ("Gooch with a highlight", light("gooch")),
+        ("smooth ramp of half-Lambert", light("wash")),
+        ("two lights, one near, 2D ramp", light("two-lights")),
+        ("toon + image lines", Style { lines: found(TexelLayout::Wide), ..base.clone() }),
+        ("toon + image lines, 32-bit texels", Style { lines: found(TexelLayout::Narrow), ..base.clone() }),
+        ("the same without highlight", Style { lines: found(TexelLayout::Narrow), ..with(&without_highlight) }),
+        ("Lambert + edge lines", Style { shade: lambert, ..base.clone() }),
+        ("toon + edge lines", base.clone()),
+        ("toon + printed fins, all edges", Style { lines: printed, ..base.clone() }),
     ]
-    .map(|(name, style, method)| (name, style, method, 1))
+    .map(|(name, style)| Case::new(name, style))
     .into();
-    let plain_toon = Style { lines: None, ..base.clone() };
-    cases.push(("toon, 2 × 2 samples", plain_toon.clone(), LineMethod::Rectangles, 2));
-    cases.push(("toon, 4 × 4 samples", plain_toon, LineMethod::Rectangles, 4));
-    cases.push(("toon + lines as strokes, 2 × 2 samples", base, LineMethod::Strokes, 2));
+    if context.capabilities.can_find_lines() {
+        let change = |plan: &mut Plan| {
+            if let Some(edges) = &mut plan.edge_lines {
+                edges.method = EdgeLineMethod::OnDevice;
+            }
+        };
+        cases.push(Case { change, ..Case::new("toon + edge lines found on the device", base.clone()) });
+    }
+    cases.push(Case { samples: 2, ..Case::new("toon, 2 × 2 samples", with(&base.shade)) });
+    cases.push(Case { samples: 4, ..Case::new("toon, 4 × 4 samples", with(&base.shade)) });
+    cases.push(Case { samples: 2, ..Case::new("toon + edge lines, 2 × 2 samples", base.clone()) });
     // What differs from 1 here is noise, and what the case before leaves behind in the caches.
-    let mut again = cases[0].clone();
-    again.0 = "Lambert again";
-    cases.push(again);
+    cases.push(Case::new("Lambert again", cases[0].style.clone()));
     common::compare(&context, &scene, &camera, &cases);
 }

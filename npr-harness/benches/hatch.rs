@@ -6,13 +6,16 @@
 
 mod common;
 
-use npr_harness::gpu::GpuContext;
-use npr_harness::plan::LineMethod;
-use npr_harness::style::{HatchEncoding, HatchMapping, HatchShade, Shade, Style, style};
+use common::Case;
+use npr_harness::gpu;
+use npr_harness::hatch::{HatchEncoding, HatchMapping, HatchShade};
+use npr_harness::shade::Shade;
+use npr_harness::shade::lambert::Lambert;
+use npr_harness::style::{Lines, Style, style};
 use npr_toon::normal::NormalUse;
 
 fn main() {
-    let context = match GpuContext::new() {
+    let context = match gpu::open() {
         Ok(context) => context,
         Err(error) => return println!("skipped: {error}"),
     };
@@ -23,7 +26,7 @@ fn main() {
             model.uvs = model.positions.iter().map(|p| p.truncate()).collect();
         }
     });
-    let base = Style { lines: None, ..style("hatch").expect("a style of this crate") };
+    let base = Style { lines: Lines::NONE, ..style("hatch").expect("a style of this crate") };
     let Shade::Hatch(shade) = base.shade.clone() else { panic!("`hatch` hatches") };
     let hatched = |encoding, mapping, normals| Style {
         shade: Shade::Hatch(HatchShade { encoding, mapping, ..shade.clone() }),
@@ -34,7 +37,7 @@ fn main() {
     let (pixel, vertex) = (NormalUse::PerPixel, NormalUse::PerVertex);
     let (coordinates, planes, form) = (HatchMapping::Coordinates, HatchMapping::Planes, HatchMapping::Form);
     let cases = [
-        ("Lambert", Style { shade: Shade::Lambert { ambient: 0.25 }, ..base.clone() }),
+        ("Lambert", Style { shade: Shade::Lambert(Lambert { ambient: 0.25 }), ..base.clone() }),
         ("six tones, coordinates", hatched(six, coordinates, pixel)),
         ("six tones at vertices, coordinates", hatched(six, coordinates, vertex)),
         ("six tones, planes", hatched(six, planes, pixel)),
@@ -45,6 +48,6 @@ fn main() {
         ("thresholds, planes", hatched(thresholds, planes, pixel)),
         ("thresholds, form", hatched(thresholds, form, pixel)),
     ];
-    let cases = cases.map(|(name, style)| (name, style, LineMethod::Rectangles, 1));
+    let cases = cases.map(|(name, style)| Case::new(name, style));
     common::compare(&context, &scene, &camera, &cases);
 }

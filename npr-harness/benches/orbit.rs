@@ -4,11 +4,13 @@
 #![allow(clippy::print_stdout)]
 
 use npr_harness::camera::{Camera, Framing};
+use npr_harness::capabilities::Capabilities;
 use npr_harness::cpu::{self, CpuOptions};
-use npr_harness::gpu::{GpuContext, GpuRenderer};
-use npr_harness::plan::{LineMethod, Plan};
+use npr_harness::gpu::{self, GpuRenderer};
+use npr_harness::plan::Plan;
 use npr_harness::scene::Scene;
 use npr_harness::style::style;
+use npr_harness::view::View;
 use std::time::Instant;
 
 /// Px.
@@ -18,7 +20,7 @@ const FRAMES: u32 = 60;
 fn main() {
     // Cargo adds its own.
     let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
-    let context = match GpuContext::new() {
+    let context = match gpu::open() {
         Ok(context) => context,
         Err(error) => return println!("skipped: {error}"),
     };
@@ -39,22 +41,26 @@ fn main() {
             Camera::framed(scene.corners(), f64::from(SIZE.0) / f64::from(SIZE.1), &framing)
         };
         let cameras: Vec<Camera> = (0..FRAMES).map(camera).collect();
-        // Of one camera: what of a plan depends on it is whether the eye is within the model, which it never is here.
-        let plan = Plan::new(&scene, &style, &cameras[0]).expect("a good style");
         let renderer = GpuRenderer::new(&context);
-        let uploaded = renderer.upload(&scene, &plan, LineMethod::Auto).expect("it fits");
-        let targets = renderer.targets(SIZE.0, SIZE.1).expect("a size for every device");
+        let plan = |camera: &Camera, capabilities: &Capabilities| {
+            Plan::new(&scene, &style, &View::new(*camera, SIZE), capabilities).expect("a good style")
+        };
+        let first = plan(&cameras[0], &context.capabilities);
+        let uploaded = renderer.upload(&scene, &first).expect("it fits");
+        let targets = renderer.targets(&first.view).expect("a size for every device");
         let (mut on_device, mut on_cpu) = (Vec::new(), Vec::new());
         for (frame, camera) in cameras.iter().enumerate() {
             let start = Instant::now();
-            renderer.draw(&scene, &uploaded, &style, &plan, camera, &targets).expect("a frame");
+            let on_adapter = plan(camera, &context.capabilities);
+            renderer.draw(&scene, &uploaded, &on_adapter, &targets).expect("a frame");
             let image = renderer.read(&targets).expect("a frame");
             // The first frame compiles the pipelines.
             if frame > 0 {
                 on_device.push(start.elapsed().as_secs_f64() * 1e3);
             }
             let start = Instant::now();
-            let frame = cpu::render(&scene, &style, &plan, camera, SIZE, &CpuOptions::default(), &|_| {}).image();
+            let by_rays = plan(camera, &Capabilities::RAY_CASTER);
+            let frame = cpu::render(&scene, &by_rays, &CpuOptions::default(), &|_| {}).image();
             on_cpu.push(start.elapsed().as_secs_f64() * 1e3);
             assert_eq!(image.rgba8.len(), frame.rgba8.len());
         }

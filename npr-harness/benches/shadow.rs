@@ -6,23 +6,31 @@
 
 mod common;
 
-use npr_harness::gpu::GpuContext;
-use npr_harness::image_ink::ImageInk;
-use npr_harness::plan::LineMethod;
-use npr_harness::shadow::{ShadowLines, ShadowMethod, ShadowStyle};
-use npr_harness::style::{Lines, Shade, Style, style};
+use common::Case;
+use npr_harness::gpu;
+use npr_harness::image_lines::ImageInk;
+use npr_harness::plan::Plan;
+use npr_harness::shade::Shade;
+use npr_harness::shade::lambert::Lambert;
+use npr_harness::shadow::{ShadowLines, ShadowMethod, ShadowStyle, ShadowTechnique, VolumeMethod};
+use npr_harness::style::{Lines, Style, style};
 
 fn main() {
-    let context = match GpuContext::new() {
+    let context = match gpu::open() {
         Ok(context) => context,
         Err(error) => return println!("skipped: {error}"),
     };
     println!("on {}", context.describe());
     let named = |name: &str| style(name).expect("a style of this crate");
-    let plain = Style { shade: Shade::Lambert { ambient: 0.25 }, lines: None, shadow: None, ..named("toon-shadow") };
+    let plain = Style {
+        shade: Shade::Lambert(Lambert { ambient: 0.25 }),
+        lines: Lines::NONE,
+        shadow: None,
+        ..named("toon-shadow")
+    };
     let shadowed = |method| Style { shadow: Some(ShadowStyle { method, ..ShadowStyle::default() }), ..plain.clone() };
     let map = |side| shadowed(ShadowMethod::Map { side });
-    let lines = |shadows| Some(Lines::Image(ImageInk { shadows, ..ImageInk::default() }));
+    let lines = |shadows| Lines::image(ImageInk { shadows, ..ImageInk::default() });
     let objects = Style { lines: lines(ShadowLines::None), ..shadowed(ShadowMethod::Volumes) };
     let cases = [
         ("Lambert", plain.clone()),
@@ -37,12 +45,15 @@ fn main() {
         ("toon-shadow", named("toon-shadow")),
     ];
     let (scene, camera) = common::bunny(|_| {});
-    let software = cases.clone().map(|(name, style)| (name, style, LineMethod::Auto, 1));
-    common::compare(&context, &scene, &camera, &software);
-    // With what casts sorted out by the device, as on hardware.
-    let sorted = [
-        ("Lambert", plain, LineMethod::Auto, 1),
-        ("volumes, sorted out there", cases[1].1.clone(), LineMethod::OnDevice, 1),
-    ];
-    common::compare(&context, &scene, &camera, &sorted);
+    let by_plan = cases.clone().map(|(name, style)| Case::new(name, style));
+    common::compare(&context, &scene, &camera, &by_plan);
+    // With bounds of volumes found by the device, as on hardware.
+    let change = |plan: &mut Plan| {
+        if let Some(ShadowTechnique::Volumes { method, .. }) = plan.shadow.as_mut().map(|shadow| &mut shadow.technique)
+        {
+            *method = VolumeMethod::OnDevice;
+        }
+    };
+    let on_device = Case { change, ..Case::new("volumes, bounds on the device", cases[1].1.clone()) };
+    common::compare(&context, &scene, &camera, &[Case::new("Lambert", plain), on_device]);
 }

@@ -12,15 +12,19 @@ pub use reference::{PLACES, Reference, Shot};
 pub use shadow::{STATES_PX, STATES_SHARE};
 
 use crate::camera::{Camera, Framing};
-use crate::compare::{Comparison, Image, ReportRow, Tolerance, compare, html_report, leave_behind};
-use crate::cpu::Sight;
+use crate::compare::{Comparison, ReportRow, Tolerance, compare, html_report, leave_behind};
+use crate::cpu::PrimaryHits;
 use crate::error::HarnessError;
 use crate::executor::{Executor, GpuPolicy, Picture};
 use crate::gallery::{painted_camera, painted_scene, still_life_camera};
-use crate::line_truth::{accuracy, drawn_centreline, true_lines};
+use crate::picture::Image;
 use crate::plan::Plan;
+use crate::printed_fins::PrintedLines;
 use crate::scene::Scene;
-use crate::style::{Lines, Shade, Style, style};
+use crate::shade::Shade;
+use crate::style::{Lines, Style, style};
+use crate::truth::lines::{accuracy, drawn_centreline, true_lines};
+use crate::view::View;
 use glam::Vec3;
 use npr_imagespace::artist::LineKind as InnerLines;
 use npr_mesh::AlphaMode;
@@ -42,17 +46,12 @@ pub const EXEMPT_SHARE: f64 = 0.03;
 pub const GROSS_MAGNITUDE: u8 = 16;
 /// See [`GROSS_MAGNITUDE`].
 pub const GROSS_SHARE: f64 = 0.005;
-/// How far the reference's samples are moved to find out where it is sensitive, px.
-pub const SHIFT_PX: f64 = 1.0 / 32.0;
-/// What the corners of faces are rounded to on a device, px: Vulkan asks for a 16th at least, all that were seen have
-/// this.
-pub const ROUNDED_PX: f64 = 1.0 / 256.0;
 /// Lines are compared within this distance, px.
 pub const WITHIN_PX: f64 = 1.5;
 /// The least precision and the least recall of lines.
 pub const LINE_ACCURACY: f64 = 0.98;
 
-/// At most this share of (edge, view) pairs may be told wrongly by the plane records.
+/// At most this share of (edge, view) pairs may be misclassified by the plane records.
 pub const PLANES_MISCLASSIFIED: f64 = 1e-6;
 /// How many views around a model the formats are measured over.
 pub const FORMAT_VIEWS: usize = 32;
@@ -200,9 +199,9 @@ pub fn run(
         checker.model("scene", &scene, &[("composed".into(), camera)], &|s| progress(s / 2.0))?;
         if styles.is_empty() {
             checker.borders("scene", "composed", &scene, &camera)?;
-            let sight = Sight::kept(&scene, &camera, SIZE, PLACES);
-            checker.strokes("scene", "composed", &sight)?;
-            checker.shadows("scene", "composed", &sight)?;
+            let hits = PrimaryHits::kept(&scene, View::new(camera, SIZE), PLACES);
+            checker.strokes("scene", "composed", &hits)?;
+            checker.shadows("scene", "composed", &hits)?;
         }
         let painted = [("composed".into(), painted_camera())];
         checker.model("painted", &painted_scene(), &painted, &|s| progress(0.5 + s / 2.0))?;
@@ -218,9 +217,9 @@ pub fn run(
         checker.model(&name, &scene, &views, &|share| progress((number as f64 + share) / total))?;
         if let (true, Some((view, camera))) = (styles.is_empty(), views.first()) {
             checker.borders(&name, view, &scene, camera)?;
-            let sight = Sight::kept(&scene, camera, SIZE, PLACES);
-            checker.strokes(&name, view, &sight)?;
-            checker.shadows(&name, view, &sight)?;
+            let hits = PrimaryHits::kept(&scene, View::new(*camera, SIZE), PLACES);
+            checker.strokes(&name, view, &hits)?;
+            checker.shadows(&name, view, &hits)?;
         }
     }
     checker.finish()
@@ -246,7 +245,7 @@ pub fn scene(
 
 /// The largest difference, of 255, that is allowed outside the exempt pixels.
 pub fn magnitude(plan: &Plan) -> u8 {
-    if plan.textured || plan.hatch.is_some() { TEXTURE_MAGNITUDE } else { SHADING_MAGNITUDE }
+    if plan.looks_up || plan.hatch().is_some() { TEXTURE_MAGNITUDE } else { SHADING_MAGNITUDE }
 }
 
 /// Whether a picture agrees with its reference.
@@ -269,10 +268,10 @@ impl Checker<'_> {
         progress: &dyn Fn(f64),
     ) -> Result<(), HarnessError> {
         for (number, (view, camera)) in views.iter().enumerate() {
-            let sight = Sight::kept(scene, camera, SIZE, PLACES);
+            let hits = PrimaryHits::kept(scene, View::new(*camera, SIZE), PLACES);
             if !self.styles.is_empty() {
                 for style in self.styles {
-                    self.picture(name, view, &sight, style)?;
+                    self.picture(name, view, &hits, style)?;
                 }
                 progress((number + 1) as f64 / views.len() as f64);
                 continue;
@@ -290,7 +289,7 @@ impl Checker<'_> {
             let once = ["ink-thick", "ink-fine"].iter().chain(light.iter().filter(|_| !artist));
             for name_of_style in often.iter().chain(once.filter(|_| number == 0)).filter(wanted) {
                 let style = style(name_of_style).expect("a style of this crate");
-                self.picture(name, view, &sight, &style)?;
+                self.picture(name, view, &hits, &style)?;
             }
             if of_edges {
                 self.lines(name, view, scene, camera)?;
@@ -322,28 +321,26 @@ impl Checker<'_> {
     }
 
     /// The pictures of the hatched styles.
-    fn strokes(&mut self, model: &str, view: &str, sight: &Sight<'_>) -> Result<(), HarnessError> {
+    fn strokes(&mut self, model: &str, view: &str, hits: &PrimaryHits<'_>) -> Result<(), HarnessError> {
         for name in ["hatch", "hatch-planes", "hatch-color", "printed-hatch"] {
-            if sight.scene.clip.is_none() {
-                self.picture(model, view, sight, &style(name).expect("a style of this crate"))?;
+            if hits.scene.clip.is_none() {
+                self.picture(model, view, hits, &style(name).expect("a style of this crate"))?;
             }
         }
         Ok(())
     }
 
     /// The device's picture against the reference.
-    fn picture(&mut self, model: &str, view: &str, sight: &Sight<'_>, style: &Style) -> Result<(), HarnessError> {
-        let Sight { scene, camera, size, .. } = *sight;
+    fn picture(&mut self, model: &str, view: &str, hits: &PrimaryHits<'_>, style: &Style) -> Result<(), HarnessError> {
         let technique = style.name.as_str();
         if self.executor.is_cpu() {
             return Ok(());
         }
-        let plan = Plan::new(scene, style, camera)?;
-        let picture = Picture { scene, style, plan: &plan, camera, size, samples: 1 };
-        let Some(actual) = self.render(model, view, technique, &picture)? else { return Ok(()) };
+        let picture = Picture::new(hits.scene, style, hits.view);
+        let Some((actual, plan)) = self.render(model, view, technique, &picture)? else { return Ok(()) };
         let magnitude = magnitude(&plan);
         let tolerance = Tolerance { magnitude, count: 0 };
-        let mut reference = Reference::new(Shot { sight, style, plan: &plan, samples: 1 })?;
+        let mut reference = Reference::new(Shot { hits, style, plan: &plan })?;
         let mut comparison = compare(&reference.image, &actual, &reference.exempt)?;
         if !comparison.passes(&[tolerance]) {
             reference.look_closer()?;
@@ -387,16 +384,18 @@ impl Checker<'_> {
         Ok(())
     }
 
-    /// A picture, or `None`, noted as skipped, where it is beyond the device's limits and no device is required.
+    /// A picture and its plan, or `None`, noted as skipped, where it is beyond the device's limits and no device is required.
     fn render(
         &mut self,
         model: &str,
         view: &str,
         technique: &str,
         picture: &Picture<'_>,
-    ) -> Result<Option<Image>, HarnessError> {
-        let error = match self.executor.render_picture(picture, &|_| {}) {
-            Ok(image) => return Ok(Some(image)),
+    ) -> Result<Option<(Image, Plan)>, HarnessError> {
+        let plan = picture.plan(self.executor.capabilities());
+        let rendered = plan.and_then(|plan| Ok((self.executor.execute(picture.scene, &plan, &|_| {})?, plan)));
+        let error = match rendered {
+            Ok(rendered) => return Ok(Some(rendered)),
             Err(error) => error,
         };
         if error.is_device_limit() && GpuPolicy::from_env()? != GpuPolicy::Required {
@@ -423,8 +422,8 @@ impl Checker<'_> {
     /// Lines 1 px wide against the exact visible contours.
     fn lines(&mut self, model: &str, view: &str, scene: &Scene, camera: &Camera) -> Result<(), HarnessError> {
         let look = LineLook { width_px: [1.0; 4], ink: [0.0, 0.0, 0.0, 1.0] };
-        let corrected = one_px_style(Lines::Fins(look));
-        let printed = one_px_style(Lines::Printed { width_px: 1.0, ink: Vec3::ZERO });
+        let corrected = one_px_style(Lines::edges(look));
+        let printed = one_px_style(Lines::printed(PrintedLines { width_px: 1.0, ink: Vec3::ZERO }));
         let truth = true_lines(scene, camera, SIZE, f64::from(corrected.crease_angle_rad));
         // Where alpha cuts a face out, its edges are drawn only where something of it is left, and a file's edges say
         // nothing of the new border: the truth does not know of either.
@@ -434,9 +433,8 @@ impl Checker<'_> {
                 .push(format!("limits on the lines of {model} ({view}): faces cut out by alpha have no exact lines"));
         }
         for (style, technique, limited) in [(corrected, "lines", true), (printed, "printed fins", false)] {
-            let plan = Plan::new(scene, &style, camera)?;
-            let picture = Picture { scene, style: &style, plan: &plan, camera, size: SIZE, samples: 1 };
-            let Some(image) = self.render(model, view, technique, &picture)? else { continue };
+            let picture = Picture::new(scene, &style, View::new(*camera, SIZE));
+            let Some((image, _)) = self.render(model, view, technique, &picture)? else { continue };
             let found = accuracy(&truth, &drawn_centreline(&darkness(&image), SIZE.0, SIZE.1), WITHIN_PX);
             let limit = (limited && exact).then_some(Limit::AtLeast(LINE_ACCURACY));
             self.add(model, view, technique, "precision within 1.5 px", found.precision, limit);
@@ -471,7 +469,7 @@ fn one_px_style(lines: Lines) -> Style {
         normals: Default::default(),
         lights: vec![Default::default()],
         shadow: None,
-        lines: Some(lines),
+        lines,
         crease_angle_rad: 45f32.to_radians(),
     }
 }

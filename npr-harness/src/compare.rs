@@ -4,104 +4,12 @@
 //! channel like any other. Pixels at which the reference itself is not stable can be exempt ([`exempt_mask`]); both
 //! counts, with and without them, are kept, so that what was exempt can be stated and bounded.
 
-mod format;
-
-pub use format::PictureFormat;
-
-use image::{ImageFormat, ImageReader};
-use npr_hatch::files::{read_file, write_file};
-use std::{
-    fs,
-    io::Cursor,
-    path::{Path, PathBuf},
-};
-
-/// Of a file.
-const MOST_BYTES: u64 = 1 << 30;
-/// Of a file's picture.
-const MOST_PIXELS: u64 = 1 << 26;
-
-/// A picture in memory.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Image {
-    /// Pixels.
-    pub width: u32,
-    /// Pixels.
-    pub height: u32,
-    /// `width * height * 4` bytes: rows from the top; red, green, blue and alpha, not premultiplied.
-    pub rgba8: Vec<u8>,
-}
-
-/// Why an image could not be made, read or written.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum ImageError {
-    /// Not four bytes a pixel.
-    #[error("{bytes} bytes are no {width}×{height} image of four bytes a pixel")]
-    Length {
-        /// Pixels.
-        width: u32,
-        /// Pixels.
-        height: u32,
-        /// How many there were.
-        bytes: usize,
-    },
-    /// The file could not be read.
-    #[error("{}: {source}", path.display())]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// What the system said.
-        source: std::io::Error,
-    },
-    /// The file is no PNG.
-    #[error("{}: {source}", path.display())]
-    Decode {
-        /// The file.
-        path: PathBuf,
-        /// What the decoder said.
-        source: image::ImageError,
-    },
-    /// The file has more pixels than are read.
-    #[error("{}: {width} × {height} px: at most {limit} pixels are read", path.display())]
-    TooLarge {
-        /// The file.
-        path: PathBuf,
-        /// Pixels.
-        width: u32,
-        /// Pixels.
-        height: u32,
-        /// Pixels.
-        limit: u64,
-    },
-    /// No bytes of a format could be made of it.
-    #[error("a {format} picture could not be made: {source}")]
-    Format {
-        /// Of the picture.
-        format: PictureFormat,
-        /// What the encoder said.
-        source: image::ImageError,
-    },
-    /// No PNG could be made of it.
-    #[error("{}: {source}", path.display())]
-    Encode {
-        /// The file that was to be written.
-        path: PathBuf,
-        /// What the encoder said.
-        source: image::ImageError,
-    },
-    /// The file or its folder could not be written.
-    #[error("{}: {source}", path.display())]
-    Write {
-        /// The file or folder.
-        path: PathBuf,
-        /// What the system said.
-        source: std::io::Error,
-    },
-    /// A difference image was wanted of what cannot be compared.
-    #[error(transparent)]
-    Compare(#[from] CompareError),
-}
+use crate::error::HarnessError;
+use crate::picture::{Image, ImageError, byte_count};
+use base64::prelude::{BASE64_STANDARD, Engine};
+use npr_hatch::files::write_file;
+use std::fs;
+use std::path::{Path, PathBuf};
 
 /// Why two images cannot be compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -136,98 +44,6 @@ pub enum CompareError {
         /// How many there were.
         bytes: usize,
     },
-}
-
-impl Image {
-    /// # Errors
-    /// [`ImageError::Length`] where `rgba8` has not four bytes a pixel.
-    pub fn new(width: u32, height: u32, rgba8: Vec<u8>) -> Result<Self, ImageError> {
-        if byte_count(width, height) == Some(rgba8.len()) {
-            Ok(Self { width, height, rgba8 })
-        } else {
-            Err(ImageError::Length { width, height, bytes: rgba8.len() })
-        }
-    }
-
-    /// The same colour everywhere.
-    ///
-    /// # Panics
-    /// If the image does not fit the address space.
-    pub fn filled(width: u32, height: u32, color: [u8; 4]) -> Self {
-        let bytes = byte_count(width, height).expect("the image fits the address space");
-        Self { width, height, rgba8: color.repeat(bytes / 4) }
-    }
-
-    /// The colour at a column and row, from the upper left.
-    ///
-    /// # Panics
-    /// Outside the image.
-    pub fn pixel(&self, x: u32, y: u32) -> [u8; 4] {
-        let at = self.offset(x, y);
-        std::array::from_fn(|channel| self.rgba8[at + channel])
-    }
-
-    /// Sets the colour at a column and row, from the upper left.
-    ///
-    /// # Panics
-    /// Outside the image.
-    pub fn set_pixel(&mut self, x: u32, y: u32, color: [u8; 4]) {
-        let at = self.offset(x, y);
-        self.rgba8[at..at + 4].copy_from_slice(&color);
-    }
-
-    fn offset(&self, x: u32, y: u32) -> usize {
-        assert!(x < self.width && y < self.height, "({x}, {y}) is outside {}×{}", self.width, self.height);
-        (y as usize * self.width as usize + x as usize) * 4
-    }
-
-    /// Reads a PNG of any colour type, of at most 2²⁶ pixels, which are counted before they are decoded.
-    ///
-    /// # Errors
-    /// [`ImageError::Read`], [`ImageError::Decode`] and [`ImageError::TooLarge`], which name the file.
-    pub fn load_png(path: &Path) -> Result<Self, ImageError> {
-        let bytes = read_file(path, MOST_BYTES).map_err(|source| ImageError::Read { path: path.to_owned(), source })?;
-        let failed = |source| ImageError::Decode { path: path.to_owned(), source };
-        let reader = || ImageReader::with_format(Cursor::new(&bytes), ImageFormat::Png);
-        let (width, height) = reader().into_dimensions().map_err(failed)?;
-        if u64::from(width) * u64::from(height) > MOST_PIXELS {
-            return Err(ImageError::TooLarge { path: path.to_owned(), width, height, limit: MOST_PIXELS });
-        }
-        let decoded = reader().decode().map_err(failed)?.into_rgba8();
-        Self::new(decoded.width(), decoded.height(), decoded.into_raw())
-    }
-
-    /// Writes a PNG, whole or not at all ([`write_file`]).
-    ///
-    /// # Errors
-    /// [`ImageError::Encode`] and [`ImageError::Write`], which name the file.
-    pub fn save_png(&self, path: &Path) -> Result<(), ImageError> {
-        let bytes = self.encode(PictureFormat::Png).map_err(|error| match error {
-            ImageError::Format { source, .. } => ImageError::Encode { path: path.to_owned(), source },
-            other => other,
-        })?;
-        write_whole(path, &bytes)
-    }
-
-    /// The bytes of a file of a format.
-    ///
-    /// # Errors
-    /// [`ImageError::Length`], [`ImageError::Format`].
-    pub fn encode(&self, format: PictureFormat) -> Result<Vec<u8>, ImageError> {
-        if byte_count(self.width, self.height) != Some(self.rgba8.len()) {
-            return Err(ImageError::Length { width: self.width, height: self.height, bytes: self.rgba8.len() });
-        }
-        format.encode(self).map_err(|source| ImageError::Format { format, source })
-    }
-}
-
-/// `None` where it leaves the address space.
-fn byte_count(width: u32, height: u32) -> Option<usize> {
-    (width as usize).checked_mul(height as usize)?.checked_mul(4)
-}
-
-fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), ImageError> {
-    write_file(path, bytes).map_err(|source| ImageError::Write { path: path.to_owned(), source })
 }
 
 /// At most `count` pixels may differ by more than `magnitude` in any channel.
@@ -383,14 +199,14 @@ fn differences<'a>(expected: &'a Image, actual: &'a Image) -> impl Iterator<Item
 /// Images of different sizes have no difference: the first two are written, and then it is an error.
 ///
 /// # Errors
-/// [`ImageError`], which names the file.
+/// [`HarnessError::Image`], which names the file, and [`HarnessError::Compare`].
 pub fn leave_behind(
     dir: &Path,
     name: &str,
     expected: &Image,
     actual: &Image,
     exempt: &[bool],
-) -> Result<[PathBuf; 3], ImageError> {
+) -> Result<[PathBuf; 3], HarnessError> {
     fs::create_dir_all(dir).map_err(|source| ImageError::Write { path: dir.to_owned(), source })?;
     let name: String =
         name.chars().map(|c| if c.is_ascii_alphanumeric() || "._-".contains(c) { c } else { '_' }).collect();
@@ -455,7 +271,10 @@ pub fn html_report(dir: &Path, rows: &[ReportRow]) -> Result<PathBuf, ImageError
         page.push_str("</td>");
         for (path, which) in row.images.iter().zip(["expected", "actual", "difference"]) {
             let bytes = fs::read(path).map_err(|source| ImageError::Read { path: path.clone(), source })?;
-            page.push_str(&format!("<td><img alt=\"{which}\" src=\"data:image/png;base64,{}\"></td>", base64(&bytes)));
+            page.push_str(&format!(
+                "<td><img alt=\"{which}\" src=\"data:image/png;base64,{}\"></td>",
+                BASE64_STANDARD.encode(&bytes)
+            ));
         }
         page.push_str("</tr>\n");
     }
@@ -470,19 +289,8 @@ fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;").replace('\'', "&#39;")
 }
 
-/// RFC 4648, section 4.
-fn base64(bytes: &[u8]) -> String {
-    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for chunk in bytes.chunks(3) {
-        let byte = |i: usize| u32::from(chunk.get(i).copied().unwrap_or(0));
-        let bits = byte(0) << 16 | byte(1) << 8 | byte(2);
-        for digit in 0..4 {
-            let value = bits >> (18 - 6 * digit) & 63;
-            text.push(if digit <= chunk.len() { char::from(DIGITS[value as usize]) } else { '=' });
-        }
-    }
-    text
+fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), ImageError> {
+    write_file(path, bytes).map_err(|source| ImageError::Write { path: path.to_owned(), source })
 }
 
 #[cfg(test)]

@@ -1,177 +1,98 @@
 //! The frame on the CPU: rays, f64, the reference.
 //!
 //! One ray through each pixel's centre finds what a rasteriser with exact arithmetic would find there; everything after
-//! that is written as the formulas read. `samples` per pixel along each axis supersample the whole picture, lines
-//! included: that is the truth against which accuracy is measured.
+//! that is written as the formulas read. Several samples a pixel supersample surfaces and lines along edges: that is the
+//! truth against which accuracy is measured.
 
-mod hatch;
-mod ink;
-mod lines;
+pub mod frame;
+pub mod primary_hits;
 mod shade;
-mod shadow;
-mod sight;
 mod surface;
 
-pub(crate) use ink::{Blot, blotted};
-pub use lines::draw_lines;
-pub(crate) use shadow::ShadowAt;
-pub use sight::Sight;
+pub use frame::{CpuFrame, CpuOptions};
+pub use primary_hits::PrimaryHits;
 
-use crate::camera::{Camera, PictureRays};
-use crate::color::to_bytes;
-use crate::compare::Image;
-use crate::light::lights_in_world;
+use crate::camera::PictureRays;
+use crate::edge_lines::cpu::draw_lines;
+use crate::hatch::cpu::Strokes;
+use crate::image_lines::cpu::draw_ink;
 use crate::plan::Plan;
+use crate::printed_fins::cpu::draw_printed;
 use crate::rays::Hit;
 use crate::scene::Scene;
-use crate::style::{Lines, Shade, Style};
+use crate::shadow::cpu::ShadowAt;
 use crate::texture::MipMapped;
+use crate::view::{View, size_px};
 use glam::{DVec2, DVec3, DVec4};
-use hatch::Strokes;
-use npr_toon::source::{Light, combined_color};
-use shadow::Casting;
-use sight::Hits;
+use primary_hits::Hits;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-/// What is asked of a frame on the CPU.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CpuOptions {
-    /// Samples per pixel along each axis, at least 1.
-    pub samples: u32,
-    /// Where surfaces are sampled relative to the pixels' centres, px: what changes with it is where the reference is
-    /// sensitive. Lines stay where they are, since their coverage is no sample; whether they are hidden is decided by
-    /// the moved samples. The printed fins, which have no coverage, are sampled like surfaces.
-    pub shift_px: DVec2,
-    /// Faces end so far before their boundaries, px: what is then seen between two faces that lie side by side without
-    /// being joined is what a device may show there, whose corners are rounded.
-    pub boundary_inset_px: f64,
-    /// At most so many threads; 0 for as many as the machine has.
-    pub threads: usize,
-}
-
-impl Default for CpuOptions {
-    fn default() -> Self {
-        Self { samples: 1, shift_px: DVec2::ZERO, boundary_inset_px: 0.0, threads: 0 }
-    }
-}
-
-/// A picture in f64, before it is rounded to bytes, and the depth buffer under it.
-#[derive(Clone, Debug)]
-pub struct CpuFrame {
-    /// Px.
-    pub width: u32,
-    /// Px.
-    pub height: u32,
-    /// Per pixel, rows from the top: display-referred RGBA, 0..=1.
-    pub color: Vec<DVec4>,
-    /// Per pixel the depth buffer's value, 0 where there is nothing.
-    pub depth: Vec<f64>,
-    /// Per pixel of the ink normal, region and depth, packed, where lines are found in the image; else empty.
-    pub texels: Vec<[u32; 2]>,
-}
-
-impl CpuFrame {
-    /// Rounded to bytes.
-    pub fn image(&self) -> Image {
-        let rgba8 = self.color.iter().flat_map(|&c| to_bytes(c)).collect();
-        Image::new(self.width, self.height, rgba8).expect("four bytes a pixel")
-    }
-}
-
 /// Everything that is the same for all pixels of a frame.
-pub struct FrameContext<'a> {
-    /// What is shown.
-    pub scene: &'a Scene,
-    /// How.
-    pub style: &'a Style,
-    /// From where.
-    pub camera: &'a Camera,
-    /// Px, of the grid that is sampled.
-    pub size_px: DVec2,
+#[derive(Clone, Copy)]
+pub(crate) struct FrameContext<'a> {
+    pub(crate) scene: &'a Scene,
+    pub(crate) plan: &'a Plan,
+    /// Width and height of the grid that is sampled, px.
+    size: (u32, u32),
     /// Through its points.
     rays: PictureRays,
-    /// As the style's shade asks for them: one, or two for the painter.
-    pub lights: Vec<Light>,
-    /// Of all of them.
-    light_color: DVec3,
     textures: &'a [MipMapped],
     shift_px: DVec2,
-    plan: &'a Plan,
     /// What surfaces are hatched with.
     strokes: Option<Strokes<'a>>,
-    /// Whether surfaces get their colours.
-    painting: bool,
     /// In px of the grid that is sampled.
     boundary_inset_px: f64,
-    /// Where shadows come from.
-    casting: Option<Casting>,
+    /// The plane of which a point's distance is its eye depth.
+    eye_depth: DVec4,
 }
 
 /// Renders a frame.
 ///
 /// `progress` is called with the share that is done, 0..=1, from any thread.
-pub fn render(
-    scene: &Scene,
-    style: &Style,
-    plan: &Plan,
-    camera: &Camera,
-    size: (u32, u32),
-    options: &CpuOptions,
-    progress: &(dyn Fn(f64) + Sync),
-) -> CpuFrame {
-    render_seen(&Sight::new(scene, camera, size), style, plan, options, progress)
+pub fn render(scene: &Scene, plan: &Plan, options: &CpuOptions, progress: &(dyn Fn(f64) + Sync)) -> CpuFrame {
+    render_kept(&PrimaryHits::new(scene, plan.view), plan, options, progress)
 }
 
-/// As [`render`], of a view of which something may be known.
-pub fn render_seen(
-    sight: &Sight<'_>,
-    style: &Style,
+/// As [`render`], with primary hits that may be known. `hits` must be of the plan's camera.
+pub fn render_kept(
+    hits: &PrimaryHits<'_>,
     plan: &Plan,
     options: &CpuOptions,
     progress: &(dyn Fn(f64) + Sync),
 ) -> CpuFrame {
-    let mut frame = without_ink(sight, style, plan, options, progress);
+    let mut frame = without_ink(hits, plan, options, progress);
     if let Some(image) = &plan.image {
-        ink::draw_ink(image, &mut frame);
+        draw_ink(image, &mut frame);
     }
     frame
 }
 
 /// The frame before lines are found in it, and the texels for that.
 pub(crate) fn without_ink(
-    sight: &Sight<'_>,
-    style: &Style,
+    hits: &PrimaryHits<'_>,
     plan: &Plan,
     options: &CpuOptions,
     progress: &(dyn Fn(f64) + Sync),
 ) -> CpuFrame {
-    let Sight { scene, camera, size: (width, height), .. } = *sight;
-    let samples = options.samples.max(1);
-    let textures = textures(scene, plan);
-    let context = FrameContext::new(scene, style, plan, camera, (width, height), options, textures);
-    let fine_size = (width * samples, height * samples);
-    let hits = sight.hits(fine_size, options, || context.first_hits(fine_size, options.threads));
-    let mut fine = context.trace(fine_size, hits.as_ref(), options.threads, true, progress);
+    let (scene, view) = (hits.scene, &plan.view);
+    let context = FrameContext::new(scene, plan, options);
+    let hits = hits.hits(view, options, || context.first_hits(options.threads));
+    let beside_picture = plan.image.as_ref().is_some_and(|image| !image.own_surfaces);
+    let mut fine = context.trace(hits.as_ref(), options.threads, true, beside_picture, progress);
     let shared_texels = std::mem::take(&mut fine.texels);
-    match &style.lines {
-        Some(Lines::Fins(look)) => draw_lines(&context, &mut fine, look, f64::from(samples)),
-        Some(Lines::Printed { width_px, ink }) => {
-            lines::draw_printed(&context, &mut fine, f64::from(*width_px) * f64::from(samples), *ink);
-        }
-        Some(Lines::Image(_)) | None => {}
+    if let Some(printed) = &plan.printed_fins {
+        draw_printed(printed, scene, view, context.shift_px, &mut fine);
     }
-    let mut frame = if samples == 1 { fine } else { averaged(&fine, width, height, samples) };
+    if let Some(edges) = &plan.edge_lines {
+        draw_lines(edges, scene, view, context.shift_px, &mut fine);
+    }
+    let mut frame = if view.samples == 1 { fine } else { fine.resolved(view.samples) };
     if let Some(image) = &plan.image {
-        let (ink_width, ink_height) = image.ink.scale.size((width, height));
-        frame.texels = if (ink_width, ink_height) == (width, height) && samples == 1 {
-            shared_texels
-        } else {
+        frame.texels = if image.own_surfaces {
             // One sample for each pixel of the ink, whatever the picture has: lines are as wide as on a device.
-            let size_px = DVec2::new(ink_width.into(), ink_height.into());
-            let shift_px = options.shift_px * size_px / DVec2::new(width.into(), height.into());
-            let rays = camera.rays(size_px);
-            let context = FrameContext { size_px, rays, shift_px, painting: false, ..context };
-            context.trace((ink_width, ink_height), None, options.threads, false, &|_| {}).texels
+            context.of_ink(image.size, options).trace(None, options.threads, false, true, &|_| {}).texels
+        } else {
+            shared_texels
         };
     }
     frame
@@ -190,18 +111,17 @@ pub(crate) struct Seen {
     pub(crate) at: DVec3,
 }
 
-/// What is seen through each pixel, rows from the top; `None` for background.
-pub(crate) fn seen(sight: &Sight<'_>, style: &Style, plan: &Plan, options: &CpuOptions) -> Vec<Option<Seen>> {
-    let Sight { scene, camera, size, .. } = *sight;
-    let context = FrameContext::new(scene, style, plan, camera, size, options, textures(scene, plan));
-    let hits = sight.hits(size, options, || context.first_hits(size, options.threads));
-    let row = size.0 as usize;
-    let mut seen = vec![None; row * size.1 as usize];
+/// What is seen through each sample of the view, rows from the top; `None` for background.
+pub(crate) fn seen(hits: &PrimaryHits<'_>, plan: &Plan, options: &CpuOptions) -> Vec<Option<Seen>> {
+    let context = FrameContext::new(hits.scene, plan, options);
+    let known = hits.hits(&plan.view, options, || context.first_hits(options.threads));
+    let row = context.size.0 as usize;
+    let mut seen = vec![None; row * context.size.1 as usize];
     context.by_rows((0u32..).zip(seen.chunks_mut(row)), options.threads, |(y, seen)| {
         for (x, seen) in (0u32..).zip(seen) {
-            let known = hits.as_ref().map(|hits| hits[y as usize * row + x as usize]);
+            let known = known.as_ref().map(|hits| hits[y as usize * row + x as usize]);
             *seen = known.unwrap_or_else(|| context.first_solid(x, y)).map(|hit| Seen {
-                depth: camera.buffer_depth(hit.t),
+                depth: plan.view.camera.buffer_depth(hit.t),
                 shadow: context.shadow_at(&hit),
                 face: hit.face,
                 at: context.interpolate(&hit, hit.barycentric).at,
@@ -211,48 +131,27 @@ pub(crate) fn seen(sight: &Sight<'_>, style: &Style, plan: &Plan, options: &CpuO
     seen
 }
 
-/// The scene's textures as a frame looks them up; none if it does not.
-pub(crate) fn textures<'a>(scene: &'a Scene, plan: &Plan) -> &'a [MipMapped] {
-    if plan.painted || plan.cut_out || plan.image.as_ref().is_some_and(|i| i.ink.artist) {
-        scene.mip_mapped()
-    } else {
-        &[]
-    }
-}
-
 impl<'a> FrameContext<'a> {
-    /// `size`: the picture's, px.
-    pub(crate) fn new(
-        scene: &'a Scene,
-        style: &'a Style,
-        plan: &'a Plan,
-        camera: &'a Camera,
-        (width, height): (u32, u32),
-        options: &CpuOptions,
-        textures: &'a [MipMapped],
-    ) -> Self {
-        let samples = options.samples.max(1);
-        let lights = lights_in_world(style, scene, camera);
-        let size_px = DVec2::new(f64::from(width * samples), f64::from(height * samples));
+    pub(crate) fn new(scene: &'a Scene, plan: &'a Plan, options: &CpuOptions) -> Self {
+        let View { camera, samples, .. } = &plan.view;
         Self {
             scene,
-            style,
-            camera,
-            size_px,
-            rays: camera.rays(size_px),
-            light_color: combined_color(&lights),
-            lights,
-            textures,
-            shift_px: options.shift_px * f64::from(samples),
             plan,
-            strokes: match (&style.shade, &plan.hatch) {
-                (Shade::Hatch(shade), Some(plan)) => Some(Strokes::new(shade, plan, style.normals, samples)),
-                _ => None,
-            },
-            painting: plan.painted,
-            boundary_inset_px: options.boundary_inset_px * f64::from(samples),
-            casting: plan.shadow.as_ref().map(|shadow| Casting::new(shadow, scene, style, camera)),
+            size: plan.view.sampled_size(),
+            rays: camera.rays(plan.view.sampled_size_px()),
+            textures: if plan.looks_up { scene.mip_mapped() } else { &[] },
+            shift_px: options.shift_px * f64::from(*samples),
+            strokes: plan.hatch().map(|hatch| Strokes::new(hatch, *samples)),
+            boundary_inset_px: options.boundary_inset_px * f64::from(*samples),
+            eye_depth: plan.view.eye_depth_plane(),
         }
+    }
+
+    /// The same for the pixels of the ink, where that has surfaces of its own.
+    fn of_ink(&self, size: (u32, u32), options: &CpuOptions) -> Self {
+        let shift_px = options.shift_px * size_px(size) / size_px(self.plan.view.size);
+        let rays = self.plan.view.camera.rays(size_px(size));
+        Self { size, rays, shift_px, ..*self }
     }
 }
 
@@ -267,20 +166,21 @@ impl FrameContext<'_> {
         Some((self.interpolate(&hit, hit.barycentric).at, self.paint(&hit, x, y).truncate()))
     }
 
-    /// Paints surfaces; lines are drawn over them afterwards. Without a picture only what lines are found in is made.
-    /// `hits`, if they are known, are those of [`Self::first_hits`].
+    /// Paints surfaces, if a `picture` is asked for, and makes what lines in the image are found in, if `texels` are;
+    /// lines are drawn afterwards. `hits`, if they are known, are those of [`Self::first_hits`].
     fn trace(
         &self,
-        (width, height): (u32, u32),
         hits: Option<&Hits>,
         threads: usize,
         picture: bool,
+        texels: bool,
         progress: &(dyn Fn(f64) + Sync),
     ) -> CpuFrame {
+        let (width, height) = self.size;
         let (row, pixels) = (width as usize, width as usize * height as usize);
         let mut color = vec![DVec4::ZERO; if picture { pixels } else { 0 }];
         let mut depth = vec![0.0; color.len()];
-        let mut texels = vec![[0; 2]; if self.plan.image.is_some() { pixels } else { 0 }];
+        let mut texels = vec![[0; 2]; if texels { pixels } else { 0 }];
         let rows_of_texels = texels.chunks_mut(row).map(Some).chain(std::iter::repeat_with(|| None));
         let rows_of_picture = color.chunks_mut(row).zip(depth.chunks_mut(row)).map(Some);
         let rows_of_picture = rows_of_picture.chain(std::iter::repeat_with(|| None));
@@ -295,7 +195,8 @@ impl FrameContext<'_> {
     }
 
     /// What is seen through each pixel, but for what is blended over it.
-    fn first_hits(&self, (width, height): (u32, u32), threads: usize) -> Hits {
+    fn first_hits(&self, threads: usize) -> Hits {
+        let (width, height) = self.size;
         let mut hits = vec![None; width as usize * height as usize];
         self.by_rows((0u32..).zip(hits.chunks_mut(width as usize)), threads, |(y, row)| {
             for (x, hit) in (0..).zip(row) {
@@ -342,7 +243,7 @@ impl FrameContext<'_> {
             let solid = hits.map_or_else(|| self.first_solid(x, y), |hits| hits[x as usize]);
             if let Some((color, depth)) = &mut picture {
                 color[x as usize] = self.trace_pixel(solid.as_ref(), x, y);
-                depth[x as usize] = solid.map_or(0.0, |hit| self.camera.buffer_depth(hit.t));
+                depth[x as usize] = solid.map_or(0.0, |hit| self.plan.view.camera.buffer_depth(hit.t));
             }
             if let Some(texels) = &mut texels {
                 texels[x as usize] = self.texel(solid.as_ref(), x, y);
@@ -365,18 +266,18 @@ impl FrameContext<'_> {
                 && !self.is_cut_out(hit, x, y)
                 && !self.is_inset(hit, x, y)
         };
-        self.scene.rays().closest(origin, direction, self.camera.depth_range(), is_solid)
+        self.scene.rays().closest(origin, direction, self.plan.view.camera.depth_range(), is_solid)
     }
 
     fn trace_pixel(&self, solid: Option<&Hit>, x: u32, y: u32) -> DVec4 {
-        let paper = self.style.paper.as_dvec3();
+        let paper = self.plan.paper.as_dvec3();
         let mut color = match solid {
-            Some(hit) if self.painting => self.paint(hit, x, y).truncate(),
+            Some(hit) if self.plan.paint.is_some() => self.paint(hit, x, y).truncate(),
             _ => paper,
         };
-        if self.plan.blended && self.painting {
+        if self.plan.blended {
             let (origin, direction) = self.rays.through(self.sample_point(f64::from(x), f64::from(y)));
-            let range = self.camera.depth_range();
+            let range = self.plan.view.camera.depth_range();
             let nearer = (range.0, solid.map_or(range.1, |hit| hit.t));
             let is_blended =
                 |hit: &Hit| self.is_shown(hit) && self.is_blended(hit) && self.scene.keeps(origin + direction * hit.t);
@@ -387,24 +288,4 @@ impl FrameContext<'_> {
         }
         color.extend(1.0)
     }
-}
-
-/// The mean of each pixel's samples, in display space, as coverage is blended there; of the depth, the nearest.
-fn averaged(fine: &CpuFrame, width: u32, height: u32, samples: u32) -> CpuFrame {
-    let mut color = Vec::with_capacity(width as usize * height as usize);
-    let mut depth = Vec::with_capacity(color.capacity());
-    for y in 0..height {
-        for x in 0..width {
-            let (mut sum, mut nearest) = (DVec4::ZERO, 0.0f64);
-            for sub in 0..samples * samples {
-                let row = (y * samples + sub / samples) as usize * fine.width as usize;
-                let at = row + (x * samples + sub % samples) as usize;
-                sum += fine.color[at];
-                nearest = nearest.max(fine.depth[at]);
-            }
-            color.push(sum / f64::from(samples * samples));
-            depth.push(nearest);
-        }
-    }
-    CpuFrame { width, height, color, depth, texels: Vec::new() }
 }

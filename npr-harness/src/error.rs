@@ -1,6 +1,6 @@
 //! What can go wrong on the way to a picture.
 
-use crate::compare::PictureFormat;
+use crate::picture::PictureFormat;
 use std::fmt;
 
 /// What a path that a command was given is for.
@@ -129,19 +129,153 @@ pub enum HarnessError {
     /// A style without a light.
     #[error("a style needs one light or two")]
     NoLight,
-    /// A style's file.
-    #[error(transparent)]
-    StyleFile(#[from] crate::style::StyleFileError),
+    /// A style's file that is not TOML, or has keys or values that a style does not have.
+    #[error("{}:{line}:{column}: {message}", path.display())]
+    StyleToml {
+        /// Which file.
+        path: std::path::PathBuf,
+        /// From 1.
+        line: usize,
+        /// From 1.
+        column: usize,
+        /// In the parser's words.
+        message: String,
+    },
+    /// A style's file with two tables of which a style has one.
+    #[error(
+        "{}:{line}:{column}: a style has one kind of {what}: [{table}.{first}] and [{table}.{second}] are both there",
+        path.display()
+    )]
+    TwoKinds {
+        /// Which file.
+        path: std::path::PathBuf,
+        /// Of the second table, from 1.
+        line: usize,
+        /// The same.
+        column: usize,
+        /// What there is one kind of.
+        what: &'static str,
+        /// The key above both.
+        table: &'static str,
+        /// A key.
+        first: String,
+        /// Another one.
+        second: String,
+    },
+    /// A style's file that says something twice or leaves out what is needed.
+    #[error("{}: {what}", path.display())]
+    StyleTable {
+        /// Which file.
+        path: std::path::PathBuf,
+        /// What is wrong.
+        what: String,
+    },
+    /// A style's file with a number out of its range.
+    #[error("{}: {source}", path.display())]
+    StyleRule {
+        /// Which file.
+        path: std::path::PathBuf,
+        /// Which rule is broken.
+        source: Box<HarnessError>,
+    },
+    /// The image of a ramp, named in a style's file.
+    #[error("a ramp's image: {0}")]
+    RampImage(crate::picture::ImageError),
+    /// A style that has no TOML form.
+    #[error("a style could not be written: {0}")]
+    StyleWrite(#[from] toml::ser::Error),
     /// A picture file.
     #[error(transparent)]
-    Image(#[from] crate::compare::ImageError),
+    Image(#[from] crate::picture::ImageError),
     /// Pictures that cannot be compared.
     #[error(transparent)]
     Compare(#[from] crate::compare::CompareError),
-    /// The device.
-    #[cfg(feature = "gpu")]
-    #[error(transparent)]
-    Gpu(#[from] crate::gpu::GpuError),
+    /// No adapter that can do what every picture needs.
+    #[error("no usable graphics adapter (seen: {})", if seen.is_empty() { "none".to_owned() } else { seen.join("; ") })]
+    NoAdapter {
+        /// Those that were found and are not enough.
+        seen: Vec<String>,
+    },
+    /// The adapter gave no device.
+    #[error("{adapter} gave no device: {fault}")]
+    NoDevice {
+        /// Which.
+        adapter: String,
+        /// Why, in its own words.
+        fault: String,
+    },
+    /// A texture larger than the device's can be.
+    #[error(
+        "{what} of {width} × {height} px: this device's textures have at most {limit} × {limit} px (the CPU has no such limit)"
+    )]
+    TextureTooLarge {
+        /// What of the picture.
+        what: &'static str,
+        /// Px.
+        width: u32,
+        /// Px.
+        height: u32,
+        /// Px.
+        limit: u32,
+    },
+    /// A ramp's image larger than the device's textures can be.
+    #[error(
+        "a ramp of {width} × {height} texels: this device's textures are at most {limit} × {limit} (the CPU has no such limit)"
+    )]
+    RampTooLarge {
+        /// Columns.
+        width: u32,
+        /// Rows.
+        height: u32,
+        /// Texels along a side.
+        limit: u32,
+    },
+    /// A buffer larger than the device's can be.
+    #[error("{what} needs {bytes} bytes, this device's buffers hold at most {limit}")]
+    BufferTooLarge {
+        /// What it holds.
+        what: &'static str,
+        /// How much it holds.
+        bytes: u64,
+        /// How much is allowed.
+        limit: u64,
+    },
+    /// More draws than a software adapter has memory for: it keeps half a MiB for each until a picture is finished
+    /// (lavapipe, Mesa 22.3).
+    #[error("{draws} draws, one for each material or blended face: {limit} at most on a software adapter")]
+    TooManyDraws {
+        /// How many there would be.
+        draws: usize,
+        /// How many are made.
+        limit: usize,
+    },
+    /// Shadow volumes in a parallel view, whose depth ends, on a device that cuts off what is farther.
+    #[error("this device cannot draw shadow volumes in a parallel view (a shadow map, or the CPU, can)")]
+    ParallelVolumes,
+    /// An environment variable that names no limits.
+    #[error("NPR_GPU_LIMITS={name:?}: it must be adapter or webgl2")]
+    GpuLimits {
+        /// What it says.
+        name: String,
+    },
+    /// The device is there no more.
+    #[error("the graphics device was lost: {reason}")]
+    Lost {
+        /// In its own words.
+        reason: String,
+    },
+    /// The device has no memory left.
+    #[error("the graphics device is out of memory: {fault}")]
+    OutOfMemory {
+        /// In its own words.
+        fault: String,
+    },
+    /// The device reported a fault.
+    #[error("the graphics device failed: {fault}")]
+    Device {
+        /// In its own words.
+        fault: String,
+    },
     /// Faces that cannot be cut into more.
     #[error(transparent)]
     Tessellate(#[from] npr_mesh::pn_triangles::TessellateError),
@@ -300,12 +434,35 @@ pub enum HarnessError {
 }
 
 impl HarnessError {
-    /// Whether a device cannot make the picture for a limit that it has.
-    pub(crate) fn is_device_limit(&self) -> bool {
+    /// Whether the fault lies with a device, and the CPU may make the picture.
+    pub fn is_of_the_device(&self) -> bool {
+        matches!(
+            self,
+            Self::NoAdapter { .. }
+                | Self::NoDevice { .. }
+                | Self::Lost { .. }
+                | Self::OutOfMemory { .. }
+                | Self::Device { .. }
+        ) || self.is_device_limit()
+    }
+
+    /// Whether a device cannot make the picture for a limit that it has, without a fault.
+    pub fn is_device_limit(&self) -> bool {
+        use npr_outline::OutlineError;
         match self {
-            #[cfg(feature = "gpu")]
-            Self::Gpu(fault) => fault.is_limit(),
+            Self::TextureTooLarge { .. }
+            | Self::RampTooLarge { .. }
+            | Self::BufferTooLarge { .. }
+            | Self::TooManyDraws { .. }
+            | Self::ParallelVolumes => true,
+            Self::Outline(error) => matches!(error, OutlineError::TooManyEdges { .. }),
+            Self::Hatch(error) => matches!(error, npr_hatch::HatchError::TooLarge { .. }),
             _ => false,
         }
+    }
+
+    /// Whether the device makes no further picture.
+    pub(crate) fn is_final(&self) -> bool {
+        matches!(self, Self::Lost { .. } | Self::OutOfMemory { .. })
     }
 }

@@ -6,19 +6,23 @@ mod cost;
 pub use candidates::Candidates;
 pub use cost::Work;
 
-use crate::camera::Camera;
-use crate::compare::Image;
+use crate::capabilities::Capabilities;
 use crate::cpu::{self, CpuOptions};
 use crate::error::HarnessError;
-use crate::plan::{Plan, Reason};
+use crate::picture::Image;
+use crate::picture_limits::MEMORY_BYTES;
+use crate::plan::Plan;
 use crate::scene::Scene;
 use crate::style::Style;
+use crate::view::View;
 use std::fmt;
 
 #[cfg(feature = "gpu")]
-use crate::gpu::{self, GpuContext, GpuError, REFUSED};
+use crate::gpu::{self, GpuContext};
+
+/// Why compute shaders are not used that were promised.
 #[cfg(feature = "gpu")]
-use crate::plan::LineMethod;
+const REFUSED: &str = "the driver refused the compute shaders that it had promised";
 
 /// Which executor is asked for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -101,14 +105,37 @@ pub struct Picture<'a> {
     pub scene: &'a Scene,
     /// How.
     pub style: &'a Style,
-    /// Made of these two and the camera.
-    pub plan: &'a Plan,
-    /// From where.
-    pub camera: &'a Camera,
-    /// Width and height, px.
-    pub size: (u32, u32),
-    /// Along each axis of a pixel.
-    pub samples: u32,
+    /// From where, and how finely.
+    pub view: View,
+    /// How much memory it may take besides the scene, bytes.
+    pub memory_bytes: u64,
+}
+
+impl<'a> Picture<'a> {
+    /// A picture that may take [`MEMORY_BYTES`].
+    pub fn new(scene: &'a Scene, style: &'a Style, view: View) -> Self {
+        Self { scene, style, view, memory_bytes: MEMORY_BYTES }
+    }
+
+    /// The plan of the picture for an executor that can do so much.
+    ///
+    /// # Errors
+    /// Those of [`Plan::new`].
+    pub fn plan(&self, capabilities: Capabilities) -> Result<Plan, HarnessError> {
+        let capabilities = Capabilities { memory_bytes: self.memory_bytes, ..capabilities };
+        Plan::new(self.scene, self.style, &self.view, &capabilities)
+    }
+}
+
+/// A picture, and how it was made.
+#[derive(Clone, Debug)]
+pub struct Rendered {
+    /// The picture.
+    pub image: Image,
+    /// What was executed.
+    pub plan: Plan,
+    /// Why the CPU made it, where a device could not.
+    pub why_cpu: Option<CpuReason>,
 }
 
 impl Executor {
@@ -134,17 +161,14 @@ impl Executor {
     ///
     /// # Errors
     /// The error itself, else; [`HarnessError::Policy`].
-    pub fn instead(backend: Backend, error: HarnessError) -> Result<Self, HarnessError> {
+    pub fn fallback(backend: Backend, error: HarnessError) -> Result<Self, HarnessError> {
         if backend != Backend::Auto || GpuPolicy::from_env()? != GpuPolicy::Auto {
             return Err(error);
         }
         match &error {
             // A device takes more than the CPU does.
             HarnessError::PictureMemory { .. } => Ok(Self::Cpu { why: Some(CpuReason::Unable(error.to_string())) }),
-            #[cfg(feature = "gpu")]
-            HarnessError::Gpu(fault) if fault.is_of_the_device() => {
-                Ok(Self::Cpu { why: Some(CpuReason::Unable(fault.to_string())) })
-            }
+            fault if fault.is_of_the_device() => Ok(Self::Cpu { why: Some(CpuReason::Unable(fault.to_string())) }),
             _ => Err(error),
         }
     }
@@ -164,107 +188,78 @@ impl Executor {
         }
     }
 
-    /// By which methods a picture's passes are made, and why; none on the CPU, which has one for each.
-    ///
-    /// # Errors
-    /// What the device cannot do, by name.
-    pub fn methods(&self, picture: &Picture<'_>) -> Result<Vec<Reason>, HarnessError> {
+    /// What it can do.
+    pub fn capabilities(&self) -> Capabilities {
         match self {
             #[cfg(feature = "gpu")]
-            Self::Gpu(context) => {
-                let parallel = matches!(picture.camera.projection, crate::camera::Projection::Orthographic { .. });
-                let Picture { scene, plan, size, samples, .. } = *picture;
-                Ok(context.for_one_picture().methods(scene, plan, parallel, size, samples)?)
-            }
-            Self::Cpu { .. } => {
-                // In a build without devices nothing depends on it.
-                let _ = picture;
-                Ok(Vec::new())
-            }
+            Self::Gpu(context) => context.usable(),
+            Self::Cpu { .. } => Capabilities::RAY_CASTER,
         }
     }
 
-    /// Renders a picture.
-    ///
-    /// `samples`: along each axis of a pixel.
-    ///
-    /// # Errors
-    /// [`HarnessError`].
-    #[expect(clippy::too_many_arguments, reason = "each is a thing of its own; a struct would only rename them")]
-    pub fn render(
-        &self,
-        scene: &Scene,
-        style: &Style,
-        plan: &Plan,
-        camera: &Camera,
-        size: (u32, u32),
-        samples: u32,
-        progress: &(dyn Fn(f64) + Sync),
-    ) -> Result<Image, HarnessError> {
-        self.render_picture(&Picture { scene, style, plan, camera, size, samples }, progress)
-    }
-
-    /// Renders a picture, without compute shaders where the driver refuses those that it promised.
+    /// Executes a plan that was made for its capabilities; without compute shaders where the driver refuses those that it
+    /// promised.
     ///
     /// # Errors
     /// [`HarnessError`].
-    pub fn render_picture(
-        &self,
-        picture: &Picture<'_>,
-        progress: &(dyn Fn(f64) + Sync),
-    ) -> Result<Image, HarnessError> {
-        let Picture { scene, style, plan, camera, size, samples } = *picture;
+    pub fn execute(&self, scene: &Scene, plan: &Plan, progress: &(dyn Fn(f64) + Sync)) -> Result<Image, HarnessError> {
         match self {
             #[cfg(feature = "gpu")]
-            Self::Gpu(context) => {
-                // What is known beforehand is said before anything is allocated.
-                self.methods(picture)?;
-                let render = |capabilities| {
-                    gpu::render(context, capabilities, scene, style, plan, camera, size, samples, LineMethod::Auto)
-                };
-                let capabilities = context.for_one_picture();
-                let compute = capabilities.compute;
-                match render(capabilities) {
-                    // What drivers promise and refuse all the same is mostly compute shaders.
-                    Err(GpuError::Device { .. } | GpuError::Outline(_)) if compute => {
-                        // What else it reported is of the same attempt.
-                        let _ = context.wait();
-                        let image = render(context.capabilities.clone().without_compute(REFUSED))?;
-                        context.note_refusal();
-                        Ok(image)
-                    }
-                    done => Ok(done?),
+            Self::Gpu(context) => match gpu::render(context, scene, plan) {
+                Err(HarnessError::Device { .. } | HarnessError::Outline(_)) if plan.computes() => {
+                    // What else it reported is of the same attempt.
+                    let _ = context.wait();
+                    let image = gpu::render(context, scene, &plan.without_compute(REFUSED))?;
+                    context.note_refusal();
+                    Ok(image)
                 }
-            }
-            Self::Cpu { .. } => {
-                let options = CpuOptions { samples, ..Default::default() };
-                Ok(cpu::render(scene, style, plan, camera, size, &options, progress).image())
-            }
+                done => done,
+            },
+            Self::Cpu { .. } => Ok(cpu::render(scene, plan, &CpuOptions::default(), progress).image()),
         }
     }
 
-    /// Renders a picture, on the CPU where the device cannot and `backend` and the environment leave that open; then also
-    /// says why. After a device was lost, or had no memory left, the CPU renders further pictures too.
+    /// Plans and renders a picture.
     ///
     /// # Errors
     /// [`HarnessError`].
-    pub fn render_or_instead(
+    pub fn render(&self, picture: &Picture<'_>, progress: &(dyn Fn(f64) + Sync)) -> Result<Image, HarnessError> {
+        self.execute(picture.scene, &picture.plan(self.capabilities())?, progress)
+    }
+
+    /// Plans and renders a picture, on the CPU where the device cannot and `backend` and the environment leave that open.
+    /// After a device was lost, or had no memory left, the CPU renders further pictures too.
+    ///
+    /// # Errors
+    /// [`HarnessError`].
+    pub fn render_with_fallback(
         &mut self,
         backend: Backend,
         picture: &Picture<'_>,
         progress: &(dyn Fn(f64) + Sync),
-    ) -> Result<(Image, Option<CpuReason>), HarnessError> {
-        let error = match self.render_picture(picture, progress) {
-            Ok(image) => return Ok((image, None)),
+    ) -> Result<Rendered, HarnessError> {
+        let plan = picture.plan(self.capabilities());
+        let rendered = plan.and_then(|plan| {
+            let image = self.execute(picture.scene, &plan, progress)?;
+            Ok(Rendered { image, plan, why_cpu: None })
+        });
+        let error = match rendered {
+            Ok(mut rendered) => {
+                #[cfg(feature = "gpu")]
+                if rendered.plan.computes() && !self.capabilities().compute {
+                    // The driver refused just now.
+                    rendered.plan = rendered.plan.without_compute(REFUSED);
+                }
+                return Ok(rendered);
+            }
+            Err(error) if self.is_cpu() => return Err(error),
             Err(error) => error,
         };
-        #[cfg(feature = "gpu")]
-        let is_final = matches!(&error, HarnessError::Gpu(fault) if fault.is_final());
-        #[cfg(not(feature = "gpu"))]
-        let is_final = false;
-        let cpu = Self::instead(backend, error)?;
-        let image = cpu.render_picture(picture, progress)?;
-        let why = match &cpu {
+        let is_final = error.is_final();
+        let cpu = Self::fallback(backend, error)?;
+        let plan = picture.plan(cpu.capabilities())?;
+        let image = cpu.execute(picture.scene, &plan, progress)?;
+        let why_cpu = match &cpu {
             Self::Cpu { why } => why.clone(),
             #[cfg(feature = "gpu")]
             Self::Gpu(_) => None,
@@ -272,6 +267,6 @@ impl Executor {
         if is_final {
             *self = cpu;
         }
-        Ok((image, why))
+        Ok(Rendered { image, plan, why_cpu })
     }
 }

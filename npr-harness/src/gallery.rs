@@ -8,10 +8,10 @@ pub use painted::{painted_camera, painted_scene};
 
 use crate::camera::{Camera, Projection};
 use crate::error::HarnessError;
-use crate::executor::{Backend, CpuReason, Executor, Picture, Work};
-use crate::plan::Plan;
+use crate::executor::{Backend, CpuReason, Executor, Picture, Rendered, Work};
 use crate::scene::Scene;
-use crate::style::{Lines, styles};
+use crate::style::styles;
+use crate::view::View;
 use glam::DVec3;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -75,12 +75,11 @@ pub fn render(
     let mut rows = Vec::new();
     for (number, style) in styles.iter().enumerate() {
         let start = Instant::now();
-        let asks_artists = matches!(&style.lines, Some(Lines::Image(ink)) if ink.artist);
+        let asks_artists = style.lines.image.is_some_and(|ink| ink.artist);
         let (scene, camera) = if asks_artists { &painted } else { &still_life };
-        let plan = Plan::new(scene, style, camera)?;
         let share_of = |within: f64| progress((number as f64 + within) / pictures);
-        let picture = Picture { scene, style, plan: &plan, camera, size: SIZE, samples: 1 };
-        let (image, why_cpu) = executor.render_or_instead(backend, &picture, &share_of)?;
+        let picture = Picture::new(scene, style, View::new(*camera, SIZE));
+        let Rendered { image, plan, why_cpu } = executor.render_with_fallback(backend, &picture, &share_of)?;
         let time_ms = start.elapsed().as_secs_f64() * 1e3;
         let path = dir.join(format!("{}.png", style.name));
         image.save_png(&path)?;

@@ -18,33 +18,37 @@
 //!   picture back from a device, would block until the browser has answered, and panic; [`executor::Backend::Cpu`] does not.
 #![warn(missing_docs)]
 
-pub mod band_truth;
 pub mod camera;
+pub mod capabilities;
 pub mod check;
 pub mod color;
 pub mod compare;
 pub mod cpu;
+mod derived;
+pub mod edge_lines;
 pub mod error;
 pub mod executor;
 pub mod gallery;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod hatch;
-pub mod hatch_truth;
-pub mod image_ink;
+pub mod image_lines;
 pub mod inspect;
-pub mod light;
-pub mod line_truth;
-pub mod normal_use;
+pub mod lights;
+pub mod picture;
 pub mod picture_limits;
 pub mod plan;
+pub mod printed_fins;
 pub mod rays;
 pub mod scene;
+mod schema;
+pub mod shade;
 pub mod shadow;
-pub mod shadow_truth;
 pub mod style;
 pub mod suggest;
 pub mod texture;
+pub mod truth;
+pub mod view;
 
 /// The crate of the vectors and matrices in this API.
 pub use glam;

@@ -1,9 +1,9 @@
 //! How large a picture may be: said before anything is allocated.
 
 use crate::error::HarnessError;
-use crate::image_ink::InkScale;
+use crate::image_lines::InkScale;
 use crate::shadow::ShadowMethod;
-use crate::style::{Lines, Style};
+use crate::style::Style;
 
 /// Px along a side.
 pub const LARGEST_SIDE: u32 = 65_536;
@@ -31,13 +31,11 @@ const STENCIL_BYTES: u64 = 9;
 /// A software adapter's memory is the machine's, too.
 pub fn picture_bytes(style: &Style, (width, height): (u32, u32), samples: u32, on_device: bool) -> u64 {
     let pixels = u64::from(width) * u64::from(height);
-    let ink = match &style.lines {
-        Some(Lines::Image(ink)) => match ink.scale {
-            InkScale::Half => INK_BYTES / 4,
-            InkScale::One => INK_BYTES,
-            InkScale::Double => 4 * INK_BYTES,
-        },
-        _ => 0,
+    let ink = match style.lines.image.map(|ink| ink.scale) {
+        Some(InkScale::Half) => INK_BYTES / 4,
+        Some(InkScale::One) => INK_BYTES,
+        Some(InkScale::Double) => 4 * INK_BYTES,
+        None => 0,
     };
     let (mut stencil, mut map) = (0, 0);
     match style.shadow.map(|shadow| shadow.method) {

@@ -1,38 +1,32 @@
 //! Which passes a picture needs, and no more.
+//!
+//! A plan is made of a scene, a style, a view and what the executor can do, and holds everything resolved: an executor never
+//! asks the style. What is derived of the scene alone is found once and shared, so that planning a further view of the same
+//! scene costs little.
 
 use crate::camera::Camera;
+use crate::capabilities::Capabilities;
+use crate::edge_lines::{EdgeLineMethod, EdgeLinePlan};
 use crate::error::HarnessError;
-use crate::hatch::HatchPlan;
-use crate::image_ink::{ImageInk, ImagePlan, InkScale};
+use crate::hatch::{HatchMapping, HatchPlan};
+use crate::image_lines::{ImagePlan, InkScale};
+use crate::lights::{casting_light, lights_in_world};
+use crate::picture_limits::check_picture;
+use crate::printed_fins::PrintedFinPlan;
 use crate::scene::Scene;
-use crate::shadow::{ShadowLines, ShadowMethod, ShadowPlan};
-use crate::style::{HatchMapping, Lines, Shade, Style};
-use glam::DVec4;
+use crate::shade::Shade;
+use crate::shadow::{ShadowLines, ShadowPlan, ShadowTechnique};
+use crate::style::Style;
+use crate::view::View;
+use glam::{DVec3, Vec3};
 use npr_imagespace::artist::LineKind as InnerLines;
 use npr_mesh::AlphaMode;
 use npr_outline::LineKind;
-use npr_outline::contour::{ContourEdges, ContourOptions, contour_edges};
-use npr_outline::fin_printed::{PrintedFins, printed_fins};
 use npr_toon::normal::NormalUse;
-use npr_toon::source::LightPlace;
+use npr_toon::source::{Light, LightPlace, combined_color};
 use std::fmt;
 
-/// How lines are found and drawn on a device.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum LineMethod {
-    /// [`LineMethod::OnDevice`] where the adapter is hardware, [`LineMethod::Strokes`] where it is software;
-    /// [`LineMethod::Rectangles`] where it can do neither.
-    #[default]
-    Auto,
-    /// A scan on the CPU, and the lines that it finds drawn as rectangles.
-    Rectangles,
-    /// A scan on the CPU, and the lines that it finds drawn by compute shaders.
-    Strokes,
-    /// A compute pass that finds the lines, and an indirect draw of rectangles.
-    OnDevice,
-}
-
-/// A pass and why it is there, or why not.
+/// A pass, or a method, and why it is taken or left out.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Reason {
     /// The pass.
@@ -41,155 +35,324 @@ pub struct Reason {
     pub why: String,
 }
 
+/// How surfaces are painted.
+#[derive(Clone, Debug)]
+pub struct PaintPlan {
+    /// The shade, never [`Shade::Paper`].
+    pub shade: Shade,
+    /// How the three normals of a triangle are used.
+    pub normals: NormalUse,
+    /// As many as the shade knows, in the space of the scene's positions.
+    pub lights: Vec<Light>,
+    /// The colour of all of them.
+    pub light_color: DVec3,
+    /// Whether light takes more than normals at pixels and directions that are the same everywhere: positions, or light
+    /// that is computed at vertices.
+    pub interpolates_light: bool,
+    /// What strokes need, where surfaces are hatched.
+    pub hatch: Option<HatchPlan>,
+}
+
 /// The passes of a picture, decided once for both executors.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// Whether surfaces are painted at all; otherwise only their depth is needed.
-    pub painted: bool,
-    /// Whether light is more than normals at pixels and directions that are the same everywhere.
-    pub lit: bool,
-    /// Whether some material looks up a texture or has vertex colours.
-    pub textured: bool,
+    /// Where the picture is taken from, and its size.
+    pub view: View,
+    /// Display-referred colour of what no surface covers.
+    pub paper: Vec3,
+    /// How surfaces are painted; `None` where they are left as paper.
+    pub paint: Option<PaintPlan>,
+    /// Whether surfaces are drawn into the picture, if only for their depth.
+    pub draws_surfaces: bool,
+    /// Whether texture coordinates, textures or vertex colours are read at all.
+    pub looks_up: bool,
     /// Whether some material is cut out by alpha.
     pub cut_out: bool,
     /// Whether some material is blended over what is behind it.
     pub blended: bool,
-    /// Whether faces turned away are left out although their material is double-sided: they cannot be seen.
+    /// Whether back faces are left out although their material is double-sided: they cannot be seen.
     pub cull_back: bool,
-    /// The edges that can be lines, where fins are drawn.
-    pub contours: Option<ContourEdges>,
-    /// A fin for every edge, where the printed form is drawn.
-    pub printed_fins: Option<PrintedFins>,
-    /// What lines in the image need, where they are asked for.
+    /// Fins as printed.
+    pub printed_fins: Option<PrintedFinPlan>,
+    /// Lines along edges.
+    pub edge_lines: Option<EdgeLinePlan>,
+    /// Lines found in the image.
     pub image: Option<ImagePlan>,
-    /// What strokes need, where surfaces are hatched.
-    pub hatch: Option<HatchPlan>,
-    /// What shadows need, where something is seen of them.
+    /// Shadows, where something is seen of them.
     pub shadow: Option<ShadowPlan>,
+    /// Whether tonal art maps of six tones are stored as half floats on a device, else as bytes.
+    pub half_float_maps: bool,
     /// Passes, in order.
     pub passes: Vec<Reason>,
     /// What was left out.
     pub left_out: Vec<Reason>,
+    /// By which methods an adapter makes passes; none for the CPU, which has one for each.
+    pub methods: Vec<Reason>,
 }
 
 impl Plan {
-    /// Decides what a style needs for a scene seen by a camera.
+    /// Decides what a style needs for a scene in a view, and how an executor makes it.
     ///
     /// # Errors
     /// What is wrong with the style, [`Style::validate`], with its lines, or with its map; [`HarnessError::ClippedEdges`],
-    /// [`HarnessError::ShadowMapLight`].
-    pub fn new(scene: &Scene, style: &Style, camera: &Camera) -> Result<Self, HarnessError> {
+    /// [`HarnessError::ShadowMapLight`]; [`HarnessError::Size`] and [`HarnessError::PictureMemory`]; and what an adapter
+    /// cannot do: [`HarnessError::TextureTooLarge`], [`HarnessError::ParallelVolumes`].
+    pub fn new(scene: &Scene, style: &Style, view: &View, capabilities: &Capabilities) -> Result<Self, HarnessError> {
         style.validate()?;
-        let model = &scene.model;
-        let painted = style.shade != Shade::Paper;
-        let used = |test: &dyn Fn(&npr_mesh::Material) -> bool| model.materials.iter().any(test);
-        let textured = painted && (used(&|m| m.texture.is_some()) || !model.colors.is_empty());
-        let placed = style.lights.iter().any(|light| matches!(light.light.place, LightPlace::Positional { .. }));
-        let two = style.lights.len() > 1;
-        let each = matches!(style.shade, Shade::Painter(_));
-        // Several lights taken together are a direction.
-        let hatch = if let Shade::Hatch(shade) = &style.shade { Some(HatchPlan::new(scene, shade)?) } else { None };
-        let shows_light = painted && style.shade != Shade::Normals;
-        let lit = shows_light && (hatch.is_some() || style.normals != NormalUse::PerPixel || placed && (each || !two));
-        let cut_out = used(&|m| matches!(m.alpha_mode, AlphaMode::Mask { .. }));
-        let blended = painted && scene.has_blend();
-        let cull_back = scene.closed && scene.clip.is_none() && !sees_the_inside(scene, camera);
-        if scene.clip.is_some() && matches!(style.lines, Some(Lines::Fins(_) | Lines::Printed { .. })) {
+        let view = View { samples: view.samples.max(1), ..*view };
+        check_picture(style, view.size, view.samples, capabilities.is_adapter(), capabilities.memory_bytes)?;
+        let lines = &style.lines;
+        if scene.clip.is_some() && (lines.edges.is_some() || lines.printed.is_some()) {
             return Err(HarnessError::ClippedEdges { style: style.name.clone() });
         }
-        let drawn = matches!(&style.lines, Some(Lines::Image(ink)) if ink.shadows != ShadowLines::None);
-        let shadow = match &style.shadow {
-            Some(shadow) if painted || drawn => Some(ShadowPlan::new(scene, style, shadow, camera)?),
-            _ => None,
+        let used = |test: &dyn Fn(&npr_mesh::Material) -> bool| scene.model.materials.iter().any(test);
+        let paint = match style.shade {
+            Shade::Paper => None,
+            _ => Some(PaintPlan::new(scene, style, &view.camera)?),
         };
-        let mut passes = Vec::new();
-        let mut left_out = Vec::new();
-        let mut add = |there: bool, pass, why: &str, why_not: &str| {
-            let (list, why) = if there { (&mut passes, why) } else { (&mut left_out, why_not) };
+        let image = match &lines.image {
+            Some(ink) => Some(ImagePlan::new(scene, ink, style.crease_angle_rad, &view)?),
+            None => None,
+        };
+        let edge_lines = match &lines.edges {
+            Some(edges) => {
+                let method = |bytes| capabilities.edge_lines(bytes).0;
+                Some(EdgeLinePlan::new(scene, edges, style.crease_angle_rad, method)?)
+            }
+            None => None,
+        };
+        let printed_fins = lines.printed.map(|printed| PrintedFinPlan::new(scene, printed));
+        let cut_out = used(&|m| matches!(m.alpha_mode, AlphaMode::Mask { .. }));
+        let textured = paint.is_some() && (used(&|m| m.texture.is_some()) || !scene.model.colors.is_empty());
+        let says_lines = |image: &ImagePlan| image.line_kinds.iter().any(|&kind| kind != InnerLines::Normals);
+        let beside_picture = image.as_ref().is_some_and(|image| !image.own_surfaces);
+        let mut plan = Self {
+            view,
+            paper: style.paper,
+            draws_surfaces: paint.is_some() || edge_lines.is_some() || printed_fins.is_some() || beside_picture,
+            looks_up: textured || cut_out || image.as_ref().is_some_and(says_lines),
+            cut_out,
+            blended: paint.is_some() && scene.has_blend(),
+            cull_back: scene.closed && scene.clip.is_none() && !sees_the_inside(scene, &view.camera),
+            shadow: None,
+            half_float_maps: capabilities.half_float_maps().0,
+            passes: Vec::new(),
+            left_out: Vec::new(),
+            methods: Vec::new(),
+            paint,
+            printed_fins,
+            edge_lines,
+            image,
+        };
+        plan.shadow = plan.shadow(scene, style, capabilities)?;
+        if capabilities.is_adapter() {
+            plan.methods = plan.methods(scene, capabilities)?;
+        }
+        plan.explain(style, textured);
+        Ok(plan)
+    }
+
+    fn shadow(
+        &self,
+        scene: &Scene,
+        style: &Style,
+        capabilities: &Capabilities,
+    ) -> Result<Option<ShadowPlan>, HarnessError> {
+        let drawn = self.image.as_ref().filter(|image| image.ink.shadows != ShadowLines::None);
+        let in_lines = drawn.is_some_and(|image| image.own_surfaces);
+        let in_picture = self.paint.is_some() || drawn.is_some() && !in_lines;
+        let Some(shadow) = style.shadow.as_ref().filter(|_| in_picture || in_lines) else { return Ok(None) };
+        let light = casting_light(&style.lights, scene, &self.view.camera);
+        let (method, float_depth) = (capabilities.volumes().0, capabilities.float_stencil);
+        let technique = ShadowTechnique::new(scene, shadow, light, method, float_depth)?;
+        Ok(Some(ShadowPlan { light, terminator: shadow.terminator, technique, in_picture, in_lines }))
+    }
+
+    /// By which methods an adapter makes the passes, and why; or why it cannot.
+    fn methods(&self, scene: &Scene, capabilities: &Capabilities) -> Result<Vec<Reason>, HarnessError> {
+        capabilities.check_size("the picture", self.view.size)?;
+        capabilities.check_size("the picture's samples", self.view.sampled_size())?;
+        let mut methods = Vec::new();
+        let mut add = |pass, why: &str| methods.push(Reason { pass, why: why.to_owned() });
+        if let Some(EdgeLinePlan { contours, .. }) = &self.edge_lines {
+            add("edge lines", &capabilities.edge_lines(contours.device_bytes(&scene.model.positions)).1);
+        }
+        if let Some(image) = &self.image {
+            capabilities.check_size("the ink", image.size)?;
+        }
+        match self.shadow.as_ref().map(|shadow| &shadow.technique) {
+            Some(ShadowTechnique::Volumes { float_depth, .. }) => {
+                if self.view.is_parallel() && !capabilities.unclipped_depth {
+                    return Err(HarnessError::ParallelVolumes);
+                }
+                add("shadow volumes", capabilities.volumes().1);
+                add(
+                    "shadow volumes",
+                    match float_depth {
+                        true => "depths of 32-bit floats",
+                        false => "depths of 24 bits: the adapter has no stencil beside floats",
+                    },
+                );
+            }
+            Some(&ShadowTechnique::Map { side }) => {
+                capabilities.check_size("the shadow map", (side, side))?;
+                add("shadow map", "depths of 32-bit floats");
+            }
+            None => {}
+        }
+        if let Some(hatch) = self.hatch() {
+            let side = hatch.tam()?.side;
+            capabilities.check_size("the tonal art map", (side, side))?;
+            add("tonal art map", capabilities.half_float_maps().1);
+        }
+        if self.looks_up {
+            for texture in &scene.model.textures {
+                capabilities.check_size("a texture of the model", (texture.width, texture.height))?;
+            }
+        }
+        if !capabilities.exact_depth {
+            add("depth", "multiples of 2^-24: OpenGL brings depths from 0..1 to -1..1 and back");
+        }
+        Ok(methods)
+    }
+
+    /// The same plan for an adapter whose driver refuses compute shaders after all.
+    pub(crate) fn without_compute(&self, no_compute: &'static str) -> Self {
+        let mut plan = self.clone();
+        if let Some(edge_lines) = &mut plan.edge_lines {
+            edge_lines.method = EdgeLineMethod::OnCpu;
+        }
+        for method in plan.methods.iter_mut().filter(|method| method.pass == "edge lines") {
+            method.why = format!("found on the CPU, drawn as rectangles: {no_compute}");
+        }
+        plan
+    }
+
+    /// Whether a pass runs as a compute shader.
+    pub(crate) fn computes(&self) -> bool {
+        self.edge_lines.as_ref().is_some_and(|lines| lines.method == EdgeLineMethod::OnDevice)
+    }
+
+    /// What strokes need, where surfaces are hatched.
+    pub fn hatch(&self) -> Option<&HatchPlan> {
+        self.paint.as_ref().and_then(|paint| paint.hatch.as_ref())
+    }
+
+    /// The edges that are lines in the plan's view, and how many there are of each [`LineKind`].
+    pub fn lines(&self) -> (Vec<u32>, [usize; LineKind::ALL.len()]) {
+        self.edge_lines.as_ref().map_or_else(Default::default, |lines| lines.lines(self.view.camera.homogeneous_eye()))
+    }
+
+    /// Lists the passes, and those that are left out, with reasons.
+    fn explain(&mut self, style: &Style, textured: bool) {
+        let (mut passes, mut left_out) = (Vec::new(), Vec::new());
+        let mut add = |taken: bool, pass, why: &str, why_not: &str| {
+            let (list, why) = if taken { (&mut passes, why) } else { (&mut left_out, why_not) };
             list.push(Reason { pass, why: why.to_owned() });
         };
-        let volumes = shadow.as_ref().is_some_and(|shadow| shadow.style.method == ShadowMethod::Volumes);
+        let technique = self.shadow.as_ref().map(|shadow| &shadow.technique);
+        let volumes = matches!(technique, Some(ShadowTechnique::Volumes { .. }));
+        let map = matches!(technique, Some(ShadowTechnique::Map { .. }));
         let no_shadow = if style.shadow.is_some() { "the style shows nothing of it" } else { "no light casts shadows" };
-        let no_volumes = if shadow.is_some() { "the style asks for a map" } else { no_shadow };
+        let no_volumes = if map { "the style asks for a map" } else { no_shadow };
         add(volumes, "geometry: depth, before all", "shadows fall on what is seen", no_volumes);
         add(volumes, "shadow volumes into a stencil", "a light casts shadows", no_volumes);
-        add(
-            shadow.is_some() && !volumes,
-            "shadow map",
-            "a light casts shadows, and the style asks for a map",
-            if volumes { "volumes are exact" } else { no_shadow },
-        );
-        let outlined = style.lines.is_some();
+        let no_map = if volumes { "volumes are exact" } else { no_shadow };
+        add(map, "shadow map", "a light casts shadows, and the style asks for a map", no_map);
+
+        let painted = self.paint.is_some();
         add(painted, "geometry: colour and depth", "surfaces are painted", "the style paints no surface");
-        let image = if let Some(Lines::Image(ink)) = &style.lines { Some(ink) } else { None };
-        let another_size = image.is_some_and(|ink| ink.scale != InkScale::One);
         add(
-            !painted && outlined && !another_size,
+            !painted && self.draws_surfaces,
             "geometry: depth alone",
             "lines are hidden behind surfaces",
             if painted { "colour is drawn with it" } else { "nothing in the picture itself needs it" },
         );
         add(textured, "texture and vertex colour lookups", "materials have them", "no material needs them");
-        add(cut_out, "alpha test", "materials have a cutoff", "no material has a cutoff");
-        add(blended, "blended surfaces, back to front", "materials are blended", "no material is blended");
+        add(self.cut_out, "alpha test", "materials have a cutoff", "no material has a cutoff");
+        add(self.blended, "blended surfaces, back to front", "materials are blended", "no material is blended");
         add(
-            !cull_back,
-            "faces turned away",
+            !self.cull_back,
+            "back faces",
             "the model is open, cut, or seen from inside",
             "the model is closed: they are hidden",
         );
-        let fins = matches!(style.lines, Some(Lines::Fins(_)));
-        add(fins, "line coverage and ink", "the style draws lines", "the style draws no such lines");
-        let printed = matches!(style.lines, Some(Lines::Printed { .. }));
         add(
-            printed,
+            self.printed_fins.is_some(),
             "printed fins, all edges",
             "the style asks for the printed form",
             "only edges that are lines are sent",
         );
-        let one_pass = image.is_some() && !another_size;
         add(
-            one_pass,
+            self.edge_lines.is_some(),
+            "line coverage and ink",
+            "the style draws lines along edges",
+            "the style draws no line along an edge",
+        );
+
+        let image = self.image.as_ref();
+        let no_lines = "no line is found in the image";
+        let own = image.filter(|image| image.own_surfaces);
+        let (other_size, why_own) = match own {
+            Some(own) if own.ink.scale == InkScale::One => (false, "the picture has several samples a pixel"),
+            Some(_) => (true, "the ink has another size than the picture"),
+            None => (false, ""),
+        };
+        add(
+            image.is_some() && own.is_none(),
             "normal, region, depth beside colour",
             "lines are found in the image",
-            if another_size { "they are drawn at another size" } else { "no line is found in the image" },
+            if own.is_some() { "they are drawn by themselves" } else { no_lines },
         );
         add(
-            another_size,
+            own.is_some(),
             "geometry: normal, region, depth",
-            "the ink has another size than the picture",
-            if image.is_some() { "the ink has the picture's size" } else { "no line is found in the image" },
+            why_own,
+            if image.is_some() { "they are drawn beside the picture" } else { no_lines },
         );
-        let apart_brush = |ink: &ImageInk| matches!(ink.shadows, ShadowLines::Apart { brush: Some(_), .. });
-        let thick = image.is_some_and(|ink| ink.brush.is_some() || apart_brush(ink));
-        let in_one = one_pass && !thick;
-        let apart = image.is_some() && !in_one;
-        let none = if image.is_some() { "the ink is needed by itself" } else { "no line is found in the image" };
-        add(in_one, "filter and composite in one", "nothing needs the ink in between", none);
+        let stored = image.is_some_and(|image| image.passes().any(|lines| image.is_stored(lines)));
+        let not_stored = if image.is_some() { "the ink is needed by itself" } else { no_lines };
+        add(image.is_some() && !stored, "filter and composite in one", "nothing needs the ink in between", not_stored);
+        let shadow_lines = image.is_some_and(|image| image.shadow_lines.is_some());
+        let drawn = image.is_some_and(|image| image.ink.shadows != ShadowLines::None);
         add(
-            image.is_some_and(|ink| matches!(ink.shadows, ShadowLines::Apart { .. })),
+            shadow_lines,
             "filter for shadows",
             "their lines look different",
             if drawn { "the pass of the objects' lines finds them" } else { "shadows have no lines" },
         );
-        add(apart, "filter", "the ink is worked on before it is laid", "it is in the composite, or not there");
-        add(thick, "dilation by a disc", "the style has a brush", "lines are as wide as they are found");
-        add(another_size, "composite", "the ink has another size", "the pass before lays the ink, or there is none");
         add(
-            painted && two && each,
+            stored,
+            "filter",
+            "the ink is worked on before it is composited",
+            "it is part of the composite, or not needed",
+        );
+        let thick = image.is_some_and(ImagePlan::has_dilation);
+        add(thick, "dilation by a disc", "the style widens lines", "lines are as wide as they are found");
+        add(
+            other_size,
+            "composite",
+            "the ink has another size than the picture",
+            "the pass before composites the ink, or there is none",
+        );
+
+        let paint = self.paint.as_ref();
+        let two = style.lights.len() > 1;
+        add(
+            paint.is_some_and(|paint| paint.lights.len() > 1),
             "second light",
             "the ramp has an axis for it",
             if painted && two { "the shade knows one: the two are taken together" } else { "there is one light" },
         );
         add(
-            lit,
+            paint.is_some_and(|paint| paint.interpolates_light),
             "positions or light between vertices",
             "a light is near, strokes lie on surfaces, or the style asks for vertices' light",
             "the light comes from far away, and meets normals at pixels",
         );
-        let mapping = hatch.as_ref().map(|hatch| hatch.mapping);
+        let mapping = self.hatch().map(|hatch| hatch.shade.mapping);
         add(
-            hatch.is_some(),
+            mapping.is_some(),
             "tonal art map",
             match mapping {
                 Some(HatchMapping::Coordinates) => "surfaces are hatched, by texture coordinates",
@@ -204,56 +367,38 @@ impl Plan {
             "strokes follow the form",
             "no stroke follows the form",
         );
-        add(false, "multisampling", "", "lines and band borders carry their own coverage");
-        let contours = match &style.lines {
-            Some(Lines::Fins(look)) => {
-                look.validate()?;
-                let options = ContourOptions { crease_angle_rad: style.crease_angle_rad, material_borders: false };
-                Some(contour_edges(model, &scene.edges, &options)?)
-            }
+        add(
+            self.view.samples > 1,
+            "resolve",
+            "the picture has several samples a pixel",
+            "lines and band borders carry their own coverage",
+        );
+        (self.passes, self.left_out) = (passes, left_out);
+    }
+}
+
+impl PaintPlan {
+    fn new(scene: &Scene, style: &Style, camera: &Camera) -> Result<Self, HarnessError> {
+        let model = style.shade.model();
+        let hatch = match &style.shade {
+            Shade::Hatch(shade) => Some(HatchPlan::new(scene, shade, style.normals == NormalUse::PerVertex)?),
             _ => None,
         };
-        let printed_fins = printed.then(|| printed_fins(model, &scene.edges));
-        let image = match &style.lines {
-            Some(Lines::Image(ink)) => Some(ImagePlan::new(scene, ink, style.crease_angle_rad, camera)?),
-            _ => None,
-        };
+        let lights = lights_in_world(&style.lights, model.lights(), scene, camera);
+        let is_near = |light: &Light| matches!(light.place, LightPlace::Positional { .. });
+        let interpolates_light = !model.is_normals()
+            && (hatch.is_some()
+                || style.normals != NormalUse::PerPixel
+                || model.needs_position()
+                || lights.iter().any(is_near));
         Ok(Self {
-            painted,
-            lit,
-            textured,
-            cut_out,
-            blended,
-            cull_back,
-            contours,
-            printed_fins,
-            image,
+            shade: style.shade.clone(),
+            normals: style.normals,
+            light_color: combined_color(&lights),
+            lights,
+            interpolates_light,
             hatch,
-            shadow,
-            passes,
-            left_out,
         })
-    }
-
-    /// Whether texture coordinates, textures or vertex colours are read at all.
-    pub fn looks_up(&self) -> bool {
-        let says_lines = |image: &ImagePlan| image.line_kinds.iter().any(|&kind| kind != InnerLines::Normals);
-        self.textured || self.cut_out || self.image.as_ref().is_some_and(says_lines)
-    }
-
-    /// The lines for an eye, and how many there are of each [`LineKind`].
-    pub fn lines(&self, eye: DVec4) -> (Vec<u32>, [usize; 4]) {
-        let mut lines = Vec::new();
-        let mut counts = [0; 4];
-        if let Some(contours) = &self.contours {
-            contours.scan(eye, &mut lines);
-            let eye = contours.local_eye(eye);
-            for kind in lines.iter().filter_map(|&line| contours.kind(line as usize, eye)) {
-                counts[kind as usize] += 1;
-            }
-        }
-        debug_assert_eq!(LineKind::ALL.len(), counts.len());
-        (lines, counts)
     }
 }
 
@@ -272,6 +417,9 @@ impl fmt::Display for Plan {
         }
         for reason in &self.left_out {
             writeln!(f, "  without {:<36} {}", reason.pass, reason.why)?;
+        }
+        for reason in &self.methods {
+            writeln!(f, "  method  {:<36} {}", reason.pass, reason.why)?;
         }
         Ok(())
     }

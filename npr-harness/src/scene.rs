@@ -1,22 +1,21 @@
 //! What a picture shows: a model, ready for both executors, and its light.
 
 use crate::color::encode_rgb;
+use crate::derived::Derived;
 use crate::error::HarnessError;
 use crate::rays::RayCaster;
 use crate::suggest::nearest;
 use crate::texture::MipMapped;
 use glam::{DVec3, DVec4, Vec3};
-use npr_hatch::HatchError;
-use npr_hatch::field::{FieldOptions, LineTensor, direction_field};
 use npr_imagespace::artist::LineKind;
 use npr_mesh::edges::{self, EdgeKind, EdgeOptions, Edges};
 use npr_mesh::{AlphaMode, Model};
-use npr_outline::shadow_volume::{ShadowCasters, shadow_casters};
 use std::sync::OnceLock;
 
 /// A model with everything that is derived from it once.
 pub struct Scene {
-    /// Its positions are relative to [`Scene::origin`], and multiplied by [`Scene::scale`].
+    /// Its positions are relative to [`Scene::origin`], and multiplied by [`Scene::scale`]. It must not be changed: what is
+    /// derived from it is kept.
     pub model: Model,
     /// What the positions are relative to, in the model's own units: 0, or the model's middle where that is far from 0,
     /// since f32 positions keep their precision only near 0.
@@ -36,13 +35,13 @@ pub struct Scene {
     /// Per material where its inner lines come from, in styles that ask: [`ImageInk::artist`]. All from their normals
     /// to begin with.
     ///
-    /// [`ImageInk::artist`]: crate::image_ink::ImageInk::artist
+    /// [`ImageInk::artist`]: crate::image_lines::ImageInk::artist
     pub line_kinds: Vec<LineKind>,
     rays: OnceLock<RayCaster>,
     boundary_sides: OnceLock<Vec<u8>>,
     bounds: OnceLock<Option<(Vec3, Vec3)>>,
-    directions: OnceLock<Vec<LineTensor>>,
-    casters: OnceLock<ShadowCasters>,
+    /// What techniques derive from it.
+    pub(crate) derived: Derived,
     mip_mapped: OnceLock<Vec<MipMapped>>,
 }
 
@@ -78,8 +77,7 @@ impl Scene {
             rays: OnceLock::new(),
             boundary_sides: OnceLock::new(),
             bounds: if moved { OnceLock::new() } else { OnceLock::from(bounds) },
-            directions: OnceLock::new(),
-            casters: OnceLock::new(),
+            derived: Derived::default(),
             mip_mapped: OnceLock::new(),
         }
     }
@@ -168,33 +166,6 @@ impl Scene {
     /// Whether any face is blended over what is behind it.
     pub fn has_blend(&self) -> bool {
         self.model.materials.iter().any(|m| m.alpha_mode == AlphaMode::Blend)
-    }
-
-    /// Per vertex the direction in which strokes follow the form, found when it is first asked for.
-    ///
-    /// # Errors
-    /// Those of [`direction_field`].
-    pub fn directions(&self) -> Result<&[LineTensor], HatchError> {
-        if let Some(directions) = self.directions.get() {
-            return Ok(directions);
-        }
-        let Model { positions, normals, faces, .. } = &self.model;
-        let seams = &self.edges.representative;
-        let found = direction_field(positions, normals, faces, seams, &FieldOptions::default())?;
-        Ok(self.directions.get_or_init(|| found))
-    }
-
-    /// What casts shadows, found when it is first asked for.
-    pub fn casters(&self) -> &ShadowCasters {
-        self.casters.get_or_init(|| {
-            let model = &self.model;
-            if model.face_polygon.is_empty() {
-                return shadow_casters(model, &self.edges);
-            }
-            // With the diagonals: a polygon may be warped.
-            let found = edges::find(&model.positions, &model.faces, &[], &[], &EdgeOptions::default());
-            shadow_casters(model, &found)
-        })
     }
 
     /// The positions of all vertices that are corners of faces, each once.

@@ -4,19 +4,23 @@
 
 mod common;
 
-use common::device;
+use common::{device, planned};
 use glam::Vec4;
 use npr_harness::camera::{Camera, Framing};
+use npr_harness::capabilities::{Capabilities, ExecutorKind};
 use npr_harness::check::{PLACES, Reference, Shot, magnitude};
-use npr_harness::compare::{Image, Tolerance, compare};
-use npr_harness::cpu::Sight;
+use npr_harness::compare::{Tolerance, compare};
+use npr_harness::cpu::PrimaryHits;
+use npr_harness::edge_lines::EdgeLineMethod;
 use npr_harness::error::HarnessError;
-use npr_harness::executor::{Backend, CpuReason, Executor, GpuPolicy, Picture};
+use npr_harness::executor::{Backend, CpuReason, Executor, GpuPolicy, Picture, Rendered};
 use npr_harness::gallery::still_life_camera;
-use npr_harness::gpu::{Capabilities, DeviceLimits, GpuAdapter, GpuContext, GpuError, GpuRenderer};
-use npr_harness::plan::{LineMethod, Plan};
+use npr_harness::gpu::{self, DeviceLimits, GpuAdapter, GpuContext, GpuRenderer};
+use npr_harness::picture::Image;
+use npr_harness::plan::Plan;
 use npr_harness::scene::Scene;
 use npr_harness::style::{Style, style};
+use npr_harness::view::View;
 use npr_mesh::{AlphaMode, Material, Texture, Wrap, embedded};
 
 const SIZE: (u32, u32) = (192, 108);
@@ -49,15 +53,14 @@ impl Shown {
 
     /// Compares pictures by a device, of which only some capabilities are used, with the reference.
     fn check<'a>(&self, context: &GpuContext, style: &Style, cases: impl IntoIterator<Item = (&'a str, Capabilities)>) {
-        let plan = Plan::new(&self.scene, style, &self.camera).expect("a good style");
-        let sight = Sight::kept(&self.scene, &self.camera, SIZE, PLACES);
+        let plan = planned(&self.scene, style, &self.camera, SIZE);
+        let hits = PrimaryHits::kept(&self.scene, View::new(self.camera, SIZE), PLACES);
         let magnitude = magnitude(&plan);
-        let mut reference =
-            Reference::new(Shot { sight: &sight, style, plan: &plan, samples: 1 }).expect("the sizes are one");
+        let mut reference = Reference::new(Shot { hits: &hits, style, plan: &plan }).expect("the sizes are one");
         let tolerance = [Tolerance { magnitude, count: 0 }];
         let mut closer = false;
         for (what, capabilities) in cases {
-            let image = self.render(context, &capabilities, style, &plan).expect("a picture");
+            let image = self.render(context, &capabilities, style).expect("a picture");
             let mut comparison = compare(&reference.image, &image, &reference.exempt).expect("one size");
             if !comparison.passes(&tolerance) && !closer {
                 reference.look_closer().expect("one size");
@@ -71,18 +74,22 @@ impl Shown {
         }
     }
 
-    fn render(
+    fn plan(&self, style: &Style, capabilities: &Capabilities) -> Result<Plan, HarnessError> {
+        self.plan_of(style, capabilities, SIZE, 1)
+    }
+
+    fn plan_of(
         &self,
-        context: &GpuContext,
-        capabilities: &Capabilities,
         style: &Style,
-        plan: &Plan,
-    ) -> Result<Image, GpuError> {
-        let renderer = GpuRenderer::with_capabilities(context, capabilities.clone());
-        let targets = renderer.targets(SIZE.0, SIZE.1)?;
-        let uploaded = renderer.upload(&self.scene, plan, LineMethod::Auto)?;
-        renderer.draw(&self.scene, &uploaded, style, plan, &self.camera, &targets)?;
-        renderer.read(&targets)
+        capabilities: &Capabilities,
+        size: (u32, u32),
+        samples: u32,
+    ) -> Result<Plan, HarnessError> {
+        Plan::new(&self.scene, style, &View { samples, ..View::new(self.camera, size) }, capabilities)
+    }
+
+    fn render(&self, context: &GpuContext, capabilities: &Capabilities, style: &Style) -> Result<Image, HarnessError> {
+        gpu::render(context, &self.scene, &self.plan(style, capabilities)?)
     }
 }
 
@@ -93,31 +100,27 @@ fn named(name: &str) -> Style {
 /// What is taken away, and what the methods of some style then say.
 type Case = (&'static str, fn(&mut Capabilities), &'static str, &'static str);
 
-const CASES: [Case; 9] = [
-    ("nothing", |c| c.software = false, "cartoon", "found and drawn on the device"),
-    ("compute shaders", |c| (c.software, c.compute) = (false, false), "cartoon", "the adapter has no compute shaders"),
+const HARDWARE: ExecutorKind = ExecutorKind::HardwareAdapter;
+
+const CASES: [Case; 8] = [
+    ("nothing", |c| c.kind = HARDWARE, "cartoon", "found and drawn on the device"),
+    ("compute shaders", |c| (c.kind, c.compute) = (HARDWARE, false), "cartoon", "the adapter has no compute shaders"),
     (
         "storage in vertex shaders",
-        |c| (c.software, c.vertex_storage) = (false, false),
+        |c| (c.kind, c.vertex_storage) = (HARDWARE, false),
         "cartoon",
         "no storage buffers in vertex shaders",
     ),
     (
         "indirect draws",
-        |c| (c.software, c.indirect_draws) = (false, false),
+        |c| (c.kind, c.indirect_draws) = (HARDWARE, false),
         "cartoon",
         "no draws with arguments in a buffer",
     ),
-    (
-        "pictures written by compute shaders",
-        |c| (c.software, c.picture_storage) = (true, false),
-        "ink-image",
-        "cannot write pictures",
-    ),
     ("a stencil beside floats", |c| c.float_stencil = false, "toon-shadow", "no stencil beside floats"),
     ("depth as computed", |c| c.exact_depth = false, "lines", "multiples of 2^-24"),
-    ("a software adapter's filtering", |c| c.software = true, "hatch-planes", "half floats"),
-    ("hardware's filtering", |c| c.software = false, "hatch-planes", "bytes"),
+    ("a software adapter's filtering", |c| c.kind = ExecutorKind::SoftwareAdapter, "hatch-planes", "half floats"),
+    ("hardware's filtering", |c| c.kind = HARDWARE, "hatch-planes", "bytes"),
 ];
 
 #[test]
@@ -134,8 +137,7 @@ fn without_a_capability_the_picture_is_right_and_the_reason_named() {
     }
     for ((what, capabilities), (.., of_style, said)) in cases.iter().zip(CASES) {
         let style = named(of_style);
-        let plan = Plan::new(&shown.scene, &style, &shown.camera).expect("a good style");
-        let methods = capabilities.methods(&shown.scene, &plan, false, SIZE, 1).expect("a small picture");
+        let methods = shown.plan(&style, capabilities).expect("a small picture").methods;
         assert!(methods.iter().any(|method| method.why.contains(said)), "{what}: {methods:?}");
     }
 }
@@ -144,30 +146,31 @@ fn without_a_capability_the_picture_is_right_and_the_reason_named() {
 #[test]
 fn lines_are_found_on_the_cpu_for_the_reason_that_is_there() {
     let all = Capabilities {
-        software: false,
+        kind: HARDWARE,
         compute: true,
         no_compute: "the adapter has no compute shaders",
         vertex_storage: true,
         indirect_draws: true,
-        picture_storage: true,
         unclipped_depth: true,
         float_stencil: true,
         exact_depth: true,
         texture_px: 2048,
         storage_bytes: 1 << 27,
+        memory_bytes: 1 << 31,
     };
-    assert_eq!(all.lines(1 << 27), (LineMethod::OnDevice, "found and drawn on the device".to_owned()));
+    assert_eq!(all.edge_lines(1 << 27), (EdgeLineMethod::OnDevice, "found and drawn on the device".to_owned()));
     for (missing, reason) in [
         (Capabilities { storage_bytes: 1 << 19, ..all.clone() }, "so many edges"),
         (Capabilities { compute: false, ..all.clone() }, "compute shaders"),
         (Capabilities { vertex_storage: false, ..all.clone() }, "storage buffers in vertex shaders"),
         (Capabilities { indirect_draws: false, ..all.clone() }, "draws with arguments in a buffer"),
     ] {
-        let (method, why) = missing.lines(1 << 20);
-        assert_eq!(method, LineMethod::Rectangles, "{reason}");
+        let (method, why) = missing.edge_lines(1 << 20);
+        assert_eq!(method, EdgeLineMethod::OnCpu, "{reason}");
         assert!(why.contains(reason), "{why}");
     }
-    assert_eq!(Capabilities { software: true, ..all }.lines(1 << 20).0, LineMethod::Strokes);
+    let software = Capabilities { kind: ExecutorKind::SoftwareAdapter, ..all };
+    assert_eq!(software.edge_lines(1 << 20).0, EdgeLineMethod::OnCpu);
 }
 
 #[test]
@@ -179,10 +182,9 @@ fn shadow_volumes_in_a_parallel_view_need_unclipped_depth() {
         shown.check(&context, &style, [("parallel", context.capabilities.clone())]);
     }
     let clipped = Capabilities { unclipped_depth: false, ..context.capabilities.clone() };
-    let plan = Plan::new(&shown.scene, &style, &shown.camera).expect("a good style");
-    assert!(matches!(clipped.methods(&shown.scene, &plan, true, SIZE, 1), Err(GpuError::ParallelVolumes)));
-    clipped.methods(&shown.scene, &plan, false, SIZE, 1).expect("perspective views have no far plane");
-    assert!(matches!(shown.render(&context, &clipped, &style, &plan), Err(GpuError::ParallelVolumes)));
+    assert!(matches!(shown.plan(&style, &clipped), Err(HarnessError::ParallelVolumes)));
+    let perspective = Shown::new(still_life_camera());
+    perspective.plan(&style, &clipped).expect("perspective views have no far plane");
 }
 
 #[test]
@@ -196,30 +198,30 @@ fn under_webgl2_limits_pictures_are_right_or_the_texture_is_named() {
     }
     // Ink at twice the size of 1280 × 720.
     let style = named("ink-thick");
-    let plan = Plan::new(&shown.scene, &style, &shown.camera).expect("a good style");
-    let refused = context.capabilities.methods(&shown.scene, &plan, false, (1280, 720), 1);
-    let Err(GpuError::TooLarge { what: "the ink", width: 2560, height: 1440, limit: 2048 }) = refused else {
+    let refused = shown.plan_of(&style, capabilities, (1280, 720), 1);
+    let Err(HarnessError::TextureTooLarge { what: "the ink", width: 2560, height: 1440, limit: 2048 }) = refused else {
         panic!("{refused:?}")
     };
-    let (scene, camera) = (&shown.scene, &shown.camera);
-    let samples = |samples| context.capabilities.methods(scene, &plan, false, (960, 540), samples);
+    let samples = |samples| shown.plan_of(&named("cartoon"), &context.capabilities, (960, 540), samples);
     samples(2).expect("1920 × 1080 samples");
-    assert!(matches!(samples(3), Err(GpuError::TooLarge { what: "the picture's samples", .. })));
+    assert!(matches!(samples(3), Err(HarnessError::TextureTooLarge { what: "the picture's samples", .. })));
 
     // A driver that refuses what it promised: the next method is taken.
     let promised = &mut context.capabilities;
-    (promised.software, promised.compute) = (false, true);
+    (promised.kind, promised.compute) = (HARDWARE, true);
     (promised.vertex_storage, promised.indirect_draws, promised.storage_bytes) = (true, true, 1 << 27);
     let cartoon = named("cartoon");
-    let plan = Plan::new(scene, &cartoon, camera).expect("a good style");
-    let refused = shown.render(&context, &context.capabilities, &cartoon, &plan);
-    assert!(matches!(refused, Err(GpuError::Device { .. } | GpuError::Outline(_))), "{refused:?}");
-    let executor = Executor::Gpu(Box::new(context));
-    let picture = Picture { scene, style: &cartoon, plan: &plan, camera, size: SIZE, samples: 1 };
-    executor.render_picture(&picture, &|_| {}).expect("without compute shaders it can");
-    let methods = executor.methods(&picture).expect("a small picture");
-    let says = |text: &str| methods.iter().any(|method| method.why.contains(text));
-    assert!(says("found on the CPU") && says("the driver refused"), "{methods:?}");
+    let refused = shown.render(&context, &context.capabilities, &cartoon);
+    assert!(matches!(refused, Err(HarnessError::Device { .. } | HarnessError::Outline(_))), "{refused:?}");
+    let mut executor = Executor::Gpu(Box::new(context));
+    let picture = Picture::new(&shown.scene, &cartoon, View::new(shown.camera, SIZE));
+    for _ in 0..2 {
+        let rendered = executor.render_with_fallback(Backend::Auto, &picture, &|_| {});
+        let Rendered { plan, why_cpu, .. } = rendered.expect("without compute shaders it can");
+        assert_eq!(why_cpu, None);
+        let says = |text: &str| plan.methods.iter().any(|method| method.why.contains(text));
+        assert!(says("found on the CPU") && says("the driver refused"), "{:?}", plan.methods);
+    }
 }
 
 #[test]
@@ -228,17 +230,16 @@ fn what_a_device_cannot_make_the_cpu_makes_unless_a_device_is_required() {
     let scene = Scene::new(embedded::cube());
     let camera = Camera::framed(scene.corners(), 1100.0 / 8.0, &Framing::default());
     let style = named("ink-thick");
-    let plan = Plan::new(&scene, &style, &camera).expect("a good style");
-    let picture = Picture { scene: &scene, style: &style, plan: &plan, camera: &camera, size: (1100, 8), samples: 1 };
+    let picture = Picture::new(&scene, &style, View::new(camera, (1100, 8)));
     let mut executor = Executor::Gpu(Box::new(context));
     let required = GpuPolicy::from_env().expect("a policy") == GpuPolicy::Required;
     for backend in [Backend::Auto, Backend::Gpu] {
-        let done = executor.render_or_instead(backend, &picture, &|_| {});
+        let done = executor.render_with_fallback(backend, &picture, &|_| {});
         if required || backend == Backend::Gpu {
-            assert!(matches!(done, Err(HarnessError::Gpu(GpuError::TooLarge { what: "the ink", .. }))), "{backend:?}");
+            assert!(matches!(done, Err(HarnessError::TextureTooLarge { what: "the ink", .. })), "{backend:?}");
             continue;
         }
-        let (image, why) = done.expect("the CPU makes it");
+        let Rendered { image, why_cpu: why, .. } = done.expect("the CPU makes it");
         assert_eq!((image.width, image.height), (1100, 8));
         assert!(matches!(&why, Some(CpuReason::Unable(why)) if why.contains("2200 × 16")), "{why:?}");
     }
@@ -246,8 +247,9 @@ fn what_a_device_cannot_make_the_cpu_makes_unless_a_device_is_required() {
     if !required {
         let Executor::Gpu(context) = &executor else { panic!("a device") };
         context.device.destroy();
-        let small = Picture { size: (16, 16), ..picture };
-        let (_, why) = executor.render_or_instead(Backend::Auto, &small, &|_| {}).expect("the CPU makes it");
+        let small = Picture { view: View::new(camera, (16, 16)), ..picture };
+        let rendered = executor.render_with_fallback(Backend::Auto, &small, &|_| {});
+        let why = rendered.expect("the CPU makes it").why_cpu;
         assert!(matches!(&why, Some(CpuReason::Unable(why)) if why.contains("lost")), "{why:?}");
         assert!(executor.is_cpu(), "a lost device makes no further picture");
     }
@@ -269,11 +271,15 @@ fn a_texture_beyond_the_limits_is_refused_by_name() {
         let scene = Scene::new(model.clone());
         let camera = Camera::framed(scene.corners(), 1.0, &Framing::default());
         let style = named("toon");
-        let plan = Plan::new(&scene, &style, &camera).expect("a good style");
-        let methods = context.capabilities.methods(&scene, &plan, false, SIZE, 1);
-        let uploaded = GpuRenderer::new(&context).upload(&scene, &plan, LineMethod::Auto).map(|_| ());
-        for refused in [methods.map(|_| ()), uploaded] {
-            let named = matches!(refused, Err(GpuError::TooLarge { what: "a texture of the model", limit: 2048, .. }));
+        let view = View::new(camera, SIZE);
+        let on_device = Plan::new(&scene, &style, &view, &context.capabilities).map(|_| ());
+        // A plan that was made for something else.
+        let uploaded = GpuRenderer::new(&context).upload(&scene, &planned(&scene, &style, &camera, SIZE)).map(|_| ());
+        for refused in [on_device, uploaded] {
+            let named = matches!(
+                refused,
+                Err(HarnessError::TextureTooLarge { what: "a texture of the model", limit: 2048, .. })
+            );
             assert!(if fits { refused.is_ok() } else { named }, "{width}: {refused:?}");
         }
     }

@@ -3,7 +3,7 @@
 mod common;
 
 use common::Folder;
-use npr_harness::compare::Image;
+use npr_harness::picture::Image;
 use npr_harness::style::styles;
 use std::path::Path;
 use std::process::{Command, Output};

@@ -189,7 +189,7 @@ fn misspelt_names_get_a_proposal() {
     assert_eq!(said, "npr: no material is called \"rod\" (did you mean \"red\"? there are: \"red\")\n");
     let said = refused(&lines("blue=none"), &folder);
     assert_eq!(said, "npr: no material is called \"blue\" (there are: \"red\")\n");
-    fs::write(folder.join("own.toml"), "paper = \"#ffffff\"\n[lines.fins]\ncreese-px = 1\n").expect("written");
+    fs::write(folder.join("own.toml"), "paper = \"#ffffff\"\n[lines.edges]\ncreese-px = 1\n").expect("written");
     let said = refused(&styled("own.toml"), &folder);
     assert!(said.starts_with("npr: own.toml:3:1: unknown field `creese-px` (did you mean `crease-px`?), "), "{said}");
     assert!(!folder.join("a.png").exists());

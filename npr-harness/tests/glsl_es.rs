@@ -7,6 +7,10 @@
 use naga::back::glsl;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{ShaderStage, TypeInner};
+use npr_harness::gallery::still_life_camera;
+use npr_harness::gpu::surface_wgsl;
+use npr_harness::style::{Style, styles};
+use npr_harness::view::View;
 
 const LINE: &str = include_str!("../../npr-outline/src/line.wgsl");
 const LINE_INK: &str = include_str!("../../npr-outline/src/line_ink.wgsl");
@@ -25,8 +29,8 @@ const SEPARATE: &str = include_str!("../../npr-imagespace/src/pass/separate.wgsl
 const STEP: &str = include_str!("../../npr-imagespace/src/pass/step.wgsl");
 const FUSED_TAPS: &str = include_str!("../../npr-imagespace/src/pass/fused_taps.wgsl");
 const FUSED: &str = include_str!("../../npr-imagespace/src/pass/fused.wgsl");
-const MEAN: &str = include_str!("../src/gpu/mean.wgsl");
-const SHADOW_MAP: &str = include_str!("../src/gpu/shadow_map.wgsl");
+const RESOLVE: &str = include_str!("../src/gpu/resolve.wgsl");
+const SHADOW_MAP: &str = include_str!("../src/shadow/shadow_map.wgsl");
 
 /// What an overridable constant is where nothing is said.
 fn default_of(module: &naga::Module, constant: &naga::Override) -> f64 {
@@ -88,9 +92,8 @@ fn translate(name: &str, source: &str) -> Result<usize, String> {
 #[test]
 fn every_shader_translates() {
     let ink = |source: &str| [npr_imagespace::WGSL, FULLSCREEN, source].concat();
-    let shaders = [
-        ("surface", npr_harness::gpu::surface_wgsl()),
-        ("mean", MEAN.into()),
+    let shaders = vec![
+        ("resolve", RESOLVE.into()),
         ("shadow map", SHADOW_MAP.into()),
         ("lines", [LINE, LINE_INK, LINE_PASS].concat()),
         ("printed fins", [NORMAL_FORMAT, FIN_PRINTED, FIN_PASS].concat()),
@@ -103,8 +106,12 @@ fn every_shader_translates() {
         ("step", ink(STEP)),
         ("fused filter", ink(&[FUSED_TAPS, FUSED].concat())),
     ];
+    let view = View::new(still_life_camera(), (16, 16));
+    let surface = |style: Style| (style.name, surface_wgsl(&style.shade, &view).expect("good numbers"));
+    let named = shaders.iter().map(|(name, source): &(&str, String)| (name.to_string(), source.clone()));
+    let all: Vec<(String, String)> = named.chain(styles().into_iter().map(surface)).collect();
     let (mut translated, mut failed) = (0, Vec::new());
-    for (name, source) in &shaders {
+    for (name, source) in &all {
         match translate(name, source) {
             Ok(count) => translated += count,
             Err(error) => failed.push(error),

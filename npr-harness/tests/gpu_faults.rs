@@ -3,15 +3,15 @@
 
 mod common;
 
-use common::{cards, device, plain};
+use common::{cards, device, plain, rendered};
 use glam::Vec4;
 use npr_harness::camera::{Camera, Framing};
 use npr_harness::error::HarnessError;
-use npr_harness::executor::{Backend, Executor, GpuPolicy};
-use npr_harness::gpu::{GpuContext, GpuError, GpuRenderer};
-use npr_harness::plan::{LineMethod, Plan};
+use npr_harness::executor::{Backend, Executor, GpuPolicy, Picture};
+use npr_harness::gpu::{GpuContext, GpuRenderer};
 use npr_harness::scene::Scene;
 use npr_harness::style::{style, styles};
+use npr_harness::view::View;
 use npr_mesh::{AlphaMode, embedded};
 
 fn on_device() -> Option<Box<GpuContext>> {
@@ -25,8 +25,7 @@ fn render(executor: &Executor, name: &str, size: (u32, u32)) -> Result<(), Harne
     let scene = Scene::new(embedded::cube());
     let style = style(name).expect("it is there");
     let camera = Camera::framed(scene.corners(), f64::from(size.0) / f64::from(size.1), &Framing::default());
-    let plan = Plan::new(&scene, &style, &camera)?;
-    executor.render(&scene, &style, &plan, &camera, size, 1, &|_| {}).map(|_| ())
+    executor.render(&Picture::new(&scene, &style, View::new(camera, size)), &|_| {}).map(|_| ())
 }
 
 #[test]
@@ -35,7 +34,7 @@ fn a_lost_device_is_an_error_in_every_style() {
         let Some(context) = on_device() else { return };
         context.device.destroy();
         let done = render(&Executor::Gpu(context), &style.name, (16, 16));
-        let Err(HarnessError::Gpu(error @ GpuError::Lost { .. })) = &done else { panic!("{}: {done:?}", style.name) };
+        let Err(error @ HarnessError::Lost { .. }) = &done else { panic!("{}: {done:?}", style.name) };
         let said = error.to_string();
         assert!(said.starts_with("the graphics device was lost: ") && said.lines().count() == 1, "{said}");
     }
@@ -48,17 +47,17 @@ fn a_device_may_be_lost_while_it_is_used() {
     let scene = Scene::new(embedded::cube());
     let style = style("cartoon").expect("it is there");
     let camera = Camera::framed(scene.corners(), 1.0, &Framing::default());
-    let plan = Plan::new(&scene, &style, &camera).expect("a good style");
     let renderer = GpuRenderer::new(&context);
-    let targets = renderer.targets(32, 32).expect("targets");
-    let uploaded = renderer.upload(&scene, &plan, LineMethod::Auto).expect("an upload");
-    renderer.draw(&scene, &uploaded, &style, &plan, &camera, &targets).expect("drawn");
+    let plan = renderer.plan(&scene, &style, &View::new(camera, (32, 32))).expect("a good style");
+    let targets = renderer.targets(&plan.view).expect("targets");
+    let uploaded = renderer.upload(&scene, &plan).expect("an upload");
+    renderer.draw(&scene, &uploaded, &plan, &targets).expect("drawn");
     renderer.read(&targets).expect("a picture");
     context.device.destroy();
     // Recorded for a device that is there no more: nothing is said before it is read.
-    let _ = renderer.draw(&scene, &uploaded, &style, &plan, &camera, &targets);
+    let _ = renderer.draw(&scene, &uploaded, &plan, &targets);
     let read = renderer.read(&targets);
-    assert!(matches!(read, Err(GpuError::Lost { .. })), "{read:?}");
+    assert!(matches!(read, Err(HarnessError::Lost { .. })), "{read:?}");
 }
 
 #[test]
@@ -72,7 +71,9 @@ fn what_a_device_refuses_is_an_error_once() {
     };
     buffer(too_large.max(1 << 60));
     let refused = context.wait();
-    let Err(GpuError::Device { fault } | GpuError::OutOfMemory { fault }) = &refused else { panic!("{refused:?}") };
+    let Err(HarnessError::Device { fault } | HarnessError::OutOfMemory { fault }) = &refused else {
+        panic!("{refused:?}")
+    };
     assert!(fault.contains("too large") && fault.lines().count() == 1, "{fault}");
     context.wait().expect("it was told");
     render(&Executor::Gpu(context), "cartoon", (16, 16)).expect("the device goes on");
@@ -88,7 +89,7 @@ fn a_device_without_memory_is_an_error() {
         kept.push(filled_of(&context, size));
         match context.wait() {
             Ok(()) => {}
-            Err(GpuError::OutOfMemory { fault }) => {
+            Err(HarnessError::OutOfMemory { fault }) => {
                 assert_eq!(fault.lines().count(), 1, "{fault}");
                 return;
             }
@@ -119,14 +120,14 @@ fn pictures_beyond_the_limits_are_refused_by_name() {
     let executor = Executor::Gpu(context);
     for (name, size) in [("cartoon", (limit + 1, 2)), ("lines", (2, limit + 1)), ("ink-thick", (limit / 2 + 1, 2))] {
         let done = render(&executor, name, size);
-        let Err(HarnessError::Gpu(GpuError::TooLarge { limit: said, .. })) = done else { panic!("{name}: {done:?}") };
+        let Err(HarnessError::TextureTooLarge { limit: said, .. }) = done else { panic!("{name}: {done:?}") };
         assert_eq!(said, limit);
-        let error = HarnessError::Gpu(GpuError::TooLarge { what: "the picture", width: size.0, height: size.1, limit });
-        let instead = Executor::instead(Backend::Auto, error);
+        let error = HarnessError::TextureTooLarge { what: "the picture", width: size.0, height: size.1, limit };
+        let fallback = Executor::fallback(Backend::Auto, error);
         if GpuPolicy::from_env().expect("a policy") == GpuPolicy::Auto {
-            assert!(instead.is_ok_and(|executor| executor.is_cpu()));
+            assert!(fallback.is_ok_and(|executor| executor.is_cpu()));
         } else {
-            assert!(instead.is_err(), "a device was asked for");
+            assert!(fallback.is_err(), "a device was asked for");
         }
     }
     render(&executor, "cartoon", (limit, 1)).expect("as long as can be");
@@ -152,17 +153,16 @@ fn many_materials_take_no_draw_each_or_are_refused() {
         let scene = many_cards(different);
         for style in ["cartoon", "ink-image", "toon-shadow"].map(|name| style(name).expect("it is there")) {
             let camera = Camera::framed(scene.corners(), 1.0, &Framing::default());
-            let plan = Plan::new(&scene, &style, &camera).expect("a plan");
-            let done = executor.render(&scene, &style, &plan, &camera, (32, 32), 1, &|_| {});
+            let done = executor.render(&Picture::new(&scene, &style, View::new(camera, (32, 32))), &|_| {});
             if !(different && is_software) {
                 done.expect("a picture");
                 continue;
             }
-            let Err(error @ HarnessError::Gpu(GpuError::TooManyDraws { draws: 3_000, .. })) = done else {
+            let Err(error @ HarnessError::TooManyDraws { draws: 3_000, .. }) = done else {
                 panic!("{}: {done:?}", style.name)
             };
             if GpuPolicy::from_env().expect("a policy") == GpuPolicy::Auto {
-                assert!(Executor::instead(Backend::Auto, error).expect("the CPU").is_cpu());
+                assert!(Executor::fallback(Backend::Auto, error).expect("the CPU").is_cpu());
             }
         }
     }
@@ -188,9 +188,8 @@ fn faces_on_one_another_are_drawn_once_and_the_first_is_seen() {
     let style = style("toon-shadow").expect("it is there");
     let camera = Camera::framed(once.corners(), 1.0, &Framing::default());
     let pictures = [&once, &often].map(|scene| {
-        let plan = Plan::new(scene, &style, &camera).expect("a plan");
         let start = std::time::Instant::now();
-        let picture = executor.render(scene, &style, &plan, &camera, (1024, 1024), 1, &|_| {}).expect("a picture");
+        let picture = rendered(&executor, scene, &style, &camera, (1024, 1024));
         (picture, start.elapsed())
     });
     assert!(pictures[0].0 == pictures[1].0, "another picture");

@@ -4,18 +4,21 @@
 
 mod common;
 
-use common::{Folder, cards, device, plain, shared_models, waves};
+use common::{Folder, cards, device, plain, planned, rendered, shared_models, waves};
 use glam::{DVec2, Vec4};
 use npr_harness::camera::{Camera, Framing};
 use npr_harness::check::{self, PLACES, Reference, SIZE, Shot, agrees, magnitude};
-use npr_harness::compare::{Image, compare};
-use npr_harness::cpu::Sight;
+use npr_harness::compare::compare;
+use npr_harness::cpu::PrimaryHits;
 use npr_harness::executor::Executor;
 use npr_harness::gallery::still_life_camera;
-use npr_harness::image_ink::ImageInk;
-use npr_harness::plan::Plan;
+use npr_harness::image_lines::ImageInk;
+use npr_harness::picture::Image;
+use npr_harness::printed_fins::PrintedLines;
 use npr_harness::scene::Scene;
-use npr_harness::style::{Lines, Shade, Style, style};
+use npr_harness::shade::Shade;
+use npr_harness::style::{Lines, Style, style};
+use npr_harness::view::View;
 use npr_imagespace::filter::fused::FusedFilter;
 use npr_imagespace::morphology::disc::Disc;
 use npr_mesh::{AlphaMode, Material, Model, Wrap, embedded};
@@ -64,9 +67,9 @@ fn lines_behind_a_ground_seen_from_below() {
     let style = style("lines").expect("a style of the crate");
     for (yaw_deg, pitch_deg, fov_y_rad) in [(10.0, -10.0, Some(0.6)), (280.0, -10.0, None), (120.0, -45.0, Some(0.6))] {
         let camera = framed(&scene, yaw_deg, pitch_deg, fov_y_rad);
-        let plan = Plan::new(&scene, &style, &camera).expect("a good style");
-        let sight = Sight::new(&scene, &camera, SIZE);
-        let shot = Shot { sight: &sight, style: &style, plan: &plan, samples: 1 };
+        let plan = planned(&scene, &style, &camera, SIZE);
+        let hits = PrimaryHits::new(&scene, View::new(camera, SIZE));
+        let shot = Shot { hits: &hits, style: &style, plan: &plan };
         let Reference { image, exempt, .. } = Reference::new(shot).expect("pictures");
         let actual = render(&executor, &scene, &style, &camera);
         let comparison = compare(&image, &actual, &exempt).expect("one size");
@@ -139,8 +142,7 @@ fn shared_models_from_one_view() {
 }
 
 fn render(executor: &Executor, scene: &Scene, style: &Style, camera: &Camera) -> Image {
-    let plan = Plan::new(scene, style, camera).expect("a good style");
-    executor.render(scene, style, &plan, camera, SIZE, 1, &|_| {}).expect("a picture")
+    rendered(executor, scene, style, camera, SIZE)
 }
 
 /// The picture with its content moved to the right.
@@ -159,12 +161,12 @@ fn broken_pictures_do_not_pass() {
     let Some(executor) = device() else { return };
     let scene = Scene::new(embedded::scene());
     let camera = still_life_camera();
-    let sight = Sight::kept(&scene, &camera, SIZE, PLACES);
+    let hits = PrimaryHits::kept(&scene, View::new(camera, SIZE), PLACES);
     for name in ["cartoon", "lines", "printed-fins", "ink-image", "ink-thick", "ink-fine"] {
         let style = style(name).expect("a style of the crate");
-        let plan = Plan::new(&scene, &style, &camera).expect("a good style");
+        let plan = planned(&scene, &style, &camera, SIZE);
         let magnitude = magnitude(&plan);
-        let shot = Shot { sight: &sight, style: &style, plan: &plan, samples: 1 };
+        let shot = Shot { hits: &hits, style: &style, plan: &plan };
         let Reference { image, exempt, .. } = Reference::new(shot).expect("pictures");
         let is_fine = |actual: &Image| agrees(&compare(&image, actual, &exempt).expect("one size"), magnitude);
         let good = render(&executor, &scene, &style, &camera);
@@ -194,17 +196,17 @@ fn broken_styles(style: &Style) -> Vec<Style> {
         other.tones[0] *= 1.03;
         broken.push(Style { shade: Shade::Toon(other), ..style.clone() });
     }
-    let lines = match style.lines {
-        Some(Lines::Fins(look)) => Some(Lines::Fins(LineLook { width_px: look.width_px.map(|w| w + 0.05), ..look })),
-        Some(Lines::Printed { width_px, ink }) => Some(Lines::Printed { width_px: width_px + 0.25, ink }),
-        Some(Lines::Image(ink)) => Some(Lines::Image(ImageInk {
+    let Lines { printed, edges, image } = style.lines;
+    let lines = Lines {
+        edges: edges.map(|look| LineLook { width_px: look.width_px.map(|w| w + 0.05), ..look }),
+        printed: printed.map(|fins| PrintedLines { width_px: fins.width_px + 0.25, ..fins }),
+        image: image.map(|ink| ImageInk {
             filter: FusedFilter { normal_cos: Some(0.7), ..ink.filter },
-            brush: ink.brush.map(|disc| Disc { radius_px: disc.radius_px + 0.1, ..disc }),
+            dilation: ink.dilation.map(|disc| Disc { radius_px: disc.radius_px + 0.1, ..disc }),
             ..ink
-        })),
-        None => None,
+        }),
     };
     broken.push(Style { lines, ..style.clone() });
-    broken.push(Style { lines: None, ..style.clone() });
+    broken.push(Style { lines: Lines::NONE, ..style.clone() });
     broken
 }

@@ -5,16 +5,18 @@
 
 use glam::{DVec3, Vec2};
 use npr_harness::camera::{Camera, Framing, Projection};
+use npr_harness::capabilities::Capabilities;
 use npr_harness::cpu::{self, CpuOptions};
-use npr_harness::hatch_truth::patch::{PatchTone, PatchView, TILE, TILE_BETWEEN, patch_tones, views};
-use npr_harness::hatch_truth::sphere::{SEGMENTS, SphereError, sphere_error};
-use npr_harness::hatch_truth::stability::{
-    MOTIONS, Motion, Picture, Stability, TO_LIGHT, cameras, hatch_stability, on_the_picture, stability, with_moved_uvs,
-};
-use npr_harness::hatch_truth::{ENCODINGS, LINEAR, LISTING_4, LIT, MAPPINGS, black, hatched, strokes, torus_with_uvs};
+use npr_harness::hatch::{HatchEncoding, HatchMap, HatchMapping, HatchShade, HatchTransfer};
 use npr_harness::plan::Plan;
 use npr_harness::scene::Scene;
-use npr_harness::style::{HatchEncoding, HatchMap, HatchMapping, HatchShade, HatchTransfer};
+use npr_harness::truth::hatch::patch::{PatchTone, PatchView, TILE, TILE_BETWEEN, patch_tones, views};
+use npr_harness::truth::hatch::sphere::{SEGMENTS, SphereError, sphere_error};
+use npr_harness::truth::hatch::stability::{
+    MOTIONS, Motion, Picture, Stability, TO_LIGHT, cameras, hatch_stability, on_the_picture, stability, with_moved_uvs,
+};
+use npr_harness::truth::hatch::{ENCODINGS, LINEAR, LISTING_4, LIT, MAPPINGS, black, hatched, strokes, torus_with_uvs};
+use npr_harness::view::View;
 use npr_mesh::embedded;
 use npr_toon::normal::NormalUse;
 
@@ -124,9 +126,9 @@ fn borders(encoding: HatchEncoding, texel_px: f32, samples: u32) -> f64 {
     let projection = Projection::Orthographic { height: 1.5, far: 20.0 };
     let camera = Camera { eye: DVec3::Z * 5.0, target: DVec3::ZERO, up: DVec3::Y, projection, near: 0.1 };
     let style = hatched(&shade, NormalUse::PerPixel, DVec3::new(3f64.sqrt(), 0.0, 1.0));
-    let plan = Plan::new(&scene, &style, &camera).expect("a good style");
-    let options = CpuOptions { samples, ..Default::default() };
-    let frame = cpu::render(&scene, &style, &plan, &camera, (SIDE_PX, SIDE_PX), &options, &|_| {});
+    let view = View { samples, ..View::new(camera, (SIDE_PX, SIDE_PX)) };
+    let plan = Plan::new(&scene, &style, &view, &Capabilities::RAY_CASTER).expect("a good style");
+    let frame = cpu::render(&scene, &plan, &CpuOptions::default(), &|_| {});
     let is_ink = |x: u32, y: u32| frame.color[(y * SIDE_PX + x) as usize].x < 0.5;
     let mut count = 0;
     for y in 1..SIDE_PX {

@@ -3,19 +3,22 @@
 
 mod common;
 
-use common::{device, shared_models};
+use common::{device, planned, rendered, shared_models};
 use glam::{DVec2, DVec3, DVec4, Mat4, Vec2, Vec3, Vec4};
 use npr_harness::camera::{Camera, Framing, Projection};
+use npr_harness::capabilities::Capabilities;
 use npr_harness::check::{SIZE, WITHIN_PX};
 use npr_harness::error::HarnessError;
 use npr_harness::executor::Executor;
-use npr_harness::image_ink::{ImageInk, InkScale, Regions};
-use npr_harness::line_truth::{
-    TrueLines, accuracy, are_near, distances_to_lines, true_lines, true_lines_of_steps, true_meetings,
-};
+use npr_harness::image_lines::{ImageInk, InkScale, Regions};
 use npr_harness::plan::Plan;
 use npr_harness::scene::Scene;
-use npr_harness::style::{Lines, Shade, Style, style};
+use npr_harness::shade::Shade;
+use npr_harness::style::{Lines, Style, style};
+use npr_harness::truth::lines::{
+    TrueLines, accuracy, are_near, distances_to_lines, true_intersections, true_lines, true_lines_of_steps,
+};
+use npr_harness::view::View;
 use npr_imagespace::artist::LineKind;
 use npr_imagespace::filter::fused::{DepthTest, FusedFilter};
 use npr_imagespace::morphology::disc::Disc;
@@ -31,15 +34,14 @@ fn executors() -> Vec<Executor> {
 }
 
 fn black_on_white(ink: ImageInk) -> Style {
-    let lines = Some(Lines::Image(ImageInk { composite: Default::default(), ..ink }));
+    let lines = Lines::image(ImageInk { composite: Default::default(), ..ink });
     Style { paper: Vec3::ONE, shade: Shade::Paper, lines, ..style("ink-image").expect("a style of the crate") }
 }
 
 /// The centres of the pixels that are at least half dark.
 fn drawn(executor: &Executor, scene: &Scene, camera: &Camera, ink: ImageInk) -> Vec<DVec2> {
     let style = black_on_white(ink);
-    let plan = Plan::new(scene, &style, camera).expect("a good style");
-    let image = executor.render(scene, &style, &plan, camera, SIZE, 1, &|_| {}).expect("a picture");
+    let image = rendered(executor, scene, &style, camera, SIZE);
     let pixels = (0..SIZE.1).flat_map(|y| (0..SIZE.0).map(move |x| (x, y)));
     pixels
         .filter(|&(x, y)| image.pixel(x, y)[0] < 128)
@@ -105,7 +107,8 @@ fn a_model_s_own_edges_are_refused_where_a_plane_cuts() {
     let mut scene = Scene::new(embedded::cube());
     scene.clip = Some(DVec4::new(0.0, 1.0, 0.0, 0.0));
     let camera = camera_at(DVec3::new(2.0, 2.0, 6.0), DVec3::ZERO, 30.0, 0.1);
-    let refused = Plan::new(&scene, &style("cartoon").expect("a style"), &camera);
+    let view = View::new(camera, SIZE);
+    let refused = Plan::new(&scene, &style("cartoon").expect("a style"), &view, &Capabilities::RAY_CASTER);
     assert!(matches!(refused, Err(HarnessError::ClippedEdges { style }) if style == "cartoon"));
 }
 
@@ -140,7 +143,7 @@ fn surfaces_that_pass_through_each_other_meet_in_a_line() {
         assert!(found >= 0.99, "{}: {found}", executor.describe());
     }
     // The measure knows of the line, too, and of none that is hidden. The spheres' facets lie a little inside them.
-    let meeting = true_meetings(&scene, &camera, SIZE, CREASE_RAD);
+    let meeting = true_intersections(&scene, &camera, SIZE, CREASE_RAD);
     let length: f64 = meeting.segments.iter().map(|s| s.ends_px[0].distance(s.ends_px[1])).sum();
     let expected: f64 = seam.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
     assert!((length / expected - 1.0).abs() < 0.05, "{length} px of {expected}");
@@ -193,7 +196,7 @@ fn regions_part_what_depth_and_normals_do_not() {
         (0..100u32).map(|i| project(camera, DVec3::new(0.0, f64::from(i) / 60.0 - 0.8, 0.0))).collect::<Vec<_>>()
     };
     for executor in executors() {
-        let mut scene = Scene::new(squares_side_by_side());
+        let scene = Scene::new(squares_side_by_side());
         let has_line = |scene: &Scene, regions| {
             let ink = drawn(&executor, scene, &camera, ImageInk { regions, ..ImageInk::default() });
             share(&are_near(&ink, middle(&camera).into_iter(), WITHIN_PX))
@@ -203,9 +206,9 @@ fn regions_part_what_depth_and_normals_do_not() {
         assert_eq!(has_line(&scene, Regions::Mesh), 1.0);
         // Their edge is one and flat, so that they are one patch.
         assert_eq!(has_line(&scene, Regions::Patch), 0.0);
-        scene.model.face_mesh.fill(0);
-        assert_eq!(has_line(&scene, Regions::Mesh), 0.0);
-        let mut model = scene.model.clone();
+        let mut model = squares_side_by_side();
+        model.face_mesh.fill(0);
+        assert_eq!(has_line(&Scene::new(model.clone()), Regions::Mesh), 0.0);
         model.materials.push(Material::default());
         model.face_material[2..].fill(1);
         let scene = Scene::new(model);
@@ -368,8 +371,7 @@ fn larger_and_smaller_ink_are_as_wide_as_they_should_be() {
     let camera = camera_at(DVec3::new(0.0, 0.0, 5.0), DVec3::ZERO, 30.0, 0.1);
     let row = |executor: &Executor, ink: ImageInk| {
         let style = black_on_white(ink);
-        let plan = Plan::new(&scene, &style, &camera).expect("a good style");
-        let image = executor.render(&scene, &style, &plan, &camera, SIZE, 1, &|_| {}).expect("a picture");
+        let image = rendered(executor, &scene, &style, &camera, SIZE);
         (300..340).map(|x| 1.0 - f64::from(image.pixel(x, 180)[0]) / 255.0).sum::<f64>()
     };
     for executor in executors() {
@@ -379,10 +381,10 @@ fn larger_and_smaller_ink_are_as_wide_as_they_should_be() {
         assert!((width(scaled(InkScale::Half)) - 4.0).abs() < 0.1);
         assert!((width(scaled(InkScale::Double)) - 1.0).abs() < 0.1);
         for radius_px in [0.0, 1.0, 2.5] {
-            let brush = Some(Disc { radius_px, antialias: true });
-            let wide = width(ImageInk { brush, ..one_region() });
+            let dilation = Some(Disc { radius_px, antialias: true });
+            let wide = width(ImageInk { dilation, ..one_region() });
             assert!((wide - 2.0 - 2.0 * f64::from(radius_px)).abs() < 0.1, "{radius_px}: {wide}");
-            let fine = width(ImageInk { brush, scale: InkScale::Double, ..one_region() });
+            let fine = width(ImageInk { dilation, scale: InkScale::Double, ..one_region() });
             assert!((fine - 1.0 - f64::from(radius_px)).abs() < 0.1, "{radius_px}: {fine}");
         }
     }
@@ -408,7 +410,7 @@ fn the_fused_filter_finds_the_lines_of_real_models() {
             let camera = Camera::framed(scene.corners(), f64::from(SIZE.0) / f64::from(SIZE.1), &framing);
             // 1 % of the model's size, and where surfaces pass through each other.
             let of_edges = true_lines_of_steps(&scene, &camera, SIZE, CREASE_RAD, 0.02 * scene.radius());
-            let meetings = true_meetings(&scene, &camera, SIZE, CREASE_RAD);
+            let meetings = true_intersections(&scene, &camera, SIZE, CREASE_RAD);
             let segments = [of_edges.segments, meetings.segments].concat();
             let truth = TrueLines { segments, ..of_edges };
             let found = accuracy(&truth, &drawn(&executor, &scene, &camera, ImageInk::default()), WITHIN_PX);
@@ -425,7 +427,6 @@ fn the_device_packs_what_the_reference_packs() {
     use npr_harness::cpu::{self, CpuOptions};
     use npr_harness::gallery::{painted_camera, painted_scene, still_life_camera};
     use npr_harness::gpu::GpuRenderer;
-    use npr_harness::plan::LineMethod;
     use npr_imagespace::format::texel::{TexelLayout, ink_narrow_tap, ink_wide_tap};
 
     let Some(Executor::Gpu(context)) = device() else { return };
@@ -438,11 +439,11 @@ fn the_device_packs_what_the_reference_packs() {
         let cases = [(narrow, InkScale::One), (wide, InkScale::One), (wide, InkScale::Half), (wide, InkScale::Double)];
         for (layout, scale) in cases {
             let style = black_on_white(ImageInk { artist: true, layout, scale, ..ImageInk::default() });
-            let plan = Plan::new(scene, &style, &camera).expect("a good style");
-            let expected = cpu::render(scene, &style, &plan, &camera, SIZE, &CpuOptions::default(), &|_| {}).texels;
-            let targets = renderer.targets(SIZE.0, SIZE.1).expect("a size");
-            let uploaded = renderer.upload(scene, &plan, LineMethod::Auto).expect("room");
-            renderer.draw(scene, &uploaded, &style, &plan, &camera, &targets).expect("a frame");
+            let plan = planned(scene, &style, &camera, SIZE);
+            let expected = cpu::render(scene, &plan, &CpuOptions::default(), &|_| {}).texels;
+            let targets = renderer.targets(&plan.view).expect("a size");
+            let uploaded = renderer.upload(scene, &plan).expect("room");
+            renderer.draw(scene, &uploaded, &plan, &targets).expect("a frame");
             let actual = renderer.read_texels(&targets).expect("texels").expect("they were asked for");
             let tap = |words: [u32; 2]| match layout {
                 TexelLayout::Narrow => ink_narrow_tap(words[0]),

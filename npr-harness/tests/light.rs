@@ -4,22 +4,25 @@
 
 mod common;
 
-use common::{cards, device, plain, waves};
+use common::{cards, device, plain, planned, rendered, waves};
 use glam::{DVec3, Mat4, UVec2, Vec3, Vec4};
 use npr_gooch::{Gooch, Tones};
 use npr_harness::camera::{Camera, Framing, Projection};
 use npr_harness::check::{PLACES, Reference, Shot, agrees, magnitude};
-use npr_harness::compare::{Image, compare};
-use npr_harness::cpu::Sight;
-use npr_harness::image_ink::ImageInk;
-use npr_harness::light::{LightFrame, StyleLight, lights_in_world};
-use npr_harness::plan::Plan;
+use npr_harness::compare::compare;
+use npr_harness::cpu::PrimaryHits;
+use npr_harness::hatch::{HatchEncoding, HatchGround, HatchMap, HatchMapping, HatchShade, HatchSource, HatchTransfer};
+use npr_harness::image_lines::ImageInk;
+use npr_harness::lights::{LightFrame, StyleLight, lights_in_world};
+use npr_harness::picture::Image;
 use npr_harness::scene::Scene;
+use npr_harness::shade::Shade;
+use npr_harness::shade::lambert::Lambert;
+use npr_harness::shade::painter::{PainterShade, Ramp2dSource};
+use npr_harness::shade::ramp::{RampShade, RampSource};
 use npr_harness::shadow::{ShadowLines, ShadowStyle};
-use npr_harness::style::{
-    HatchEncoding, HatchGround, HatchMap, HatchMapping, HatchShade, HatchSource, HatchTransfer, Lines, PainterShade,
-    Ramp2dSource, RampShade, RampSource, Shade, Style, style,
-};
+use npr_harness::style::{Lines, Style, style};
+use npr_harness::view::View;
 use npr_hatch::TamParameters;
 use npr_imagespace::composite::Composite;
 use npr_imagespace::format::texel::TexelLayout;
@@ -135,7 +138,7 @@ fn cases() -> Vec<(&'static str, Shade, Vec<StyleLight>)> {
     let aliased = Bands { antialias: false, ..Bands::default() };
     let half = Some(HalfLambert::HALF_LIFE);
     vec![
-        ("Lambert, one lamp", Shade::Lambert { ambient: 0.2 }, vec![lamp]),
+        ("Lambert, one lamp", Shade::Lambert(Lambert { ambient: 0.2 }), vec![lamp]),
         ("bands", Shade::Toon(Bands::default()), vec![key]),
         ("bands, dim", Shade::Toon(Bands { highlight: None, ..Bands::default() }), vec![dim]),
         ("bands, a lamp", Shade::Toon(Bands::default()), vec![there]),
@@ -161,7 +164,7 @@ fn cases() -> Vec<(&'static str, Shade, Vec<StyleLight>)> {
     ]
 }
 
-fn of(shade: Shade, lights: Vec<StyleLight>, normals: NormalUse, lines: Option<Lines>) -> Style {
+fn of(shade: Shade, lights: Vec<StyleLight>, normals: NormalUse, lines: Lines) -> Style {
     Style { shade, lights, normals, lines, ..style("toon").expect("a style of this crate") }
 }
 
@@ -190,7 +193,7 @@ fn the_same_on_both(cases: Vec<(&'static str, Shade, Vec<StyleLight>)>, shadow: 
     let scene = scene();
     for fov_y_rad in [Some(0.7), None] {
         let camera = camera(&scene, fov_y_rad);
-        let sight = Sight::kept(&scene, &camera, SIZE, PLACES);
+        let hits = PrimaryHits::kept(&scene, View::new(camera, SIZE), PLACES);
         let mut before = None;
         for (number, (name, shade, lights)) in cases.clone().into_iter().enumerate() {
             // In a parallel view one use of normals, of half of the cases.
@@ -200,20 +203,24 @@ fn the_same_on_both(cases: Vec<(&'static str, Shade, Vec<StyleLight>)>, shadow: 
                 let shadows = match number % 4 {
                     0 => ShadowLines::Lines,
                     1 => ShadowLines::Negated,
-                    2 => ShadowLines::Apart { composite: red, brush: Some(Disc { radius_px: 1.5, antialias: true }) },
+                    2 => ShadowLines::Separate {
+                        composite: red,
+                        dilation: Some(Disc { radius_px: 1.5, antialias: true }),
+                    },
                     _ => ShadowLines::None,
                 };
                 let layout = if number % 5 == 2 { TexelLayout::Narrow } else { TexelLayout::Wide };
                 let lines = match shadow {
-                    None => number.is_multiple_of(4).then(|| Lines::Image(ImageInk::default())),
-                    Some(_) => Some(Lines::Image(ImageInk { shadows, layout, ..ImageInk::default() })),
+                    None if number.is_multiple_of(4) => Lines::image(ImageInk::default()),
+                    None => Lines::NONE,
+                    Some(_) => Lines::image(ImageInk { shadows, layout, ..ImageInk::default() }),
                 };
                 // Normals at pixels are all that this shade knows.
                 let normals = if shade == Shade::Normals { NormalUse::PerPixel } else { normals };
                 let style = Style { shadow, ..of(shade.clone(), lights.clone(), normals, lines) };
-                let plan = Plan::new(&scene, &style, &camera).expect("a plan");
-                let actual = executor.render(&scene, &style, &plan, &camera, SIZE, 1, &|_| {}).expect("a picture");
-                let shot = Shot { sight: &sight, style: &style, plan: &plan, samples: 1 };
+                let plan = planned(&scene, &style, &camera, SIZE);
+                let actual = rendered(&executor, &scene, &style, &camera, SIZE);
+                let shot = Shot { hits: &hits, style: &style, plan: &plan };
                 let mut reference = Reference::new(shot).expect("pictures");
                 let magnitude = magnitude(&plan);
                 let against = |reference: &Reference<'_>, actual: &Image| {
@@ -254,7 +261,7 @@ fn lights_are_where_their_frame_says() {
     };
     let place = |light: Light, frame| {
         let lights = vec![StyleLight { light, frame }];
-        lights_in_world(&of(Shade::Paper, lights, NormalUse::PerPixel, None), &scene, &camera)[0].place
+        lights_in_world(&lights, 1, &scene, &camera)[0].place
     };
     // The eye is at +X: right is -Z, and back is +X. The box's half diagonal is the root of 3.
     let direction = |to_light: Vec3| LightPlace::Directional { to_light };
@@ -267,7 +274,7 @@ fn lights_are_where_their_frame_says() {
     assert_eq!(place(Light::positional(at), LightFrame::World), LightPlace::Positional { position: at });
     // Two that cancel out leave no direction, and no error.
     let both = [Vec3::X, Vec3::NEG_X].map(|v| StyleLight { light: Light::directional(v), frame: LightFrame::World });
-    let toon = of(Shade::Toon(Bands::default()), both.to_vec(), NormalUse::PerPixel, None);
-    assert_eq!(lights_in_world(&toon, &scene, &camera)[0].place, direction(Vec3::ZERO));
-    assert!(Plan::new(&scene, &toon, &camera).is_ok());
+    let toon = of(Shade::Toon(Bands::default()), both.to_vec(), NormalUse::PerPixel, Lines::NONE);
+    assert_eq!(lights_in_world(&toon.lights, 1, &scene, &camera)[0].place, direction(Vec3::ZERO));
+    planned(&scene, &toon, &camera, SIZE);
 }

@@ -4,10 +4,10 @@
 mod common;
 
 use common::shared_models;
-use npr_harness::band_truth::{BandAccuracy, band_accuracy, white};
 use npr_harness::camera::{Camera, Framing};
-use npr_harness::normal_use::{SEGMENTS, USES, normal_use_errors};
 use npr_harness::scene::Scene;
+use npr_harness::truth::bands::{BandAccuracy, band_accuracy, white};
+use npr_harness::truth::normal_use::{SEGMENTS, USES, normal_use_errors};
 use npr_mesh::{Model, embedded};
 use npr_toon::Bands;
 use npr_toon::normal::NormalUse;

@@ -2,14 +2,17 @@
 
 mod common;
 
+use common::rendered;
+
 use glam::{DVec3, DVec4, Vec3, Vec4};
 use npr_harness::camera::{Camera, Framing};
-use npr_harness::compare::{Image, compare};
+use npr_harness::compare::compare;
 use npr_harness::executor::{Backend, Executor};
-use npr_harness::light::{LightFrame, StyleLight};
-use npr_harness::plan::Plan;
+use npr_harness::lights::{LightFrame, StyleLight};
+use npr_harness::picture::Image;
 use npr_harness::scene::Scene;
 use npr_harness::style::{Style, style, styles};
+use npr_harness::view::View;
 use npr_mesh::{AlphaMode, Model, embedded};
 use npr_toon::source::Light;
 
@@ -18,14 +21,14 @@ const SIZE: (u32, u32) = (160, 120);
 fn picture(executor: &Drawing<'_>, scene: &Scene, style: &Style, fov_y_rad: Option<f64>) -> Image {
     let framing = Framing { fov_y_rad, ..Framing::default() };
     let camera = Camera::framed(scene.corners(), f64::from(SIZE.0) / f64::from(SIZE.1), &framing);
-    let plan = Plan::new(scene, style, &camera).expect("a good style");
     match executor {
-        Drawing::Rays(executor) => executor.render(scene, style, &plan, &camera, SIZE, 1, &|_| {}).expect("a picture"),
+        Drawing::Rays(executor) => rendered(executor, scene, style, &camera, SIZE),
         #[cfg(feature = "gpu")]
         Drawing::Device(renderer, _) => {
-            let targets = renderer.targets(SIZE.0, SIZE.1).expect("targets");
-            let uploaded = renderer.upload(scene, &plan, Default::default()).expect("an upload");
-            renderer.draw(scene, &uploaded, style, &plan, &camera, &targets).expect("drawn");
+            let plan = renderer.plan(scene, style, &View::new(camera, SIZE)).expect("a good style");
+            let targets = renderer.targets(&plan.view).expect("targets");
+            let uploaded = renderer.upload(scene, &plan).expect("an upload");
+            renderer.draw(scene, &uploaded, &plan, &targets).expect("drawn");
             renderer.read(&targets).expect("a picture")
         }
     }

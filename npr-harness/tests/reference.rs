@@ -3,15 +3,17 @@
 
 use glam::{DVec2, DVec3, Vec3};
 use npr_harness::camera::{Camera, Projection};
+use npr_harness::capabilities::Capabilities;
 use npr_harness::check::{Reference, Shot};
 use npr_harness::color::{encode_srgb, to_byte};
-use npr_harness::cpu::{CpuFrame, CpuOptions, Sight, render};
+use npr_harness::cpu::{CpuFrame, CpuOptions, PrimaryHits, render};
 use npr_harness::gallery::still_life_camera;
-use npr_harness::light::lights_in_world;
+use npr_harness::lights::lights_in_world;
 use npr_harness::plan::Plan;
 use npr_harness::scene::Scene;
 use npr_harness::shadow::ShadowLines;
-use npr_harness::style::{Lines, Style, style};
+use npr_harness::style::{Style, style};
+use npr_harness::view::View;
 use npr_imagespace::composite::Composite;
 use npr_imagespace::morphology::disc::Disc;
 use npr_mesh::{Model, embedded};
@@ -28,8 +30,9 @@ fn camera(eye: DVec3, projection: Projection) -> Camera {
 }
 
 fn frame(scene: &Scene, style: &Style, camera: &Camera, size: (u32, u32), samples: u32) -> CpuFrame {
-    let plan = Plan::new(scene, style, camera).expect("a good style");
-    render(scene, style, &plan, camera, size, &CpuOptions { samples, ..Default::default() }, &|_| {})
+    let view = View { samples, ..View::new(*camera, size) };
+    let plan = Plan::new(scene, style, &view, &Capabilities::RAY_CASTER).expect("a good style");
+    render(scene, &plan, &CpuOptions::default(), &|_| {})
 }
 
 fn named(name: &str) -> Style {
@@ -121,8 +124,9 @@ fn nine_of_a_cubes_twelve_edges_are_seen() {
     let scene = Scene::new(embedded::cube());
     let (size, size_px) = ((400, 400), DVec2::splat(400.0));
     let camera = camera(DVec3::new(3.0, 4.5, 6.0), PERSPECTIVE);
-    let plan = Plan::new(&scene, &named("lines"), &camera).expect("a good style");
-    assert_eq!(plan.lines(camera.homogeneous_eye()).0.len(), 12);
+    let view = View::new(camera, size);
+    let plan = Plan::new(&scene, &named("lines"), &view, &Capabilities::RAY_CASTER).expect("a good style");
+    assert_eq!(plan.lines().0.len(), 12);
     let corner = |i: u8| DVec3::from_array([0, 1, 2].map(|axis| f64::from(i >> axis & 1) * 2.0 - 1.0));
     let on_screen = |i| outline_screen(camera.clip_from_world(1.0) * corner(i).extend(1.0), size_px).0;
     // The eye is in front of the three faces that meet at corner 7; the edges of corner 0 have none of them.
@@ -157,7 +161,7 @@ fn bands_lie_where_the_light_says() {
     let scene = Scene::new(embedded::sphere(256));
     let (size, size_px) = ((400, 400), DVec2::splat(400.0));
     let camera = camera(DVec3::new(2.0, 1.0, 4.0), PERSPECTIVE);
-    let lights = lights_in_world(&named("printed-bands"), &scene, &camera);
+    let lights = lights_in_world(&named("printed-bands").lights, 1, &scene, &camera);
     let to_light = toon_to_light(lights[0].place, DVec3::ZERO);
     let image = frame(&scene, &named("printed-bands"), &camera, size, 1).image();
     let base = encode_srgb(f64::from(0.8f32));
@@ -223,15 +227,14 @@ fn a_fold_through_pixels_leaves_their_shadows_open_and_no_others() {
     let mut style = named("shadow-lines");
     style.lights[0].light = npr_toon::source::Light::directional(Vec3::X);
     // Shadows' lines are wider than objects', so that it can be told which would be where.
-    let Some(Lines::Image(ink)) = &mut style.lines else { panic!("a style with lines in the image") };
-    let brush = Some(Disc { radius_px: 3.0, antialias: false });
-    ink.shadows = ShadowLines::Apart { composite: Composite::Over { color: Vec3::X, opacity: 1.0 }, brush };
+    let ink = style.lines.image.as_mut().expect("a style with lines in the image");
+    let dilation = Some(Disc { radius_px: 3.0, antialias: false });
+    ink.shadows = ShadowLines::Separate { composite: Composite::Over { color: Vec3::X, opacity: 1.0 }, dilation };
     // 33 columns: the fold at x = 0 is at the middle of the 17th.
     let size = (33, 33);
-    let plan = Plan::new(&scene, &style, &camera).expect("a good style");
-    let sight = Sight::new(&scene, &camera, size);
-    let mut reference =
-        Reference::new(Shot { sight: &sight, style: &style, plan: &plan, samples: 1 }).expect("pictures");
+    let plan = Plan::new(&scene, &style, &View::new(camera, size), &Capabilities::RAY_CASTER).expect("a good style");
+    let hits = PrimaryHits::new(&scene, View::new(camera, size));
+    let mut reference = Reference::new(Shot { hits: &hits, style: &style, plan: &plan }).expect("pictures");
     reference.look_closer().expect("pictures");
     let columns: Vec<u32> = (0..33).filter(|&x| reference.exempt[(16 * 33 + x) as usize]).collect();
     assert!(columns.contains(&16), "the fold: {columns:?}");
@@ -255,14 +258,14 @@ fn faces_without_material_have_the_default_one() {
 fn one_thread_is_the_callers() {
     let (scene, style, size) = (Scene::new(embedded::scene()), named("ink-image"), (40, 30));
     let camera = still_life_camera();
-    let plan = Plan::new(&scene, &style, &camera).expect("it can be drawn");
+    let plan = Plan::new(&scene, &style, &View::new(camera, size), &Capabilities::RAY_CASTER).expect("it can be drawn");
     let rendered = |threads: usize| {
         let seen = Mutex::new(HashSet::new());
         let tell = |_| {
             seen.lock().expect("no thread panics").insert(thread::current().id());
         };
         let options = CpuOptions { threads, ..Default::default() };
-        let image = render(&scene, &style, &plan, &camera, size, &options, &tell).image();
+        let image = render(&scene, &plan, &options, &tell).image();
         (image, seen.into_inner().expect("no thread panics"))
     };
     let (alone, threads) = rendered(1);

@@ -5,38 +5,40 @@
 mod common;
 
 use common::device;
+use npr_harness::capabilities::Capabilities;
 use npr_harness::check::{EXEMPT_SHARE, PLACES, Reference, Shot, magnitude};
 use npr_harness::compare::compare;
-use npr_harness::cpu::Sight;
+use npr_harness::cpu::PrimaryHits;
+use npr_harness::executor::Picture;
 use npr_harness::gallery::still_life_camera;
 use npr_harness::plan::Plan;
 use npr_harness::scene::Scene;
 use npr_harness::style::style;
+use npr_harness::view::View;
 use npr_mesh::embedded;
 
 const SIZE: (u32, u32) = (192, 108);
 
 /// One style of each way to the picture: nothing but surfaces, lines from edges, printed fins, lines in the image of the
-/// picture's size and of others and with a brush, shadows with lines of their own and without, strokes.
+/// picture's size and of others and with a dilation, shadows with lines of their own and without, strokes.
 #[test]
 fn several_samples_are_the_same_on_both() {
     let Some(executor) = device() else { return };
     let scene = Scene::new(embedded::scene());
     let camera = still_life_camera();
-    let sight = Sight::kept(&scene, &camera, SIZE, PLACES);
+    let hits = PrimaryHits::kept(&scene, View::new(camera, SIZE), PLACES);
     // Lines in the image are found in one sample a pixel; what they do not cover shows how many there are.
     let shown = ["toon", "cartoon", "printed-fins", "toon-shadow", "hatch", "hatch-planes", "printed-hatch"];
     let covered = ["ink-image", "ink-fine", "ink-thick", "shadow-lines", "printed-shadow"];
     for name in shown.into_iter().chain(covered) {
         let style = style(name).expect("a style of the crate");
-        let plan = Plan::new(&scene, &style, &camera).expect("a plan");
-        let draw = |samples| {
-            executor.render(&scene, &style, &plan, &camera, SIZE, samples, &|_| {}).expect("a picture of this size")
-        };
+        let view = |samples| View { samples, ..View::new(camera, SIZE) };
+        let draw = |samples| executor.render(&Picture::new(&scene, &style, view(samples)), &|_| {}).expect("a picture");
         let single = draw(1);
         let most = if ["cartoon", "hatch-planes"].contains(&name) { 3 } else { 2 };
         for samples in 2..=most {
-            let shot = Shot { sight: &sight, style: &style, plan: &plan, samples };
+            let plan = Plan::new(&scene, &style, &view(samples), &Capabilities::RAY_CASTER).expect("a plan");
+            let shot = Shot { hits: &hits, style: &style, plan: &plan };
             let mut reference = Reference::new(shot).expect("pictures");
             let actual = draw(samples);
             let against = |reference: &Reference<'_>, actual| {

@@ -4,19 +4,20 @@
 
 mod common;
 
-use common::{device, shared_models};
+use common::{device, planned, rendered, shared_models};
 use glam::DVec2;
 use npr_harness::check::SIZE as SIZE_OF_CHECK;
 use npr_harness::cpu::{self, CpuOptions};
 use npr_harness::executor::Executor;
 use npr_harness::gallery::still_life_camera;
-use npr_harness::plan::{LineMethod, Plan};
+use npr_harness::plan::Plan;
 use npr_harness::scene::Scene;
+use npr_harness::shadow::VolumeMethod;
 use npr_harness::shadow::{ShadowLines, ShadowMethod};
-use npr_harness::shadow_truth::{
+use npr_harness::style::styles;
+use npr_harness::truth::shadows::{
     ShadowShot, States, eye_is_in_shadow, farthest_px, line_accuracy, shots, states_on_device, true_borders,
 };
-use npr_harness::style::{Lines, styles};
 use npr_imagespace::shadow::ShadowState;
 use npr_mesh::{Model, embedded};
 
@@ -34,11 +35,11 @@ fn on_device(
     scene: &Scene,
     shot: &ShadowShot,
     method: ShadowMethod,
-    lines: LineMethod,
+    volumes: Option<VolumeMethod>,
     size: (u32, u32),
 ) -> States {
     let Executor::Gpu(context) = executor else { panic!("a device") };
-    states_on_device(context, scene, shot, method, lines, size).expect("states")
+    states_on_device(context, scene, shot, method, volumes, size).expect("states")
 }
 
 /// All shots of a model: states by volumes against rays, and what of it all is in which state.
@@ -47,7 +48,7 @@ fn assert_masks(executor: &Executor, name: &str, model: Model) {
     let mut cast = 0;
     for shot in shots(&scene, aspect()) {
         let reference = States::by_rays(&scene, &shot, SIZE, DVec2::ZERO).expect("a picture");
-        let actual = on_device(executor, &scene, &shot, ShadowMethod::Volumes, LineMethod::Auto, SIZE);
+        let actual = on_device(executor, &scene, &shot, ShadowMethod::Volumes, None, SIZE);
         let mut found = actual.difference(&reference);
         found.farthest_px = farthest_px(&scene, &shot, &actual, &reference).expect("pictures");
         let inside = eye_is_in_shadow(&scene, &shot);
@@ -84,8 +85,8 @@ fn the_device_sorts_out_what_casts_as_the_scan_does() {
     let Some(executor) = device() else { return };
     let scene = Scene::new(embedded::scene());
     for shot in shots(&scene, aspect()).iter().take(5) {
-        let [there, here] = [LineMethod::OnDevice, LineMethod::Rectangles]
-            .map(|lines| on_device(&executor, &scene, shot, ShadowMethod::Volumes, lines, SIZE));
+        let [there, here] = [VolumeMethod::OnDevice, VolumeMethod::OnCpu]
+            .map(|volumes| on_device(&executor, &scene, shot, ShadowMethod::Volumes, Some(volumes), SIZE));
         assert!(there == here, "{}", shot.name);
     }
 }
@@ -106,13 +107,11 @@ fn table_of_masks_and_lines() {
         let scene = Scene::new(model);
         for shot in shots(&scene, aspect()) {
             let reference = States::by_rays(&scene, &shot, TABLE_SIZE, DVec2::ZERO).expect("a picture");
-            let actual = on_device(&executor, &scene, &shot, ShadowMethod::Volumes, LineMethod::Auto, TABLE_SIZE);
+            let actual = on_device(&executor, &scene, &shot, ShadowMethod::Volumes, None, TABLE_SIZE);
             let volumes = actual.difference(&reference);
             let farthest = farthest_px(&scene, &shot, &actual, &reference).expect("pictures");
             let style = shot.style(ShadowMethod::Volumes);
-            let plan = Plan::new(&scene, &style, &shot.camera).expect("a plan");
-            let picture =
-                executor.render(&scene, &style, &plan, &shot.camera, TABLE_SIZE, 1, &|_| {}).expect("a picture");
+            let picture = rendered(&executor, &scene, &style, &shot.camera, TABLE_SIZE);
             let borders = true_borders(&scene, &shot, &style, TABLE_SIZE, 4).expect("borders");
             let lines = line_accuracy(&picture, &borders, WITHIN_PX);
             println!(
@@ -136,8 +135,7 @@ fn a_terminator_has_no_line() {
     let scene = Scene::new(embedded::sphere(48));
     for shot in shots(&scene, aspect()) {
         let style = shot.style(ShadowMethod::Volumes);
-        let plan = Plan::new(&scene, &style, &shot.camera).expect("a plan");
-        let frame = cpu::render(&scene, &style, &plan, &shot.camera, SIZE, &CpuOptions::default(), &|_| {});
+        let frame = cpu::render(&scene, &planned(&scene, &style, &shot.camera, SIZE), &CpuOptions::default(), &|_| {});
         let states = States::of_texels(&frame.texels, SIZE);
         let count = |state| states.states.iter().filter(|&&of| of == Some(state)).count();
         assert!(count(ShadowState::Lit) + count(ShadowState::Turned) > 5000, "{}", shot.name);
@@ -152,8 +150,8 @@ fn outlines_lie_on_the_borders_of_shadows() {
     let scene = Scene::new(embedded::scene());
     for shot in shots(&scene, aspect()).iter().step_by(2).take(3) {
         let style = shot.style(ShadowMethod::Volumes);
-        let plan = Plan::new(&scene, &style, &shot.camera).expect("a plan");
-        let picture = cpu::render(&scene, &style, &plan, &shot.camera, SIZE, &CpuOptions::default(), &|_| {}).image();
+        let plan = planned(&scene, &style, &shot.camera, SIZE);
+        let picture = cpu::render(&scene, &plan, &CpuOptions::default(), &|_| {}).image();
         let borders = true_borders(&scene, shot, &style, SIZE, 3).expect("borders");
         let found = line_accuracy(&picture, &borders, WITHIN_PX);
         println!("{}: {found:?}", shot.name);
@@ -206,8 +204,7 @@ fn table_of_maps() {
         for method in [ShadowMethod::Volumes].into_iter().chain(methods) {
             let (mut share, mut acne, mut loose) = (0.0, 0.0, 0.0);
             for (shot, reference) in shots.iter().zip(&references) {
-                let found =
-                    on_device(&executor, &scene, shot, method, LineMethod::Auto, TABLE_SIZE).difference(reference);
+                let found = on_device(&executor, &scene, shot, method, None, TABLE_SIZE).difference(reference);
                 share += found.share / shots.len() as f64;
                 acne += found.acne / shots.len() as f64;
                 loose += found.loose / shots.len() as f64;
@@ -234,17 +231,17 @@ fn where_no_light_casts_no_pass_is_planned_for_shadows() {
             passes.filter(|pass| pass.contains("shadow") || pass.contains("before all")).count()
         };
         if style.shadow.is_some() {
-            let plan = Plan::new(&scene, &style, &camera).expect("a plan");
+            let plan = planned(&scene, &style, &camera, SIZE);
             assert!(plan.shadow.is_some() && of_shadows(&plan) > 0, "{}: {:?}", style.name, plan.passes);
             casting += 1;
             style.shadow = None;
-            if let Some(Lines::Image(ink)) = &mut style.lines {
+            if let Some(ink) = &mut style.lines.image {
                 ink.shadows = ShadowLines::None;
             }
         }
-        let plan = Plan::new(&scene, &style, &camera).expect("a plan");
+        let plan = planned(&scene, &style, &camera, SIZE);
         assert!(plan.shadow.is_none() && of_shadows(&plan) == 0, "{}: {:?}", style.name, plan.passes);
-        if let (Some(image), Some(Lines::Image(ink))) = (&plan.image, &style.lines) {
+        if let (Some(image), Some(ink)) = (&plan.image, &style.lines.image) {
             assert_eq!(image.passes().count(), 1, "{}", style.name);
             assert_eq!(image.ink.shadows, ink.shadows);
         }

@@ -4,14 +4,15 @@ mod common;
 
 use common::Folder;
 use glam::{UVec2, Vec3};
-use npr_harness::compare::Image;
 use npr_harness::error::HarnessError;
-use npr_harness::image_ink::ImageInk;
-use npr_harness::light::{LightFrame, StyleLight};
+use npr_harness::image_lines::ImageInk;
+use npr_harness::lights::{LightFrame, StyleLight};
+use npr_harness::picture::Image;
+use npr_harness::shade::Shade;
+use npr_harness::shade::painter::{PainterShade, Ramp2dSource};
+use npr_harness::shade::ramp::{RampShade, RampSource};
 use npr_harness::shadow::{ShadowLines, ShadowMethod, ShadowStyle};
-use npr_harness::style::{
-    Lines, PainterShade, Ramp2dSource, RampShade, RampSource, Shade, Style, StyleFileError, style, styles,
-};
+use npr_harness::style::{Lines, Style, style, styles};
 use npr_hatch::{TamParameters, Thresholds, draw, store};
 use npr_imagespace::composite::Composite;
 use npr_imagespace::morphology::disc::Disc;
@@ -21,7 +22,7 @@ use npr_toon::source::Light;
 use npr_toon::table::RampTable;
 use std::path::Path;
 
-fn parse(text: &str) -> Result<Style, StyleFileError> {
+fn parse(text: &str) -> Result<Style, HarnessError> {
     Style::from_toml(text, Path::new("some/mine.toml"))
 }
 
@@ -53,12 +54,12 @@ fn every_style_survives_being_written_and_read() {
     let mut all = styles();
     all.push(Style { shade: ramp, ..named("wash") });
     all.push(Style { shade: painter, lights: vec![StyleLight::KEY, world], ..named("two-lights") });
-    let brush = Some(Disc { radius_px: 2.0, antialias: false });
-    let apart = ShadowLines::Apart { composite: Composite::Multiply, brush };
+    let dilation = Some(Disc { radius_px: 2.0, antialias: false });
+    let apart = ShadowLines::Separate { composite: Composite::Multiply, dilation };
     let map = Some(ShadowStyle { method: ShadowMethod::Map { side: 512 }, terminator: 0.0 });
     all.push(Style {
         shadow: map,
-        lines: Some(Lines::Image(ImageInk { shadows: apart, ..ImageInk::default() })),
+        lines: Lines::image(ImageInk { shadows: apart, ..ImageInk::default() }),
         ..named("normals")
     });
     for style in all {
@@ -71,7 +72,7 @@ fn every_style_survives_being_written_and_read() {
 fn what_is_left_out_has_its_default() {
     let style = parse("").expect("an empty file is a style");
     assert_eq!((style.name.as_str(), style.lights.len(), &style.shade), ("mine", 1, &named("toon").shade));
-    assert_eq!(style.lines, None);
+    assert_eq!(style.lines, Lines::NONE);
     let style = parse("shade = \"paper\"\n[lines.image]\n").expect("a style");
     assert_eq!(style.shade, Shade::Paper);
     let style = parse("paper = \"#ff8000\"\n").expect("a style");
@@ -98,12 +99,12 @@ fn an_unknown_key_is_named() {
         "[shade.gooch.highlight]\nexponent = 3\n",
         "[shade.hatch]\n",
         "[shade.hatch.map]\n",
-        "[lines.fins]\nsilhouette-px = 1\nboundary-px = 1\ncrease-px = 1\nink = [0, 0, 0]\n",
+        "[lines.edges]\nsilhouette-px = 1\nboundary-px = 1\ncrease-px = 1\nink = [0, 0, 0]\n",
         "[lines.printed]\nwidth-px = 1\nink = [0, 0, 0]\n",
         "[shadow]\n",
         "[lines.image]\n",
-        "[lines.image.shadows.apart]\ncomposite = \"multiply\"\n",
-        "[lines.image.brush]\nradius-px = 1\n",
+        "[lines.image.shadows.separate]\ncomposite = \"multiply\"\n",
+        "[lines.image.dilation]\nradius-px = 1\n",
         "[lines.image.composite.over]\ncolor = [0, 0, 0]\n",
         "[lines.image.composite.alpha-tested]\nless = true\nreference = 1\n",
     ];
@@ -121,7 +122,6 @@ fn an_unknown_key_is_named() {
         "[shade.tune]\n",
         "[shadow]\nmethod = \"rays\"\n",
         "[lines.image]\nshadows = \"all\"\n",
-        "[lines.finns]\n",
         "normals = \"per-pixl\"\n",
     ] {
         assert!(message(text).contains("unknown variant"), "{}", message(text));
@@ -133,11 +133,11 @@ fn an_unknown_key_is_named() {
 fn a_misspelt_key_gets_a_proposal() {
     for (text, said) in [
         ("papper = 1", "1:1: unknown field `papper` (did you mean `paper`?), expected one of `"),
-        ("[line.fins]\n", "1:2: unknown field `line` (did you mean `lines`?)"),
-        ("[lines.finns]\n", "unknown variant `finns` (did you mean `fins`?)"),
-        ("[lines.fins]\nsilhouete-px = 2", "2:1: unknown field `silhouete-px` (did you mean `silhouette-px`?)"),
+        ("[line.edges]\n", "1:2: unknown field `line` (did you mean `lines`?)"),
+        ("[lines.edgs]\n", "1:8: unknown field `edgs` (did you mean `edges`?)"),
+        ("[lines.edges]\nsilhouete-px = 2", "2:1: unknown field `silhouete-px` (did you mean `silhouette-px`?)"),
         ("[lines.image]\nnormal_cos = 1", "`normal-cos`?"),
-        ("[lines.image.brush]\nradius = 1", "2:1: unknown field `radius`, expected "),
+        ("[lines.image.dilation]\nradius = 1", "2:1: unknown field `radius`, expected "),
         ("[[light]]\ndirecton = [0, 0, 1]", "2:1: unknown field `directon` (did you mean `direction`?)"),
         ("[shade.goch]\n", "`gooch`?"),
         ("[shade.gooch]\nyelow = 1", "`yellow`?"),
@@ -156,43 +156,38 @@ fn a_misspelt_key_gets_a_proposal() {
 
 #[test]
 fn lines_with_one_key_have_defaults_for_the_rest() {
-    let fins = |text: &str| match parse(text).expect(text).lines {
-        Some(Lines::Fins(look)) => look,
-        other => panic!("{text}: {other:?}"),
-    };
-    let Some(Lines::Fins(cartoon)) = named("cartoon").lines else { panic!("cartoon has lines from edges") };
+    let edges = |text: &str| parse(text).expect(text).lines.edges.expect("lines along edges");
+    let cartoon = named("cartoon").lines.edges.expect("cartoon has lines along edges");
     let [silhouette, boundary, crease] =
         [LineKind::Silhouette, LineKind::Boundary, LineKind::Crease].map(|k| k as usize);
-    let usual = fins("[lines.fins]\n");
+    let usual = edges("[lines.edges]\n");
     assert_eq!(usual.ink, cartoon.ink);
     for kind in [silhouette, boundary, crease] {
         assert_eq!(usual.width_px[kind], cartoon.width_px[kind]);
     }
     assert_eq!(usual.width_px[LineKind::MaterialBorder as usize], 0.0);
-    let wide = fins("[lines.fins]\nsilhouette-px = 5\n");
+    let wide = edges("[lines.edges]\nsilhouette-px = 5\n");
     assert_eq!((wide.width_px[silhouette], wide.width_px[crease], wide.ink), (5.0, usual.width_px[crease], usual.ink));
-    let red = fins("[lines.fins]\nink = \"#ff0000\"\n");
+    let red = edges("[lines.edges]\nink = \"#ff0000\"\n");
     assert_eq!((red.width_px, red.ink), (usual.width_px, [1.0, 0.0, 0.0, 1.0]));
-    assert_eq!(fins("[lines.fins]\nopacity = 0.5\n").ink[3], 0.5);
+    assert_eq!(edges("[lines.edges]\nopacity = 0.5\n").ink[3], 0.5);
     assert_eq!(parse("[lines.printed]\n").expect("a style").lines, named("printed-fins").lines);
-    let Some(Lines::Image(ink)) = parse("[lines.image.composite.over]\nopacity = 0.5\n").expect("a style").lines else {
-        panic!("no lines in the image")
-    };
+    let style = parse("[lines.image.composite.over]\nopacity = 0.5\n").expect("a style");
+    let ink = style.lines.image.expect("lines in the image");
     assert_eq!(ink.composite, Composite::Over { color: Vec3::ZERO, opacity: 0.5 });
+}
+
+#[test]
+fn lines_of_several_kinds_stand_in_one_style() {
+    let style = parse("[lines.edges]\n[lines.image]\n[lines.printed]\n").expect("a style");
+    let Lines { printed, edges, image } = style.lines;
+    assert!(printed.is_some() && edges.is_some() && image.is_some());
+    assert!(message("[lines.fins]\n").contains("unknown field `fins`"), "{}", message("[lines.fins]\n"));
 }
 
 #[test]
 fn two_kinds_of_one_thing_are_named_with_their_place() {
     for (text, said) in [
-        (
-            "[lines.image]\n\n[lines.fins]\ncrease-px = 1\n",
-            "some/mine.toml:3:8: a style has one kind of lines: [lines.image] and [lines.fins] are both there",
-        ),
-        (
-            "lines = { fins = {}, image = {} }",
-            "some/mine.toml:1:22: a style has one kind of lines: [lines.fins] and [lines.image] are both there",
-        ),
-        ("[lines.fins]\n[lines.finns]\n", "[lines.fins] and [lines.finns] are both there"),
         (
             "[shade.toon]\n[shade.gooch]\n[shade.hatch]\n",
             "2:8: a style has one kind of shade: [shade.toon] and [shade.gooch]",
@@ -203,12 +198,12 @@ fn two_kinds_of_one_thing_are_named_with_their_place() {
              [lines.image.composite.over] are both there",
         ),
         (
-            "[lines.image.shadows]\napart = {}\nlines = {}\n",
-            "[lines.image.shadows.apart] and [lines.image.shadows.lines]",
+            "[lines.image.shadows]\nseparate = {}\nlines = {}\n",
+            "[lines.image.shadows.separate] and [lines.image.shadows.lines]",
         ),
     ] {
         assert!(message(text).contains(said), "{text}: {}", message(text));
-        assert!(matches!(parse(text), Err(StyleFileError::TwoKinds { .. })), "{text}");
+        assert!(matches!(parse(text), Err(HarnessError::TwoKinds { .. })), "{text}");
     }
 }
 
@@ -280,8 +275,8 @@ fn a_ramp_comes_from_an_image_beside_the_file() {
     assert_eq!((table.size, table.texels), (UVec2::splat(2), pixels.to_vec()));
     write("[shade.ramp.image]\nfile = \"ramp.png\"\nrow = 2\nfrom = 0\nto = 1\n");
     assert!(Style::read(&path).expect_err("no such row").to_string().contains("row 2"));
-    assert!(matches!(Style::read(&folder.0), Err(StyleFileError::Read { .. })));
-    assert!(matches!(Style::read(&folder.0.join("none.toml")), Err(StyleFileError::Read { .. })));
+    assert!(matches!(Style::read(&folder.0), Err(HarnessError::Read { .. })));
+    assert!(matches!(Style::read(&folder.0.join("none.toml")), Err(HarnessError::Read { .. })));
     let _: HarnessError = Style::read(&folder.0).expect_err("a folder").into();
 }
 
@@ -412,8 +407,9 @@ fn pictures_of_too_many_pixels_are_not_decoded() {
 
 #[test]
 fn an_empty_table_of_kinds_is_named_in_words() {
-    for text in ["[lines]\n", "paper = \"#ffffff\"\n\n[shade]\n"] {
-        let said = Style::from_toml(text, Path::new("s.toml")).expect_err("no kind").to_string();
-        assert!(said.starts_with("s.toml:") && said.contains("the table is empty"), "{said}");
-    }
+    let text = "paper = \"#ffffff\"\n\n[shade]\n";
+    let said = Style::from_toml(text, Path::new("s.toml")).expect_err("no kind").to_string();
+    assert!(said.starts_with("s.toml:") && said.contains("the table is empty"), "{said}");
+    // Of lines there may be any kinds, and none.
+    assert_eq!(Style::from_toml("[lines]\n", Path::new("s.toml")).expect("a style").lines, Lines::NONE);
 }

@@ -8,31 +8,44 @@ use common::device;
 use glam::{DVec3, Vec3};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use npr_harness::executor::Executor;
-use npr_harness::gpu::GpuContext;
+use npr_harness::gallery::still_life_camera;
+use npr_harness::gpu::{GpuContext, surface_wgsl};
+use npr_harness::shade::Shade;
+use npr_harness::style::styles;
+use npr_harness::view::View;
 use npr_toon::{Bands, ToonUniform, toon_band_hard, toon_n_dot_h, toon_n_dot_l, toon_shade, toon_width};
 use wgpu::util::DeviceExt;
 
 #[test]
-fn the_surface_shader_validates() {
-    let source = npr_harness::gpu::surface_wgsl();
-    let module = naga::front::wgsl::parse_str(&source).unwrap_or_else(|e| panic!("{}", e.emit_to_string(&source)));
-    if let Err(error) = Validator::new(ValidationFlags::all(), Capabilities::empty()).validate(&module) {
-        panic!("{}", error.emit_to_string(&source));
-    }
-    let entries: Vec<_> = module.entry_points.iter().map(|entry| entry.name.as_str()).collect();
-    let inked = ["vs_plain_inked", "fs_painted_inked", "fs_painted_textured_inked", "fs_texels", "fs_texels_textured"];
-    let plain = ["vs_depth", "vs_plain", "vs_textured", "fs_painted", "fs_painted_textured", "fs_nothing"];
-    let lit = ["vs_lit", "fs_lit", "fs_lit_inked", "fs_lit_plain", "fs_lit_vertex"];
-    let others = ["fs_cut_out", "fs_clipped"];
-    for name in plain.into_iter().chain(inked).chain(lit).chain(others) {
-        assert!(entries.contains(&name), "{name} is not there");
-    }
-    // It has no names of its own in the libraries' spaces.
-    for (library, prefix) in [(npr_toon::WGSL, "toon_"), (npr_gooch::WGSL, "gooch_")] {
-        let library = naga::front::wgsl::parse_str(library).expect("the library parses");
-        let prefixed =
-            module.functions.iter().filter(|(_, f)| f.name.as_deref().is_some_and(|n| n.starts_with(prefix)));
-        assert_eq!(prefixed.count(), library.functions.len(), "{prefix}");
+fn the_surface_shaders_validate() {
+    let view = View::new(still_life_camera(), (16, 16));
+    for style in styles() {
+        let source = surface_wgsl(&style.shade, &view).expect("good numbers");
+        let head = source.lines().next().expect("a line");
+        assert!(head.starts_with("// Made of: npr-toon; ") && head.contains("; surface.wgsl"), "{head}");
+        let module = naga::front::wgsl::parse_str(&source).unwrap_or_else(|e| panic!("{}", e.emit_to_string(&source)));
+        if let Err(error) = Validator::new(ValidationFlags::all(), Capabilities::empty()).validate(&module) {
+            panic!("{}", error.emit_to_string(&source));
+        }
+        let entries: Vec<_> = module.entry_points.iter().map(|entry| entry.name.as_str()).collect();
+        let inked =
+            ["vs_plain_inked", "fs_painted_inked", "fs_painted_textured_inked", "fs_texels", "fs_texels_textured"];
+        let plain = ["vs_depth", "vs_plain", "vs_textured", "fs_painted", "fs_painted_textured", "fs_nothing"];
+        let lit = ["vs_lit", "fs_lit", "fs_lit_inked", "fs_lit_plain", "fs_lit_vertex"];
+        let others = ["fs_cut_out", "fs_clipped"];
+        for name in plain.into_iter().chain(inked).chain(lit).chain(others) {
+            assert!(entries.contains(&name), "{name} is not there");
+        }
+        let hatches = matches!(style.shade, Shade::Hatch(_));
+        assert_eq!(entries.contains(&"fs_hatched"), hatches, "{}", style.name);
+        // It has no names of its own in the libraries' spaces, and all of a library or nothing of it.
+        for (library, prefix) in [(npr_toon::WGSL, "toon_"), (npr_gooch::WGSL, "gooch_")] {
+            let library = naga::front::wgsl::parse_str(library).expect("the library parses");
+            let prefixed =
+                module.functions.iter().filter(|(_, f)| f.name.as_deref().is_some_and(|n| n.starts_with(prefix)));
+            let count = prefixed.count();
+            assert!(count == library.functions.len() || count == 0, "{}: {prefix}", style.name);
+        }
     }
 }
 

@@ -2,9 +2,10 @@
 
 use npr_harness::camera::{Camera, Framing};
 use npr_harness::gpu::{GpuContext, GpuRenderer};
-use npr_harness::plan::{LineMethod, Plan};
+use npr_harness::plan::Plan;
 use npr_harness::scene::Scene;
 use npr_harness::style::Style;
+use npr_harness::view::View;
 use npr_mesh::Model;
 use std::path::Path;
 use std::time::Instant;
@@ -27,31 +28,41 @@ pub fn bunny(change: impl Fn(&mut Model)) -> (Scene, Camera) {
     (scene, camera)
 }
 
-/// What is timed: its name, style, how its lines are made, and samples along each axis of a pixel.
-pub type Case<'a> = (&'a str, Style, LineMethod, u32);
+/// What is timed: its name, its style, and samples along each axis of a pixel. Methods are those that the plan takes for
+/// the adapter, after `change`.
+pub struct Case<'a> {
+    pub name: &'a str,
+    pub style: Style,
+    pub samples: u32,
+    pub change: fn(&mut Plan),
+}
+
+impl<'a> Case<'a> {
+    /// One sample a pixel, and the plan's own methods.
+    pub fn new(name: &'a str, style: Style) -> Self {
+        Self { name, style, samples: 1, change: |_| {} }
+    }
+}
 
 /// Prints minimum and median of interleaved rounds, and their ratios to those of the first case.
 pub fn compare(context: &GpuContext, scene: &Scene, camera: &Camera, cases: &[Case<'_>]) {
     let renderer = GpuRenderer::new(context);
     let prepared: Vec<_> = cases
         .iter()
-        .filter(|(_, _, method, _)| match method {
-            LineMethod::OnDevice => context.capabilities.can_find_lines(),
-            LineMethod::Strokes => context.capabilities.can_stroke(),
-            LineMethod::Auto | LineMethod::Rectangles => true,
-        })
-        .map(|(name, style, method, samples)| {
-            let plan = Plan::new(scene, style, camera).expect("the styles are valid");
-            let uploaded = renderer.upload(scene, &plan, *method).expect("the scene fits");
-            let targets = renderer.targets_of_samples(SIZE.0, SIZE.1, *samples).expect("a size for every device");
-            (name, style, plan, uploaded, targets)
+        .map(|Case { name, style, samples, change }| {
+            let view = View { samples: *samples, ..View::new(*camera, SIZE) };
+            let mut plan = Plan::new(scene, style, &view, &context.capabilities).expect("the styles are valid");
+            change(&mut plan);
+            let uploaded = renderer.upload(scene, &plan).expect("the scene fits");
+            let targets = renderer.targets(&plan.view).expect("a size for every device");
+            (name, plan, uploaded, targets)
         })
         .collect();
     let mut times = vec![Vec::new(); prepared.len()];
     for round in 0..=ROUNDS {
-        for (times, (_, style, plan, uploaded, targets)) in times.iter_mut().zip(&prepared) {
+        for (times, (_, plan, uploaded, targets)) in times.iter_mut().zip(&prepared) {
             let start = Instant::now();
-            renderer.draw(scene, uploaded, style, plan, camera, targets).expect("the frame is drawn");
+            renderer.draw(scene, uploaded, plan, targets).expect("the frame is drawn");
             context.wait().expect("the frame is drawn");
             // The first round makes the pipelines.
             if round > 0 {
@@ -64,7 +75,7 @@ pub fn compare(context: &GpuContext, scene: &Scene, camera: &Camera, cases: &[Ca
         (times[0], times[times.len() / 2])
     };
     let (plain_min, plain_median) = summary(&mut times[0].clone());
-    println!("{:36} {:>9} {:>9}   ratio to {}: min, median", "", "min ms", "median ms", cases[0].0);
+    println!("{:36} {:>9} {:>9}   ratio to {}: min, median", "", "min ms", "median ms", cases[0].name);
     for (times, (name, ..)) in times.iter_mut().zip(&prepared) {
         let (min, median) = summary(times);
         println!("{name:36} {min:9.2} {median:9.2}   {:.3} {:.3}", min / plain_min, median / plain_median);

@@ -7,17 +7,19 @@
 
 use super::{Checker, SIZE, WITHIN_PX, darkness, one_px_style};
 use crate::camera::Camera;
+use crate::capabilities::Capabilities;
 use crate::cpu::{self, CpuOptions};
 use crate::error::HarnessError;
 use crate::executor::Picture;
-use crate::image_ink::{ImageInk, Regions};
-use crate::line_truth::{
-    MOST_FACES_MEETING, TrueLines, TrueSegment, accuracy, drawn_centreline, scene_edge, true_lines,
-    true_lines_of_steps, true_meetings,
-};
+use crate::image_lines::{ImageInk, Regions};
 use crate::plan::Plan;
 use crate::scene::Scene;
 use crate::style::Lines;
+use crate::truth::lines::{
+    MOST_FACES_INTERSECTED, TrueLines, TrueSegment, accuracy, drawn_centreline, scene_edge, true_intersections,
+    true_lines, true_lines_of_steps,
+};
+use crate::view::View;
 use glam::UVec2;
 use npr_imagespace::filter::depth::{ANY_OS, DepthPlain, SUM_CM};
 use npr_imagespace::filter::fused::{DepthTest, FusedFilter};
@@ -59,21 +61,24 @@ impl Checker<'_> {
         scene: &Scene,
         camera: &Camera,
     ) -> Result<(), HarnessError> {
-        let crease_angle_rad = f64::from(one_px_style(Lines::Image(ImageInk::default())).crease_angle_rad);
+        let crease_angle_rad = f64::from(one_px_style(Lines::image(ImageInk::default())).crease_angle_rad);
+        let view_of = View::new(*camera, SIZE);
         let least_step = LEAST_STEP * 2.0 * scene.radius();
         let of_edges = true_lines_of_steps(scene, camera, SIZE, crease_angle_rad, least_step);
-        let meetings = |least_angle_rad| true_meetings(scene, camera, SIZE, least_angle_rad).segments;
+        let intersections = |least_angle_rad| true_intersections(scene, camera, SIZE, least_angle_rad).segments;
         let with = |lines: &TrueLines, more: Vec<TrueSegment>| TrueLines {
             segments: [lines.segments.as_slice(), &more].concat(),
             ..lines.clone()
         };
-        let asked = with(&of_edges, meetings(crease_angle_rad));
-        let all = with(&true_lines(scene, camera, SIZE, crease_angle_rad), meetings(0.0));
-        if scene.model.faces.len() > MOST_FACES_MEETING {
-            self.skipped.push(format!("where surfaces of {model} meet: more than {MOST_FACES_MEETING} faces"));
+        let asked = with(&of_edges, intersections(crease_angle_rad));
+        let all = with(&true_lines(scene, camera, SIZE, crease_angle_rad), intersections(0.0));
+        if scene.model.faces.len() > MOST_FACES_INTERSECTED {
+            self.skipped
+                .push(format!("intersections of surfaces of {model}: more than {MOST_FACES_INTERSECTED} faces"));
         }
-        let style = one_px_style(Lines::Image(ImageInk::default()));
-        let uncarried = uncarried_share(scene, &of_edges, &Plan::new(scene, &style, camera)?);
+        let style = one_px_style(Lines::image(ImageInk::default()));
+        let uncarried =
+            uncarried_share(scene, &of_edges, &Plan::new(scene, &style, &view_of, &Capabilities::RAY_CASTER)?);
         self.add(model, view, "image lines", "share of creases within one patch", uncarried, None);
         let judge = |checker: &mut Self, technique, darkness: &[f64]| {
             let drawn = drawn_centreline(darkness, SIZE.0, SIZE.1);
@@ -82,19 +87,18 @@ impl Checker<'_> {
             checker.add(model, view, technique, "precision within 1.5 px", found.precision, None);
             checker.add(model, view, technique, "recall within 1.5 px", found.recall, None);
             let near_any = accuracy(&all, &drawn, WITHIN_PX).precision;
-            checker.add(model, view, technique, "precision, any step or meeting a line", near_any, None);
+            checker.add(model, view, technique, "precision, any step or intersection a line", near_any, None);
             let without = accuracy(&of_edges, &drawn, WITHIN_PX).f1;
-            checker.add(model, view, technique, "F1, meetings of surfaces no lines", without, None);
+            checker.add(model, view, technique, "F1, intersections are no lines", without, None);
         };
         for (technique, ink) in filters() {
-            let style = one_px_style(Lines::Image(ink));
-            let plan = Plan::new(scene, &style, camera)?;
-            let picture = Picture { scene, style: &style, plan: &plan, camera, size: SIZE, samples: 1 };
-            let Some(image) = self.render(model, view, technique, &picture)? else { continue };
+            let style = one_px_style(Lines::image(ink));
+            let picture = Picture::new(scene, &style, view_of);
+            let Some((image, _)) = self.render(model, view, technique, &picture)? else { continue };
             judge(self, technique, &darkness(&image));
         }
-        let plan = Plan::new(scene, &style, camera)?;
-        let texels = cpu::render(scene, &style, &plan, camera, SIZE, &CpuOptions::default(), &|_| {}).texels;
+        let plan = Plan::new(scene, &style, &view_of, &Capabilities::RAY_CASTER)?;
+        let texels = cpu::render(scene, &plan, &CpuOptions::default(), &|_| {}).texels;
         for (technique, filter, clear) in printed_filters() {
             judge(self, technique, &printed_ink(&texels, &plan, &filter, clear)?);
         }
@@ -102,9 +106,9 @@ impl Checker<'_> {
     }
 }
 
-/// The filters of 2002 over the RGBA8 target that they were made for, as printed and mended, and what it is cleared to.
+/// The filters of 2002 over the RGBA8 target that they were made for, as printed and corrected, and what it is cleared to.
 fn printed_filters() -> [(&'static str, PrintedFilter, [u8; 4]); 4] {
-    let mended = PrintedEdges::default();
+    let corrected = PrintedEdges::default();
     let printed = PrintedEdges {
         normal: Some(PrintedNormal { cos: COS_CM, printed_background: true }),
         depth: Some(PrintedDepth { form: DepthPlain::SumPrinted, threshold: SUM_CM }),
@@ -113,9 +117,9 @@ fn printed_filters() -> [(&'static str, PrintedFilter, [u8; 4]); 4] {
     let inker = |form| PrintedFilter::Inker(Inker { form, ..Inker::default() });
     [
         ("2002, printed", PrintedFilter::Edges(printed), CLEAR_PRINTED),
-        ("2002, mended", PrintedFilter::Edges(mended), CLEAR),
+        ("2002, corrected", PrintedFilter::Edges(corrected), CLEAR),
         ("inker, printed", inker(InkerForm::Printed), CLEAR),
-        ("inker, mended", inker(InkerForm::Explicit), CLEAR),
+        ("inker, corrected", inker(InkerForm::Explicit), CLEAR),
     ]
 }
 

@@ -1,11 +1,11 @@
 //! Borders of bands, and the three uses of normals, against supersampled truths.
 
 use super::Checker;
-use crate::band_truth::{band_accuracy, white};
 use crate::camera::Camera;
 use crate::error::HarnessError;
-use crate::normal_use::normal_use_errors;
 use crate::scene::Scene;
+use crate::truth::bands::{band_accuracy, white};
+use crate::truth::normal_use::normal_use_errors;
 use npr_toon::Bands;
 use npr_toon::normal::NormalUse;
 

@@ -4,6 +4,7 @@ use super::{
     Checker, FORMAT_VIEWS, LARGEST_FORMAT_EDGES, Limit, PLANES_MISCLASSIFIED, SIZE, WIDTH_ERROR, one_px_style,
 };
 use crate::camera::{Camera, Projection};
+use crate::capabilities::Capabilities;
 use crate::cpu::{self, CpuOptions};
 use crate::error::HarnessError;
 #[cfg(feature = "gpu")]
@@ -11,6 +12,7 @@ use crate::executor::{Executor, Picture};
 use crate::plan::Plan;
 use crate::scene::Scene;
 use crate::style::Lines;
+use crate::view::View;
 use glam::{DVec2, DVec3, Vec3};
 use npr_mesh::Model;
 use npr_outline::line_look::LineLook;
@@ -24,7 +26,7 @@ pub const WIDTHS_PX: [f32; 4] = [1.0, 2.0, 4.0, 8.0];
 const RISES: [f64; 3] = [0.0, 0.07, 0.6];
 
 impl Checker<'_> {
-    /// How often silhouettes are told wrongly, by the format of the face normals, and by the plane records.
+    /// How often silhouettes are misclassified, by the format of the face normals, and by the plane records.
     pub(super) fn formats(&mut self, model: &str, scene: &Scene) -> Result<(), HarnessError> {
         let edges = scene.edges.edges.len();
         if edges > LARGEST_FORMAT_EDGES {
@@ -58,23 +60,26 @@ impl Checker<'_> {
         scene: &Scene,
         camera: &Camera,
     ) -> Result<(), HarnessError> {
+        use crate::edge_lines::EdgeLineMethod;
         use crate::gpu::GpuRenderer;
-        use crate::plan::LineMethod;
         use std::collections::BTreeSet;
         let Executor::Gpu(context) = self.executor else { return Ok(()) };
         if !context.usable().can_find_lines() {
             self.skipped.push(format!("line finder of {model}, {view}: {} cannot run it", context.describe()));
             return Ok(());
         }
-        let style = one_px_style(Lines::Fins(black(1.0)));
-        let plan = Plan::new(scene, &style, camera)?;
+        let style = one_px_style(Lines::edges(black(1.0)));
+        let mut plan = Plan::new(scene, &style, &View::new(*camera, SIZE), &context.usable())?;
+        if let Some(edges) = &mut plan.edge_lines {
+            edges.method = EdgeLineMethod::OnDevice;
+        }
         let renderer = GpuRenderer::new(context);
-        let targets = renderer.targets(SIZE.0, SIZE.1)?;
-        let uploaded = renderer.upload(scene, &plan, LineMethod::OnDevice)?;
-        renderer.draw(scene, &uploaded, &style, &plan, camera, &targets)?;
+        let targets = renderer.targets(&plan.view)?;
+        let uploaded = renderer.upload(scene, &plan)?;
+        renderer.draw(scene, &uploaded, &plan, &targets)?;
         let found = renderer.found_lines(&uploaded)?.unwrap_or_default();
         let on_device: BTreeSet<u32> = found.iter().copied().collect();
-        let scanned: BTreeSet<u32> = plan.lines(camera.homogeneous_eye()).0.into_iter().collect();
+        let scanned: BTreeSet<u32> = plan.lines().0.into_iter().collect();
         // A line found twice is as wrong as one found wrongly.
         let wrong = on_device.symmetric_difference(&scanned).count() + (found.len() - on_device.len());
         self.add(model, view, "line finder", "edges in one set only", wrong as f64, Some(Limit::AtMost(0.0)));
@@ -87,28 +92,26 @@ impl Checker<'_> {
         let metric = "largest relative error";
         let size = DVec2::new(f64::from(SIZE.0), f64::from(SIZE.1));
         let on_cpu = largest_width_error(size, |scene, width_px, camera| {
-            let style = one_px_style(Lines::Fins(black(width_px)));
-            let plan = Plan::new(scene, &style, camera)?;
-            Ok(cpu::render(scene, &style, &plan, camera, SIZE, &CpuOptions::default(), &|_| {}).image())
+            let style = one_px_style(Lines::edges(black(width_px)));
+            let plan = Plan::new(scene, &style, &View::new(*camera, SIZE), &Capabilities::RAY_CASTER)?;
+            Ok(cpu::render(scene, &plan, &CpuOptions::default(), &|_| {}).image())
         })?;
         self.add("segments", "on the CPU", "width", metric, on_cpu, limit);
         #[cfg(feature = "gpu")]
         if let Executor::Gpu(context) = self.executor {
             // A driver that refuses what it promised is found out by this picture, which falls to the next method.
             let scene = Scene::new(npr_mesh::embedded::cube());
-            let style = one_px_style(Lines::Fins(black(1.0)));
-            let camera = &Camera::framed(scene.corners(), 1.0, &Default::default());
-            let plan = &Plan::new(&scene, &style, camera)?;
-            let picture = Picture { scene: &scene, style: &style, plan, camera, size: (16, 16), samples: 1 };
-            self.executor.render_picture(&picture, &|_| {})?;
+            let style = one_px_style(Lines::edges(black(1.0)));
+            let camera = Camera::framed(scene.corners(), 1.0, &Default::default());
+            self.executor.render(&Picture::new(&scene, &style, View::new(camera, (16, 16))), &|_| {})?;
             let renderer = crate::gpu::GpuRenderer::new(context);
-            let targets = renderer.targets(SIZE.0, SIZE.1)?;
+            let targets = renderer.targets(&View::new(camera, SIZE))?;
             let on_gpu = largest_width_error(size, |scene, width_px, camera| {
-                let style = one_px_style(Lines::Fins(black(width_px)));
-                let plan = Plan::new(scene, &style, camera)?;
-                let uploaded = renderer.upload(scene, &plan, crate::plan::LineMethod::Auto)?;
-                renderer.draw(scene, &uploaded, &style, &plan, camera, &targets)?;
-                Ok(renderer.read(&targets)?)
+                let style = one_px_style(Lines::edges(black(width_px)));
+                let plan = Plan::new(scene, &style, &View::new(*camera, SIZE), &context.usable())?;
+                let uploaded = renderer.upload(scene, &plan)?;
+                renderer.draw(scene, &uploaded, &plan, &targets)?;
+                renderer.read(&targets)
             })?;
             self.add("segments", "on the GPU", "width", metric, on_gpu, limit);
         }
@@ -123,7 +126,7 @@ fn black(width_px: f32) -> LineLook {
 /// Over all distances, widths and rises, how far the width is off, in widths.
 fn largest_width_error(
     size_px: DVec2,
-    render: impl Fn(&Scene, f32, &Camera) -> Result<crate::compare::Image, HarnessError>,
+    render: impl Fn(&Scene, f32, &Camera) -> Result<crate::picture::Image, HarnessError>,
 ) -> Result<f64, HarnessError> {
     let camera = Camera {
         eye: DVec3::ZERO,

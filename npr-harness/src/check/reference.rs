@@ -1,12 +1,20 @@
 //! The reference picture of a shot, and where it is sensitive.
 
-use super::{ROUNDED_PX, SHIFT_PX, magnitude};
-use crate::compare::{Image, exempt_mask};
-use crate::cpu::{self, Blot, CpuFrame, CpuOptions, ShadowAt, Sight};
+use super::magnitude;
+use crate::capabilities::Capabilities;
+use crate::compare::exempt_mask;
+use crate::cpu::{self, CpuFrame, CpuOptions, PrimaryHits};
 use crate::error::HarnessError;
+use crate::image_lines::cpu::{Perturbation, perturbed};
+use crate::picture::Image;
 use crate::plan::Plan;
+use crate::shade::Shade;
+use crate::shade::lambert::Lambert;
 use crate::shadow::ShadowLines;
-use crate::style::{Shade, Style};
+use crate::shadow::cpu::ShadowAt;
+use crate::style::Style;
+use crate::truth::{ROUNDED_PX, SHIFT_PX};
+use crate::view::View;
 use glam::DVec2;
 use npr_imagespace::shadow::ShadowState;
 use npr_outline::segment::MAX_SLOPE;
@@ -14,17 +22,15 @@ use npr_outline::segment::MAX_SLOPE;
 /// What is rendered, whatever renders it.
 #[derive(Clone, Copy)]
 pub struct Shot<'a> {
-    /// What is shown, from where, and how large.
-    pub sight: &'a Sight<'a>,
-    /// How.
+    /// The scene, and what is known of its primary hits in the plan's view.
+    pub hits: &'a PrimaryHits<'a>,
+    /// How it looks.
     pub style: &'a Style,
     /// Made of these.
     pub plan: &'a Plan,
-    /// Along each axis of a pixel.
-    pub samples: u32,
 }
 
-/// In how many places a reference's samples lie, for [`Sight::kept`], but for a closer look.
+/// In how many places a reference's samples lie, for [`PrimaryHits::kept`], but for a closer look.
 pub const PLACES: usize = 17;
 
 /// The reference picture of a shot, and the pixels in which it is sensitive to where its samples are: those in which its
@@ -56,7 +62,7 @@ impl<'a> Reference<'a> {
         let magnitude = magnitude(shot.plan);
         let image = frame.image();
         let exempt = vec![false; frame.depth.len()];
-        let plain = if shot.plan.hatch.is_some() { Some(Plain::new(&shot)?) } else { None };
+        let plain = if shot.plan.hatch().is_some() { Some(Plain::new(&shot)?) } else { None };
         let mut reference = Self { shot, frame, plain, magnitude, image, exempt };
         reference.exempt_where_moved(SHIFT_PX, 8)?;
         if reference.plain.is_some() {
@@ -90,13 +96,14 @@ impl<'a> Reference<'a> {
     /// exempt where shadows change. Lines in the image look at their neighbours: what would change if any one such pixel
     /// showed something else is exempt too.
     fn exempt_around_edges(&mut self) -> Result<(), HarnessError> {
-        let Shot { sight, style, plan, samples } = self.shot;
+        let Shot { hits, plan, .. } = self.shot;
         if plan.image.is_none() && plan.shadow.is_none() {
             return Ok(());
         }
         // One sample a pixel, as lines in the image have.
+        let one_sample = Plan { view: View { samples: 1, ..plan.view }, ..plan.clone() };
         let seen = |options: &CpuOptions| -> (Vec<f64>, Vec<ShadowAt>) {
-            let seen = cpu::seen(sight, style, plan, options);
+            let seen = cpu::seen(hits, &one_sample, options);
             seen.iter().map(|seen| seen.map_or((0.0, ShadowAt::default()), |seen| (seen.depth, seen.shadow))).unzip()
         };
         let (depth, shadow) = seen(&CpuOptions::default());
@@ -109,23 +116,23 @@ impl<'a> Reference<'a> {
             join(&mut self.exempt, &changes);
         }
         let Some(image) = &plan.image else { return Ok(()) };
-        let states = [ShadowState::Lit, ShadowState::Cast, ShadowState::Turned].map(Blot::State);
-        let blots: &[Blot] = match image.ink.shadows {
+        let states = [ShadowState::Lit, ShadowState::Cast, ShadowState::Turned].map(Perturbation::State);
+        let of_shadows: &[Perturbation] = match image.ink.shadows {
             ShadowLines::None | ShadowLines::Negated => &[],
-            ShadowLines::Lines | ShadowLines::Apart { .. } => &states,
+            ShadowLines::Lines | ShadowLines::Separate { .. } => &states,
         };
-        let blank = cpu::without_ink(sight, style, plan, &CpuOptions { samples, ..Default::default() }, &|_| {});
+        let blank = cpu::without_ink(hits, plan, &CpuOptions::default(), &|_| {});
         // One of nine at a time: beside another one that differs too, one may differ from nothing.
-        let (width, _) = sight.size;
+        let (width, _) = plan.view.size;
         for group in 0..9 {
             let is_of_group = |&pixel: &usize| {
                 let (x, y) = (pixel % width as usize, pixel / width as usize);
                 unsure[pixel] && y % 3 * 3 + x % 3 == group
             };
             let pixels: Vec<usize> = (0..unsure.len()).filter(is_of_group).collect();
-            for &blot in [Blot::Other].iter().chain(blots) {
-                let blotted = cpu::blotted(image, &blank, &pixels, blot).image();
-                join(&mut self.exempt, &exempt_mask(&self.image, &[blotted], self.magnitude)?);
+            for &perturbation in [Perturbation::Other].iter().chain(of_shadows) {
+                let perturbed = perturbed(image, &blank, &pixels, perturbation).image();
+                join(&mut self.exempt, &exempt_mask(&self.image, &[perturbed], self.magnitude)?);
             }
         }
         Ok(())
@@ -133,7 +140,7 @@ impl<'a> Reference<'a> {
 
     /// Per pixel whether its depth changes by more than a slope explains when its sample is moved.
     fn shows_another_surface(&self, here: &[f64], moved: &[f64], by_px: f64) -> Vec<bool> {
-        let Sight { camera, size: (width, height), .. } = self.shot.sight;
+        let View { camera, size: (width, height), .. } = &self.shot.plan.view;
         let per_px = camera.line_view(DVec2::new(f64::from(*width), f64::from(*height))).depth_per_px;
         let is_other = |(here, moved): (&f64, &f64)| {
             let per_px = here.max(*moved) * per_px.x + per_px.y;
@@ -157,7 +164,7 @@ impl<'a> Reference<'a> {
         };
         let changes = exempt_mask(image, &[moved.image()], self.magnitude)?;
         join(&mut self.exempt, &changes);
-        if self.shot.plan.painted {
+        if self.shot.plan.paint.is_some() {
             // Another surface, even one that happens to have the same colour: a rasteriser may show a third one
             // there, turned away and hidden by exact arithmetic.
             let other = self.shows_another_surface(&self.frame.depth, &moved.depth, SHIFT_PX);
@@ -176,8 +183,8 @@ struct Plain {
 
 impl Plain {
     fn new(shot: &Shot<'_>) -> Result<Self, HarnessError> {
-        let style = Style { shade: Shade::Lambert { ambient: 0.2 }, ..shot.style.clone() };
-        let plan = Plan::new(shot.sight.scene, &style, shot.sight.camera)?;
+        let style = Style { shade: Shade::Lambert(Lambert { ambient: 0.2 }), ..shot.style.clone() };
+        let plan = Plan::new(shot.hits.scene, &style, &shot.plan.view, &Capabilities::RAY_CASTER)?;
         let lit = Shot { style: &style, plan: &plan, ..*shot };
         let image = lit.reference(&CpuOptions::default()).image();
         Ok(Self { style, plan, image })
@@ -205,7 +212,6 @@ impl<'a> Shot<'a> {
 
 impl Shot<'_> {
     fn reference(&self, options: &CpuOptions) -> CpuFrame {
-        let options = CpuOptions { samples: self.samples, ..*options };
-        cpu::render_seen(self.sight, self.style, self.plan, &options, &|_| {})
+        cpu::render_kept(self.hits, self.plan, options, &|_| {})
     }
 }

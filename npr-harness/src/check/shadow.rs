@@ -1,7 +1,7 @@
 //! Shadows: pictures of the styles that have them, and states of pixels against shadow rays.
 
 use super::Checker;
-use crate::cpu::Sight;
+use crate::cpu::PrimaryHits;
 use crate::error::HarnessError;
 use crate::style::style;
 
@@ -12,12 +12,12 @@ pub const STATES_PX: f64 = 2.0;
 
 impl Checker<'_> {
     /// The pictures of the styles with shadows.
-    pub(super) fn shadows(&mut self, model: &str, view: &str, sight: &Sight<'_>) -> Result<(), HarnessError> {
+    pub(super) fn shadows(&mut self, model: &str, view: &str, hits: &PrimaryHits<'_>) -> Result<(), HarnessError> {
         for name in ["toon-shadow", "hatch-shadow", "shadow-lines", "normals", "printed-shadow"] {
-            self.picture(model, view, sight, &style(name).expect("a style of this crate"))?;
+            self.picture(model, view, hits, &style(name).expect("a style of this crate"))?;
         }
         #[cfg(feature = "gpu")]
-        self.shadow_states(model, sight.scene)?;
+        self.shadow_states(model, hits.scene)?;
         Ok(())
     }
 
@@ -26,15 +26,14 @@ impl Checker<'_> {
     fn shadow_states(&mut self, model: &str, scene: &crate::scene::Scene) -> Result<(), HarnessError> {
         use super::{Limit, SIZE};
         use crate::executor::Executor;
-        use crate::plan::LineMethod;
         use crate::shadow::ShadowMethod;
-        use crate::shadow_truth::{States, eye_is_in_shadow, farthest_px, shots, states_on_device};
+        use crate::truth::shadows::{States, eye_is_in_shadow, farthest_px, shots, states_on_device};
         use glam::DVec2;
         let Executor::Gpu(context) = self.executor else { return Ok(()) };
         let aspect = f64::from(SIZE.0) / f64::from(SIZE.1);
         for shot in shots(scene, aspect) {
             let reference = States::by_rays(scene, &shot, SIZE, DVec2::ZERO)?;
-            let actual = states_on_device(context, scene, &shot, ShadowMethod::Volumes, LineMethod::Auto, SIZE)?;
+            let actual = states_on_device(context, scene, &shot, ShadowMethod::Volumes, None, SIZE)?;
             let found = actual.difference(&reference);
             let farthest = farthest_px(scene, &shot, &actual, &reference)?;
             let inside = if eye_is_in_shadow(scene, &shot) { "shadow, eye in" } else { "shadow" };

@@ -2,8 +2,9 @@
 
 use super::FrameContext;
 use crate::color::encode_rgb;
+use crate::image_lines::cpu::{InkSample, texel};
 use crate::rays::Hit;
-use crate::style::Shade;
+use crate::shadow::cpu::{ShadowAt, shadow_at};
 use glam::{DVec2, DVec3, DVec4};
 use npr_imagespace::artist::LineKind;
 use npr_mesh::{AlphaMode, Material};
@@ -13,7 +14,6 @@ use npr_toon::painter::toon_material;
 pub(super) struct Surface {
     pub(super) normal: DVec3,
     pub(super) at: DVec3,
-    pub(super) to_eye: DVec3,
 }
 
 /// Weights of a face's corners at the two pixels beside a pixel with which a 2×2 block of fragments takes its
@@ -103,8 +103,7 @@ impl FrameContext<'_> {
         let sum =
             |of: &[glam::Vec3]| -> DVec3 { (0..3).map(|i| of[corners[i] as usize].as_dvec3() * weights[i]).sum() };
         let (normal, at) = (sum(&model.normals), sum(&model.positions));
-        let eye = self.camera.homogeneous_eye();
-        Surface { normal: if hit.front { normal } else { -normal }, at, to_eye: eye.truncate() - at * eye.w }
+        Surface { normal: if hit.front { normal } else { -normal }, at }
     }
 
     /// Linear colour and alpha: material × texture × vertex colour, without what says where lines are. Where the shade
@@ -119,8 +118,8 @@ impl FrameContext<'_> {
             return color;
         }
         let texel = self.texture_color(hit, x, y);
-        match &self.style.shade {
-            Shade::Painter(painter) if painter.material_by_alpha => toon_material(color, texel),
+        match &self.plan.paint {
+            Some(paint) if paint.shade.model().material_by_alpha() => toon_material(color, texel),
             _ => color * texel,
         }
     }
@@ -169,5 +168,39 @@ impl FrameContext<'_> {
             _ => 1.0,
         };
         lit.extend(opacity)
+    }
+
+    /// What shadows make of a hit; none falls on what is blended.
+    pub(super) fn shadow_at(&self, hit: &Hit) -> ShadowAt {
+        let Some(shadow) = self.plan.shadow.as_ref().filter(|_| !self.is_blended(hit)) else {
+            return ShadowAt::default();
+        };
+        let surface = self.interpolate(hit, hit.barycentric);
+        shadow_at(shadow, self.scene, hit, surface.at, surface.normal)
+    }
+
+    /// What a geometry pass writes for a pixel, for lines in the image.
+    pub(super) fn texel(&self, hit: Option<&Hit>, x: u32, y: u32) -> [u32; 2] {
+        let Some(image) = &self.plan.image else { return [0; 2] };
+        let Some(hit) = hit else { return texel(image, None) };
+        let texture_bytes = || {
+            let texture = self.material(hit).texture?;
+            Some(self.textures[texture as usize].nearest_bytes(self.interpolate_uv(hit, hit.barycentric)))
+        };
+        let sample = InkSample {
+            face: hit.face,
+            kind: self.line_kind(hit),
+            normal: self.interpolate(hit, hit.barycentric).normal,
+            depth: hit.t,
+            vertex_color: &|| self.vertex_color(hit),
+            texture_color: &|| self.texture_color(hit, x, y),
+            texture_bytes: &texture_bytes,
+            view: &|| {
+                let direction = self.rays.through(self.sample_point(f64::from(x), f64::from(y))).1;
+                (direction, self.plan.view.camera.axes())
+            },
+            shadow: &|| self.shadow_at(hit),
+        };
+        texel(image, Some(&sample))
     }
 }

@@ -54,7 +54,7 @@ impl Candidates {
         match found {
             Ok(found) => Ok(Self(found)),
             Err(error) if policy == GpuPolicy::Required => Err(HarnessError::GpuRequired(error.to_string())),
-            Err(error) if backend == Backend::Gpu => Err(error.into()),
+            Err(error) if backend == Backend::Gpu => Err(error),
             Err(error) => Ok(Self::unable(error.to_string())),
         }
     }

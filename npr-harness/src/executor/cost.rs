@@ -8,10 +8,11 @@
 //! faces and pictures of 320 × 180 to 2560 × 1440 px; they foretell which of the two is sooner, not how long it takes on
 //! another machine. `cargo bench -p npr-harness --bench orbit` has the two side by side.
 
-use crate::image_ink::InkScale;
+use crate::image_lines::InkScale;
 use crate::scene::Scene;
+use crate::shade::Shade;
 use crate::shadow::ShadowMethod;
-use crate::style::{Lines, Shade, Style};
+use crate::style::Style;
 
 /// What pictures of a scene take either executor, ms.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -48,7 +49,7 @@ const SHADOWED: PerSample = PerSample { cpu_ms: 9e-5, adapter_ms: 1.2e-4 };
 /// Lines in the image, for a pixel of the ink, from the surfaces of the picture.
 const INKED: PerSample = PerSample { cpu_ms: 5e-5, adapter_ms: 1e-5 };
 /// The same from surfaces of its own.
-const INKED_APART: PerSample = PerSample { cpu_ms: 1.35e-4, adapter_ms: 4e-5 };
+const INKED_SEPARATELY: PerSample = PerSample { cpu_ms: 1.35e-4, adapter_ms: 4e-5 };
 
 impl Work {
     /// Of one picture.
@@ -63,10 +64,7 @@ impl Work {
         let pixels = f64::from(width) * f64::from(height);
         let (faces, frames) = (scene.model.faces.len() as f64, f64::from(frames));
         let count = pixels * f64::from(samples).powi(2);
-        let ink = match &style.lines {
-            Some(Lines::Image(ink)) => Some(ink.scale),
-            _ => None,
-        };
+        let ink = style.lines.image.map(|ink| ink.scale);
         let volumes = style.shadow.is_some_and(|shadow| shadow.method == ShadowMethod::Volumes);
         let parts = [
             (LIT, count),
@@ -74,7 +72,7 @@ impl Work {
             (SHADOWED, if volumes { count } else { 0.0 }),
             (INKED, if ink == Some(InkScale::One) && samples == 1 { pixels } else { 0.0 }),
             (
-                INKED_APART,
+                INKED_SEPARATELY,
                 match ink {
                     Some(InkScale::Half) => pixels / 4.0,
                     Some(InkScale::Double) => pixels * 4.0,

@@ -1,14 +1,16 @@
 //! Figure 10 of Card & Mitchell 2002: how shadow outlines come about, in four panels.
 
 use crate::camera::Camera;
-use crate::compare::Image;
 use crate::error::HarnessError;
-use crate::executor::{Backend, CpuReason, Executor, Picture};
-use crate::image_ink::ImageInk;
-use crate::plan::Plan;
+use crate::executor::{Backend, CpuReason, Executor, Picture, Rendered};
+use crate::hatch::{HatchEncoding, HatchGround, HatchShade, HatchTransfer};
+use crate::image_lines::ImageInk;
+use crate::picture::Image;
 use crate::scene::Scene;
+use crate::shade::Shade;
 use crate::shadow::ShadowLines;
-use crate::style::{HatchEncoding, HatchGround, HatchShade, HatchTransfer, Lines, Shade, Style, style};
+use crate::style::{Lines, Style, style};
+use crate::view::View;
 use npr_toon::normal::NormalUse;
 
 /// The panels, from the upper left: hatching with objects' outlines alone; the world-space normals that are filtered,
@@ -24,16 +26,10 @@ pub fn figure_10_styles() -> [Style; 4] {
         Shade::Hatch(HatchShade { encoding: HatchEncoding::SixTones, transfer, ground, ..hatching.clone() })
     };
     let printed = || six(HatchTransfer::Listing4 { brightness: 7.0 }, HatchGround::Paper);
-    let objects = Lines::Image(ImageInk {
-        shadows: ShadowLines::None,
-        ..match shadowed.lines {
-            Some(Lines::Image(ink)) => ink,
-            _ => ImageInk::default(),
-        }
-    });
+    let objects = Lines::image(ImageInk { shadows: ShadowLines::None, ..shadowed.lines.image.unwrap_or_default() });
     let at_vertices = NormalUse::PerVertex;
     [
-        Style { shade: printed(), normals: at_vertices, shadow: None, lines: Some(objects), ..shadowed.clone() },
+        Style { shade: printed(), normals: at_vertices, shadow: None, lines: objects, ..shadowed.clone() },
         style("normals").expect("a style of this crate"),
         Style { shade: printed(), normals: at_vertices, ..shadowed.clone() },
         Style { shade: six(HatchTransfer::Linear { ambient: 0.2 }, HatchGround::Surface), ..shadowed },
@@ -57,10 +53,9 @@ pub fn figure_10(
     let mut rgba8 = vec![255; width as usize * height as usize * 4];
     let mut why_cpu = None;
     for (number, style) in (0u32..).zip(figure_10_styles()) {
-        let plan = Plan::new(scene, &style, camera)?;
         let share = |share: f64| progress((f64::from(number) + share) / 4.0);
-        let picture = Picture { scene, style: &style, plan: &plan, camera, size: (columns, rows), samples: 1 };
-        let (panel, why) = executor.render_or_instead(backend, &picture, &share)?;
+        let picture = Picture::new(scene, &style, View::new(*camera, (columns, rows)));
+        let Rendered { image: panel, why_cpu: why, .. } = executor.render_with_fallback(backend, &picture, &share)?;
         why_cpu = why_cpu.or(why);
         let (left, top) = (number % 2 * columns, number / 2 * rows);
         for (row, bytes) in (top..).zip(panel.rgba8.chunks_exact(columns as usize * 4)) {

@@ -1,6 +1,9 @@
 //! Which adapter is taken, and what is asked of it.
 
-use super::{GpuContext, GpuError};
+use super::context::{GpuContext, describe};
+use crate::capabilities::{Capabilities, ExecutorKind};
+use crate::error::HarnessError;
+use crate::picture_limits::MEMORY_BYTES;
 
 /// An adapter that can make pictures, not opened yet.
 pub struct GpuAdapter {
@@ -21,13 +24,13 @@ impl DeviceLimits {
     /// Reads `NPR_GPU_LIMITS`: `adapter` (also when it is not set) or `webgl2`.
     ///
     /// # Errors
-    /// [`GpuError::Limits`] for anything else.
-    pub fn from_env() -> Result<Self, GpuError> {
+    /// [`HarnessError::GpuLimits`] for anything else.
+    pub fn from_env() -> Result<Self, HarnessError> {
         let value = std::env::var_os("NPR_GPU_LIMITS").unwrap_or_default();
         match value.to_string_lossy().as_ref() {
             "" | "adapter" => Ok(Self::Adapter),
             "webgl2" => Ok(Self::Webgl2),
-            other => Err(GpuError::Limits { name: other.to_owned() }),
+            other => Err(HarnessError::GpuLimits { name: other.to_owned() }),
         }
     }
 }
@@ -37,8 +40,8 @@ impl GpuAdapter {
     /// not looked at where the others have hardware. `WGPU_BACKEND` restricts which interfaces there are.
     ///
     /// # Errors
-    /// [`GpuError::NoAdapter`] with what was looked at.
-    pub fn find() -> Result<Self, GpuError> {
+    /// [`HarnessError::NoAdapter`] with what was looked at.
+    pub fn find() -> Result<Self, HarnessError> {
         let (mut seen, mut software) = (Vec::new(), None);
         for backends in [wgpu::Backends::PRIMARY, wgpu::Backends::GL] {
             let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
@@ -56,7 +59,7 @@ impl GpuAdapter {
             }
             software.get_or_insert(adapter);
         }
-        software.map(|adapter| Self { adapter }).ok_or(GpuError::NoAdapter { seen })
+        software.map(|adapter| Self { adapter }).ok_or(HarnessError::NoAdapter { seen })
     }
 
     /// Whether the adapter is the processor itself.
@@ -72,8 +75,8 @@ impl GpuAdapter {
     /// Opens a device on it.
     ///
     /// # Errors
-    /// [`GpuError::NoDevice`].
-    pub fn open(&self, limits: DeviceLimits) -> Result<GpuContext, GpuError> {
+    /// [`HarnessError::NoDevice`].
+    pub fn open(&self, limits: DeviceLimits) -> Result<GpuContext, HarnessError> {
         // Timestamps for measurements, the other two for shadows.
         let wanted = wgpu::Features::TIMESTAMP_QUERY
             | wgpu::Features::DEPTH32FLOAT_STENCIL8
@@ -88,15 +91,38 @@ impl GpuAdapter {
             required_limits,
             ..Default::default()
         });
-        let (device, queue) =
-            pollster::block_on(request).map_err(|source| GpuError::NoDevice { adapter: self.describe(), source })?;
-        Ok(GpuContext::of(&self.adapter, device, queue))
+        let (device, queue) = pollster::block_on(request)
+            .map_err(|source| HarnessError::NoDevice { adapter: self.describe(), fault: source.to_string() })?;
+        let capabilities = capabilities(&self.adapter, &device);
+        Ok(GpuContext::of(self.adapter.get_info(), capabilities, device, queue))
     }
 }
 
-/// An adapter's name, interface and driver.
-pub(super) fn describe(info: &wgpu::AdapterInfo) -> String {
-    format!("{} ({:?}, {})", info.name, info.backend, info.driver_info)
+/// What an adapter can do, with the device that was opened on it, whose limits and features may be less.
+fn capabilities(adapter: &wgpu::Adapter, device: &wgpu::Device) -> Capabilities {
+    use wgpu::DownlevelFlags;
+    let info = adapter.get_info();
+    let flags = adapter.get_downlevel_capabilities().flags;
+    let (limits, features) = (device.limits(), device.features());
+    let buffers = limits.max_storage_buffers_per_shader_stage;
+    Capabilities {
+        kind: match info.device_type {
+            wgpu::DeviceType::Cpu => ExecutorKind::SoftwareAdapter,
+            _ => ExecutorKind::HardwareAdapter,
+        },
+        compute: flags.contains(DownlevelFlags::COMPUTE_SHADERS)
+            && limits.max_compute_invocations_per_workgroup >= 64
+            && buffers >= 4,
+        no_compute: "the adapter has no compute shaders",
+        vertex_storage: flags.contains(DownlevelFlags::VERTEX_STORAGE) && buffers >= 3,
+        indirect_draws: flags.contains(DownlevelFlags::INDIRECT_EXECUTION),
+        unclipped_depth: features.contains(wgpu::Features::DEPTH_CLIP_CONTROL),
+        float_stencil: features.contains(wgpu::Features::DEPTH32FLOAT_STENCIL8),
+        exact_depth: info.backend != wgpu::Backend::Gl,
+        texture_px: limits.max_texture_dimension_2d,
+        storage_bytes: limits.max_storage_buffer_binding_size.min(limits.max_buffer_size),
+        memory_bytes: MEMORY_BYTES,
+    }
 }
 
 /// What every picture needs of an adapter.

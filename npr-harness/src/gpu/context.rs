@@ -1,8 +1,7 @@
 //! An adapter, a device, and what went wrong on it.
 
-use super::GpuError;
-use super::adapter::{DeviceLimits, GpuAdapter};
-use super::capabilities::Capabilities;
+use crate::capabilities::Capabilities;
+use crate::error::HarnessError;
 use std::sync::{Arc, Mutex, OnceLock};
 
 /// Why compute shaders are not used that were promised.
@@ -28,23 +27,18 @@ pub struct GpuContext {
 struct Faults {
     /// Why it is there no more; that remains.
     lost: Option<String>,
-    /// [`GpuError::OutOfMemory`] or [`GpuError::Device`]: a `wgpu::Error` cannot be sent between threads on wasm32.
-    first: Option<GpuError>,
+    /// [`HarnessError::OutOfMemory`] or [`HarnessError::Device`]: a `wgpu::Error` cannot be sent between threads on wasm32.
+    first: Option<HarnessError>,
 }
 
 impl GpuContext {
-    /// Opens the adapter that [`GpuAdapter::find`] takes, with the limits of the environment ([`DeviceLimits::from_env`]).
-    ///
-    /// # Errors
-    /// [`GpuError::NoAdapter`] with what was looked at, why the device could not be had, [`GpuError::Limits`].
-    pub fn new() -> Result<Self, GpuError> {
-        GpuAdapter::find()?.open(DeviceLimits::from_env()?)
-    }
-
-    /// What `adapter` gave.
-    pub(super) fn of(adapter: &wgpu::Adapter, device: wgpu::Device, queue: wgpu::Queue) -> Self {
-        let info = adapter.get_info();
-        let capabilities = Capabilities::new(adapter, &device);
+    /// What an adapter gave.
+    pub(super) fn of(
+        info: wgpu::AdapterInfo,
+        capabilities: Capabilities,
+        device: wgpu::Device,
+        queue: wgpu::Queue,
+    ) -> Self {
         // Without these, wgpu ends the process.
         let faults = Arc::new(Mutex::new(Faults::default()));
         let sink = Arc::clone(&faults);
@@ -52,8 +46,8 @@ impl GpuContext {
             if let Ok(mut faults) = sink.lock() {
                 let fault = one_line(&error.to_string());
                 faults.first.get_or_insert(match error {
-                    wgpu::Error::OutOfMemory { .. } => GpuError::OutOfMemory { fault },
-                    _ => GpuError::Device { fault },
+                    wgpu::Error::OutOfMemory { .. } => HarnessError::OutOfMemory { fault },
+                    _ => HarnessError::Device { fault },
                 });
             }
         }));
@@ -72,16 +66,6 @@ impl GpuContext {
         if self.refused.get().is_some() { capabilities.without_compute(REFUSED) } else { capabilities }
     }
 
-    /// The same for a single picture. Software adapters compile compute shaders in 10 to 40 ms and draw a frame by them in
-    /// 2 to 8 ms less (lavapipe, Mesa 22.3).
-    pub(crate) fn for_one_picture(&self) -> Capabilities {
-        let capabilities = self.usable();
-        if capabilities.software && capabilities.compute {
-            return capabilities.without_compute("for one picture compute shaders are not worth compiling");
-        }
-        capabilities
-    }
-
     /// A picture was made without compute shaders that could not be made with them.
     pub(crate) fn note_refusal(&self) {
         self.refused.get_or_init(|| ());
@@ -89,49 +73,49 @@ impl GpuContext {
 
     /// Whether the adapter runs on the CPU.
     pub fn is_software(&self) -> bool {
-        self.capabilities.software
+        self.capabilities.is_software()
     }
 
     /// What the adapter is, in a line.
     pub fn describe(&self) -> String {
-        super::adapter::describe(&self.info)
+        describe(&self.info)
     }
 
     /// Waits for all that was submitted.
     ///
     /// # Errors
-    /// [`GpuError::Lost`]; [`GpuError::OutOfMemory`] or [`GpuError::Device`], the first fault that the device reported
+    /// [`HarnessError::Lost`]; [`HarnessError::OutOfMemory`] or [`HarnessError::Device`], the first fault that the device reported
     /// since the last call.
-    pub fn wait(&self) -> Result<(), GpuError> {
+    pub fn wait(&self) -> Result<(), HarnessError> {
         let polled = self.device.poll(wgpu::PollType::wait_indefinitely());
-        let mut faults = self.faults.lock().map_err(|_| GpuError::Device { fault: "a fault was lost".into() })?;
+        let mut faults = self.faults.lock().map_err(|_| HarnessError::Device { fault: "a fault was lost".into() })?;
         if let Some(reason) = &faults.lost {
-            return Err(GpuError::Lost { reason: reason.clone() });
+            return Err(HarnessError::Lost { reason: reason.clone() });
         }
         match faults.first.take() {
             Some(error) => Err(error),
-            None => polled.map(|_| ()).map_err(|error| GpuError::Device { fault: one_line(&error.to_string()) }),
+            None => polled.map(|_| ()).map_err(|error| HarnessError::Device { fault: one_line(&error.to_string()) }),
         }
     }
 }
 
 impl GpuContext {
     /// Waits for a buffer with `MAP_READ` and all that was submitted before, and returns its bytes.
-    pub(super) fn map(&self, buffer: &wgpu::Buffer) -> Result<Vec<u8>, GpuError> {
+    pub(crate) fn map(&self, buffer: &wgpu::Buffer) -> Result<Vec<u8>, HarnessError> {
         let (sender, receiver) = std::sync::mpsc::channel();
         buffer.map_async(wgpu::MapMode::Read, .., move |result| {
             // The receiver is gone only if waiting failed, and then that is the error.
             let _ = sender.send(result);
         });
         self.wait()?;
-        let device_error = |fault: String| GpuError::Device { fault: one_line(&fault) };
+        let device_error = |fault: String| HarnessError::Device { fault: one_line(&fault) };
         receiver.recv().map_err(|e| device_error(e.to_string()))?.map_err(|e| device_error(e.to_string()))?;
         let mapped = buffer.get_mapped_range(..).map_err(|e| device_error(e.to_string()))?;
         Ok(mapped.to_vec())
     }
 
     /// The bytes of a buffer with `COPY_SRC`.
-    pub(super) fn read_buffer(&self, buffer: &wgpu::Buffer) -> Result<Vec<u8>, GpuError> {
+    pub(crate) fn read_buffer(&self, buffer: &wgpu::Buffer) -> Result<Vec<u8>, HarnessError> {
         let copy = self.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("copy"),
             size: buffer.size(),
@@ -143,6 +127,11 @@ impl GpuContext {
         self.queue.submit([encoder.finish()]);
         self.map(&copy)
     }
+}
+
+/// An adapter's name, interface and driver.
+pub(super) fn describe(info: &wgpu::AdapterInfo) -> String {
+    format!("{} ({:?}, {})", info.name, info.backend, info.driver_info)
 }
 
 /// wgpu tells causes on lines of their own.

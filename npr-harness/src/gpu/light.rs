@@ -1,7 +1,10 @@
 //! What the geometry pass knows of the light: constants of its pipelines, uniforms, and a ramp's image.
 
 use super::{GpuContext, GpuError};
-use crate::style::{PainterShade, Ramp2dSource, RampShade, RampSource, Shade, Style};
+use crate::shade::Shade;
+use crate::shade::painter::{PainterShade, Ramp2dSource};
+use crate::shade::ramp::{RampShade, RampSource};
+use crate::style::Style;
 use bytemuck::Zeroable;
 use npr_gooch::GoochUniform;
 use npr_outline::filled_buffer::filled_buffer;
@@ -141,7 +144,7 @@ pub(super) struct LightOnDevice {
 }
 
 impl LightOnDevice {
-    /// `lights` as [`crate::light::lights_in_world`] has them.
+    /// `lights` as [`crate::lights::lights_in_world`] has them.
     pub(super) fn new(context: &GpuContext, style: &Style, lights: &[Light]) -> Result<Self, GpuError> {
         let uniform = |contents: &[u8]| uniform_buffer(&context.device, contents);
         let (mut bands, mut ramps, mut gooch, mut ramp_image) = (None, None, None, None);

@@ -1,17 +1,19 @@
 //! The geometry pass.
 
-use super::GpuError;
-use super::hatch::{HatchTextures, HatchUniform, HatchVariant};
-use super::light::{Blank, LightOnDevice, LightVariant, uniform_buffer};
-use super::scene::{Batch, GpuScene, is_looked_up};
-use super::shadow::{BlankShadow, ShadowOnDevice};
+use super::materials::is_looked_up;
+use super::scene::{Batch, GpuScene};
+use super::shader::{Blank, LightOnDevice, ShaderKey, assemble};
 use super::targets::COLOR_FORMAT;
+use super::uniform::uniform_buffer;
 use crate::camera::Camera;
-use crate::image_ink::ImagePlan;
+use crate::error::HarnessError;
+use crate::hatch::gpu::{HatchTextures, HatchUniform};
+use crate::image_lines::plan::ImagePlan;
 use crate::plan::Plan;
 use crate::scene::Scene;
+use crate::shade::flag;
 use crate::shadow::ShadowLines;
-use crate::style::{Shade, Style};
+use crate::shadow::gpu::{BlankShadow, ShadowOnDevice};
 use glam::{DVec2, DVec3, DVec4};
 use npr_imagespace::artist::LineKind;
 use npr_imagespace::format::texel::{DepthCode, TexelLayout};
@@ -50,18 +52,6 @@ impl SurfaceUniform {
     }
 }
 
-/// `SurfaceMaterial` of `surface.wgsl`.
-#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(C)]
-pub(super) struct MaterialUniform {
-    pub(super) base_color: [f32; 4],
-    pub(super) texture_size: [f32; 2],
-    pub(super) last_level: f32,
-    pub(super) cutoff: f32,
-    pub(super) wrap: [u32; 2],
-    pub(super) padding: [u32; 2],
-}
-
 /// `SurfaceInk` of `surface.wgsl`.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
@@ -83,7 +73,7 @@ impl InkUniform {
 /// How a batch's fragments are shaded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum Paint {
-    /// Not at all.
+    /// No colour is written.
     Nothing,
     /// By light that is the same for all of a face but for its normals.
     Painted,
@@ -112,7 +102,7 @@ pub(super) struct SurfaceTargets<'a> {
     pub(super) samples: u32,
 }
 
-/// What tells one pipeline from another.
+/// What distinguishes one pipeline from another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 struct Variant {
     paint: Paint,
@@ -120,8 +110,8 @@ struct Variant {
     by_alpha: bool,
     cull_back: bool,
     blended: bool,
-    light: LightVariant,
-    hatch: Option<HatchVariant>,
+    /// The shader's number in [`SurfacePass::shaders`].
+    shader: usize,
     shadow: ShadowVariant,
     /// Of the depth buffer.
     depth: wgpu::TextureFormat,
@@ -131,7 +121,7 @@ struct Variant {
     inking: Option<Inking>,
 }
 
-/// Where a fragment's shadow comes from, and what lines in the image see of it: the constants of `surface_shadow.wgsl`.
+/// Where a fragment's shadow comes from, and what lines in the image see of it: the overrides of `shadow.wgsl`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 struct ShadowVariant {
     source: u32,
@@ -146,7 +136,7 @@ impl ShadowVariant {
             source: if shadow.mask.is_some() { 1 } else { 2 },
             lines: match lines {
                 ShadowLines::None => 0,
-                ShadowLines::Lines | ShadowLines::Apart { .. } => 1,
+                ShadowLines::Lines | ShadowLines::Separate { .. } => 1,
                 ShadowLines::Negated => 2,
             },
         }
@@ -155,7 +145,8 @@ impl ShadowVariant {
 
 /// The pipelines of the geometry pass.
 pub(super) struct SurfacePass {
-    module: wgpu::ShaderModule,
+    /// Made when first needed.
+    shaders: RefCell<Vec<(ShaderKey, wgpu::ShaderModule)>>,
     view_layout: wgpu::BindGroupLayout,
     material_layout: wgpu::BindGroupLayout,
     layout: wgpu::PipelineLayout,
@@ -165,19 +156,14 @@ pub(super) struct SurfacePass {
     pipelines: RefCell<HashMap<Variant, wgpu::RenderPipeline>>,
 }
 
-const SURFACE_LIGHT_WGSL: &str = include_str!("surface_light.wgsl");
-const SURFACE_SHADOW_WGSL: &str = include_str!("surface_shadow.wgsl");
-const SURFACE_WGSL: &str = include_str!("surface.wgsl");
-const SURFACE_HATCH_WGSL: &str = include_str!("surface_hatch.wgsl");
-
-/// The whole shader of the geometry pass.
-pub fn wgsl() -> String {
-    let ink =
-        [npr_imagespace::format::FORMAT_WGSL, npr_imagespace::shadow::SHADOW_WGSL, npr_imagespace::artist::ARTIST_WGSL]
-            .concat();
-    let hatch = [npr_hatch::WGSL, npr_hatch::LOOKUP_WGSL].concat();
-    let surface = [SURFACE_LIGHT_WGSL, SURFACE_SHADOW_WGSL, SURFACE_WGSL, SURFACE_HATCH_WGSL].concat();
-    [npr_toon::WGSL, npr_gooch::WGSL, &hatch, &ink, &surface].concat()
+/// A picture's surfaces, whatever they are drawn into.
+#[derive(Clone, Copy)]
+pub(super) struct SurfaceFrame<'a> {
+    pub(super) device: &'a wgpu::Device,
+    pub(super) scene: &'a Scene,
+    pub(super) uploaded: &'a GpuScene,
+    pub(super) plan: &'a Plan,
+    pub(super) light: &'a LightOnDevice,
 }
 
 impl SurfacePass {
@@ -227,28 +213,22 @@ impl SurfacePass {
                 uniform(1),
                 uniform(2),
                 uniform(3),
-                uniform(4),
+                fragment(4, texture),
                 uniform(5),
-                uniform(6),
+                fragment(6, texture),
                 fragment(7, texture),
-                uniform(8),
+                fragment(8, sampler),
                 fragment(9, texture),
-                fragment(10, texture),
-                fragment(11, sampler),
-                fragment(12, texture),
-                uniform(13),
-                fragment(14, words),
-                fragment(15, depth),
-                fragment(16, nearest),
+                uniform(10),
+                fragment(11, words),
+                fragment(12, depth),
+                fragment(13, nearest),
             ],
         );
         let material_layout =
             layout("surface material", &[one_of(0, true), fragment(1, texture), fragment(2, sampler)]);
         Self {
-            module: device.create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some("surface"),
-                source: wgpu::ShaderSource::Wgsl(wgsl().into()),
-            }),
+            shaders: RefCell::default(),
             layout: device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
                 label: Some("surface"),
                 bind_group_layouts: &[Some(&view_layout), Some(&material_layout)],
@@ -263,68 +243,57 @@ impl SurfacePass {
         }
     }
 
-    /// `uniforms`: of all materials, each where an offset says that is given when the group is bound.
-    pub(super) fn material_group(
-        &self,
-        device: &wgpu::Device,
-        uniforms: &wgpu::Buffer,
-        texture: &wgpu::TextureView,
-        sampler: &wgpu::Sampler,
-    ) -> wgpu::BindGroup {
-        let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
-        let size = wgpu::BufferSize::new(size_of::<MaterialUniform>() as u64);
-        let uniform = wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer: uniforms, offset: 0, size });
-        device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("material"),
-            layout: &self.material_layout,
-            entries: &[
-                entry(0, uniform),
-                entry(1, wgpu::BindingResource::TextureView(texture)),
-                entry(2, wgpu::BindingResource::Sampler(sampler)),
-            ],
-        })
+    pub(super) fn material_layout(&self) -> &wgpu::BindGroupLayout {
+        &self.material_layout
     }
 
-    #[expect(clippy::too_many_arguments, reason = "each is a thing of its own; a struct would only rename them")]
+    /// The number of a shader, which is made if it is not there.
+    fn shader(&self, device: &wgpu::Device, key: &ShaderKey) -> usize {
+        let mut shaders = self.shaders.borrow_mut();
+        if let Some(known) = shaders.iter().position(|(known, _)| known == key) {
+            return known;
+        }
+        // Those that differ by their overrides share a module.
+        let same = shaders.iter().find(|(known, _)| known.parts == key.parts).map(|(_, module)| module.clone());
+        let module = same.unwrap_or_else(|| {
+            device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some("surface"),
+                source: wgpu::ShaderSource::Wgsl(assemble(&key.parts).into()),
+            })
+        });
+        shaders.push((key.clone(), module));
+        shaders.len() - 1
+    }
+
+    /// Draws surfaces into targets. `shadow`: what was found of shadows on these.
     pub(super) fn record(
         &self,
-        device: &wgpu::Device,
         encoder: &mut wgpu::CommandEncoder,
-        uploaded: &GpuScene,
-        scene: &Scene,
-        style: &Style,
-        plan: &Plan,
-        camera: &Camera,
-        light: &LightOnDevice,
+        frame: &SurfaceFrame<'_>,
         shadow: Option<&ShadowOnDevice>,
         targets: &SurfaceTargets<'_>,
-    ) -> Result<(), GpuError> {
+    ) -> Result<(), HarnessError> {
+        let SurfaceFrame { device, scene, uploaded, plan, light } = *frame;
+        let camera = &plan.view.camera;
+        let shader = self.shader(device, &light.key);
         let ink = plan.image.as_ref().map_or_else(bytemuck::Zeroable::zeroed, |image| InkUniform::new(image, camera));
         let view = uniform_buffer(device, bytemuck::bytes_of(&SurfaceUniform::new(scene, camera, targets.size_px)));
         let ink = uniform_buffer(device, bytemuck::bytes_of(&ink));
-        let blank = &self.blank.uniform;
-        let ramp_image = light.ramp_image.as_ref().unwrap_or(&self.blank.ramp_image);
-        let hatch = match (&style.shade, &plan.hatch) {
-            (Shade::Hatch(shade), Some(plan)) => Some((shade, plan)),
-            _ => None,
-        };
-        let hatch_uniform = match hatch {
-            Some((shade, plan)) => Some(uniform_buffer(
-                device,
-                bytemuck::bytes_of(&HatchUniform::new(style, shade, plan, targets.samples)?),
-            )),
+        let shade_image = light.image.as_ref().unwrap_or(&self.blank.image);
+        let hatch_uniform = match plan.hatch() {
+            Some(hatch) => {
+                let uniform = HatchUniform::new(hatch, plan.paper, targets.samples)?;
+                Some(uniform_buffer(device, bytemuck::bytes_of(&uniform)))
+            }
             None => None,
         };
         let strokes = uploaded.hatch.as_ref().map_or(&self.no_strokes, |(_, textures)| textures);
         let bound = [
             view.as_entire_binding(),
-            light.bands.as_ref().unwrap_or(blank).as_entire_binding(),
+            light.shade.as_ref().unwrap_or(&self.blank.uniform).as_entire_binding(),
             ink.as_entire_binding(),
             light.lights.as_entire_binding(),
-            light.shade.as_entire_binding(),
-            light.ramps.as_ref().unwrap_or(blank).as_entire_binding(),
-            light.gooch.as_ref().unwrap_or(blank).as_entire_binding(),
-            wgpu::BindingResource::TextureView(ramp_image),
+            wgpu::BindingResource::TextureView(shade_image),
             hatch_uniform.as_ref().unwrap_or(&strokes.blank).as_entire_binding(),
             wgpu::BindingResource::TextureView(&strokes.light),
             wgpu::BindingResource::TextureView(&strokes.dark),
@@ -346,30 +315,32 @@ impl SurfacePass {
             layout: &self.view_layout,
             entries: &entries,
         });
-        let paint = match style.shade {
-            _ if targets.color.is_none() => Paint::Nothing,
-            Shade::Paper => Paint::Nothing,
-            Shade::Hatch(_) => Paint::Hatched,
-            _ if plan.lit => Paint::Lit,
-            _ => Paint::Painted,
+        let paint = match &plan.paint {
+            Some(paint) if targets.color.is_some() => match (&paint.hatch, paint.interpolates_light) {
+                (Some(_), _) => Paint::Hatched,
+                (None, true) => Paint::Lit,
+                (None, false) => Paint::Painted,
+            },
+            _ => Paint::Nothing,
         };
+        let by_alpha = plan.paint.as_ref().is_some_and(|paint| paint.shade.model().material_by_alpha());
         let blended = if plan.blended && paint != Paint::Nothing {
             back_to_front(scene, &uploaded.blended_faces, camera)
         } else {
             Vec::new()
         };
-        let alike = &uploaded.materials.alike;
-        let material_of = |face: &u32| alike[scene.model.face_material[*face as usize] as usize];
+        let duplicates = &uploaded.materials.duplicates;
+        let material_of = |face: &u32| duplicates[scene.model.face_material[*face as usize] as usize];
         let blended_runs: Vec<&[u32]> = blended.chunk_by(|a, b| material_of(a) == material_of(b)).collect();
         let (draws, limit) = (uploaded.batches.len() + blended_runs.len(), uploaded.most_draws);
         if draws > limit {
-            return Err(GpuError::TooManyDraws { draws, limit });
+            return Err(HarnessError::TooManyDraws { draws, limit });
         }
         let blended_indices = (!blended.is_empty()).then(|| {
             let faces: Vec<_> = blended.iter().map(|f| scene.model.faces[*f as usize]).collect();
             filled_buffer(device, "blended faces", bytemuck::cast_slice(&faces), wgpu::BufferUsages::INDEX)
         });
-        let paper = style.paper.as_dvec3();
+        let paper = plan.paper.as_dvec3();
         let paper = wgpu::LoadOp::Clear(wgpu::Color { r: paper.x, g: paper.y, b: paper.z, a: 1.0 });
         let attachment = |view, load| wgpu::RenderPassColorAttachment {
             view,
@@ -397,14 +368,13 @@ impl SurfacePass {
             let variant = Variant {
                 paint,
                 looked_up: is_looked_up(scene, batch.material) && wanted,
-                by_alpha: light.variant.by_alpha && material.texture.is_some(),
+                by_alpha: by_alpha && material.texture.is_some(),
                 cull_back: plan.cull_back || !double_sided,
                 blended,
-                light: light.variant,
+                shader,
                 // No shadow is known of what is blended: it is not what the stencil was counted against.
                 shadow: if blended { ShadowVariant::default() } else { ShadowVariant::new(plan, shadow) },
                 depth: targets.depth.texture().format(),
-                hatch: hatch.filter(|_| paint == Paint::Hatched).map(|(shade, plan)| HatchVariant::new(shade, plan)),
                 colored,
                 clipped: scene.clip.is_some(),
                 inking,
@@ -436,9 +406,7 @@ impl SurfacePass {
             }));
         }
         let mut pass = begin(encoder, bound, [color.filter(|_| colored), texels], wgpu::LoadOp::Clear(0.0));
-        // Lines in the image that are found at another size hide nothing behind what the picture itself has.
-        let needed =
-            paint != Paint::Nothing || targets.texels.is_some() || targets.color.is_none() || plan.image.is_none();
+        let needed = targets.color.is_none() || plan.draws_surfaces;
         for batch in uploaded.batches.iter().filter(|_| needed) {
             draw(&mut pass, batch, colored, false);
         }
@@ -456,8 +424,9 @@ impl SurfacePass {
     }
 
     fn pipeline(&self, device: &wgpu::Device, variant: Variant) -> wgpu::RenderPipeline {
-        let Variant { paint, looked_up, by_alpha, cull_back, blended, light, hatch, colored, clipped, inking, .. } =
-            variant;
+        let Variant { paint, looked_up, by_alpha, cull_back, blended, colored, clipped, inking, .. } = variant;
+        let shaders = self.shaders.borrow();
+        let (key, module) = &shaders[variant.shader];
         let inked = inking.is_some();
         let (vertex, fragment) = match (paint, looked_up, inked) {
             (Paint::Nothing, false, false) => ("vs_depth", if clipped { "fs_clipped" } else { "fs_nothing" }),
@@ -465,7 +434,7 @@ impl SurfacePass {
             (Paint::Painted, false, false) => ("vs_plain", "fs_painted"),
             (Paint::Painted, true, false) => ("vs_textured", "fs_painted_textured"),
             // A shadow asks for the normal at the pixel.
-            (Paint::Lit, false, false) if light.is_of_vertices() && variant.shadow.source == 0 => {
+            (Paint::Lit, false, false) if key.at_vertices && variant.shadow.source == 0 => {
                 ("vs_lit_vertex", "fs_lit_vertex")
             }
             (Paint::Lit, false, false) => ("vs_lit_plain", "fs_lit_plain"),
@@ -516,11 +485,10 @@ impl SurfacePass {
         let (narrow, line_kind, region_of_texture) = inking.map_or((false, LineKind::Normals, false), |inking| {
             (inking.layout == TexelLayout::Narrow, inking.line_kind, inking.region_of_texture)
         });
-        let flag = |flag: bool| f64::from(u8::from(flag));
-        let constants: Vec<_> = light
-            .constants()
-            .into_iter()
-            .chain(HatchVariant::constants(hatch))
+        let constants: Vec<_> = key
+            .constants
+            .iter()
+            .copied()
             .chain([
                 ("surface_shadow", f64::from(variant.shadow.source)),
                 ("surface_shadow_lines", f64::from(variant.shadow.lines)),
@@ -540,7 +508,7 @@ impl SurfacePass {
             label: Some("surface"),
             layout: Some(&self.layout),
             vertex: wgpu::VertexState {
-                module: &self.module,
+                module,
                 entry_point: Some(vertex),
                 compilation_options: options(),
                 buffers: &buffers,
@@ -555,7 +523,7 @@ impl SurfacePass {
             }),
             multisample: Default::default(),
             fragment: Some(wgpu::FragmentState {
-                module: &self.module,
+                module,
                 entry_point: Some(fragment),
                 compilation_options: options(),
                 targets: match (colored, inking.is_some()) {

@@ -1,5 +1,4 @@
-// The geometry pass. Appended to `surface_light.wgsl`, and that to the libraries of npr-toon, npr-gooch and
-// npr-imagespace.
+// The geometry pass.
 
 struct SurfaceView {
     clip_from_world: mat4x4<f32>,
@@ -171,7 +170,7 @@ fn lit_vertex(position: vec3<f32>, normal: vec3<f32>) -> PlainLitSurface {
     if surface_normals == 1u {
         lit.normal = n;
         lit.first = to_first_light(position);
-        lit.second = second_at(position, eye);
+        lit.second = shade_second_vector(position, eye);
     } else if surface_normals == 2u {
         lit.first = vec3<f32>(light_at(n, position, eye), 0.0);
     }
@@ -229,11 +228,8 @@ fn base_color(texel: vec4<f32>, color: vec4<f32>) -> vec4<f32> {
 
 // Per-pixel light from directions that are the same everywhere. In uniform control flow.
 fn painted(base: vec3<f32>, normal: vec3<f32>, position_px: vec2<f32>, at: ShadowAt) -> vec3<f32> {
-    if surface_shade == SHADE_NORMALS {
-        let negated = surface_shadow != 0u && at.negated;
-        return ink_shadow_normal(toon_unit(normal), negated) * 0.5 + 0.5;
-    }
-    return shaded(base, light_at(toon_unit(normal), vec3<f32>(0.0), to_eye(position_px)), at);
+    let n = toon_unit(normal);
+    return shade_color(base, light_at(n, vec3<f32>(0.0), to_eye(position_px)), n, at);
 }
 
 // Cuts off what lies beyond the plane. After all derivatives.
@@ -420,7 +416,8 @@ fn lit_words(in: LitSurface, texel: vec4<f32>, front: bool, at: ShadowAt) -> vec
 fn fs_lit(in: LitSurface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
     let base = lit_base(in, lit_texel(in));
     let at = shadow_at(in.position, facing(in.normal, front));
-    let color = shaded(base.rgb, light_of(without_lookups(in), front), at);
+    let n = toon_unit(facing(in.normal, front));
+    let color = shade_color(base.rgb, light_of(without_lookups(in), front), n, at);
     if surface_looked_up && base.a < material.cutoff {
         discard;
     }
@@ -431,14 +428,16 @@ fn fs_lit(in: LitSurface, @builtin(front_facing) front: bool) -> @location(0) ve
 @fragment
 fn fs_lit_plain(in: PlainLitSurface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
     let at = shadow_at(in.position, facing(in.normal, front));
-    let color = shaded(material.base_color.rgb, light_of(in, front), at);
+    let n = toon_unit(facing(in.normal, front));
+    let color = shade_color(material.base_color.rgb, light_of(in, front), n, at);
     clip_off(in.position);
     return vec4<f32>(color, surface_alpha(material.base_color.a));
 }
 
 @fragment
 fn fs_lit_vertex(in: VertexLitSurface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
-    let color = shaded(material.base_color.rgb, select(light_of_back(in.light), in.light, front), NO_SHADOW);
+    let light = select(light_of_back(in.light), in.light, front);
+    let color = shade_color(material.base_color.rgb, light, vec3<f32>(0.0), NO_SHADOW);
     clip_off(in.position);
     return vec4<f32>(color, surface_alpha(material.base_color.a));
 }
@@ -448,7 +447,8 @@ fn fs_lit_inked(in: LitSurface, @builtin(front_facing) front: bool) -> Inked {
     let texel = lit_texel(in);
     let base = lit_base(in, texel);
     let at = shadow_at(in.position, facing(in.normal, front));
-    let color = shaded(base.rgb, light_of(without_lookups(in), front), at);
+    let n = toon_unit(facing(in.normal, front));
+    let color = shade_color(base.rgb, light_of(without_lookups(in), front), n, at);
     if surface_looked_up && base.a < material.cutoff {
         discard;
     }

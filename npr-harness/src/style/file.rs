@@ -4,133 +4,66 @@
 //! or `"#rrggbb"`. Images are PNG files, named relative to the style's file.
 
 use super::Style;
-use super::form::StyleForm;
-use crate::compare::ImageError;
+use super::schema::StyleTable;
+use crate::error::HarnessError;
 use crate::suggest::nearest;
 use npr_hatch::files::read_file;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use toml::de::{DeTable, DeValue};
 
 /// Longer files are no styles.
 const MOST_BYTES: u64 = 1 << 20;
 
-/// Why a style could not be read or written.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum StyleFileError {
-    /// The file cannot be read.
-    #[error("{}: {source}", path.display())]
-    Read {
-        /// Which.
-        path: PathBuf,
-        /// Why.
-        source: io::Error,
-    },
-    /// It is not TOML, or has keys or values that a style does not have.
-    #[error("{}:{line}:{column}: {message}", path.display())]
-    Toml {
-        /// Which file.
-        path: PathBuf,
-        /// From 1.
-        line: usize,
-        /// From 1.
-        column: usize,
-        /// In the parser's words.
-        message: String,
-    },
-    /// It has two tables of which a style has one.
-    #[error(
-        "{}:{line}:{column}: a style has one kind of {what}: [{table}.{first}] and [{table}.{second}] are both there",
-        path.display()
-    )]
-    TwoKinds {
-        /// Which file.
-        path: PathBuf,
-        /// Of the second table, from 1.
-        line: usize,
-        /// The same.
-        column: usize,
-        /// What there is one kind of.
-        what: &'static str,
-        /// The key above both.
-        table: &'static str,
-        /// A key.
-        first: String,
-        /// Another one.
-        second: String,
-    },
-    /// It is TOML, but says something twice or not at all.
-    #[error("{}: {what}", path.display())]
-    Form {
-        /// Which file.
-        path: PathBuf,
-        /// What is wrong.
-        what: String,
-    },
-    /// A rule of the shade or the lights is broken.
-    #[error("{}: {source}", path.display())]
-    Rule {
-        /// Which file.
-        path: PathBuf,
-        /// Which rule.
-        source: Box<crate::error::HarnessError>,
-    },
-    /// A ramp's image.
-    #[error("a ramp's image: {0}")]
-    Image(#[from] ImageError),
-    /// A style that has no TOML form.
-    #[error("a style could not be written: {0}")]
-    Write(#[from] toml::ser::Error),
-}
-
 impl Style {
     /// Reads a style and checks it. Without a name it is called what the file is.
     ///
     /// # Errors
-    /// [`StyleFileError`].
-    pub fn read(path: &Path) -> Result<Self, StyleFileError> {
-        let text = read_text(path).map_err(|source| StyleFileError::Read { path: path.to_owned(), source })?;
+    /// [`HarnessError::Read`], and those of [`Style::from_toml`].
+    pub fn read(path: &Path) -> Result<Self, HarnessError> {
+        let text = read_text(path).map_err(|source| HarnessError::Read { path: path.to_owned(), source })?;
         Self::from_toml(&text, path)
     }
 
     /// A style from the text of a file that stands, or would stand, at `path`.
     ///
     /// # Errors
-    /// [`StyleFileError`], but for [`StyleFileError::Read`].
-    pub fn from_toml(text: &str, path: &Path) -> Result<Self, StyleFileError> {
+    /// [`HarnessError::StyleToml`], [`HarnessError::TwoKinds`], [`HarnessError::StyleTable`],
+    /// [`HarnessError::StyleRule`], [`HarnessError::RampImage`].
+    pub fn from_toml(text: &str, path: &Path) -> Result<Self, HarnessError> {
         let failed = |error: toml::de::Error| {
             let (line, column) = position(text, error.span().map_or(0, |span| span.start));
             let message = with_suggestion(error.message().trim()).replace('\n', ", ");
-            StyleFileError::Toml { path: path.to_owned(), line, column, message }
+            HarnessError::StyleToml { path: path.to_owned(), line, column, message }
         };
         let document = DeTable::parse(text).map_err(failed)?;
         for (table, what) in ONE_KIND {
             let Some([(_, first), (start, second)]) = two_kinds(document.get_ref(), table) else { continue };
             let (line, column) = position(text, start);
-            return Err(StyleFileError::TwoKinds { path: path.to_owned(), line, column, what, table, first, second });
+            return Err(HarnessError::TwoKinds { path: path.to_owned(), line, column, what, table, first, second });
         }
-        let form: StyleForm = toml::from_str(text).map_err(failed)?;
-        let style = form.style(path)?;
-        style.validate().map_err(|source| StyleFileError::Rule { path: path.to_owned(), source: Box::new(source) })?;
+        let table: StyleTable = toml::from_str(text).map_err(failed)?;
+        let style = table.style(path)?;
+        style
+            .validate()
+            .map_err(|source| HarnessError::StyleRule { path: path.to_owned(), source: Box::new(source) })?;
         Ok(style)
     }
 
     /// The style as the text of a file. Images are written as texels.
     ///
     /// # Errors
-    /// [`StyleFileError::Write`].
-    pub fn to_toml(&self) -> Result<String, StyleFileError> {
-        Ok(toml::to_string(&StyleForm::new(self))?)
+    /// [`HarnessError::StyleWrite`].
+    pub fn to_toml(&self) -> Result<String, HarnessError> {
+        Ok(toml::to_string(&StyleTable::new(self))?)
     }
 }
 
 /// Tables that hold one other table, whose key says of which kind something is.
-const ONE_KIND: [(&str, &str); 5] = [
-    ("lines", "lines"),
+const ONE_KIND: [(&str, &str); 4] = [
     ("shade", "shade"),
     ("lines.image.shadows", "lines around shadows"),
-    ("lines.image.shadows.apart.composite", "composite of lines around shadows"),
+    ("lines.image.shadows.separate.composite", "composite of lines around shadows"),
     ("lines.image.composite", "composite of lines"),
 ];
 

@@ -1,11 +1,15 @@
 //! The styles there are.
 
-use super::{
-    HatchEncoding, HatchGround, HatchMap, HatchMapping, HatchShade, HatchSource, HatchTransfer, Lines, PainterShade,
-    Ramp2dSource, RampShade, RampSource, Shade, Style,
-};
-use crate::image_ink::{ImageInk, InkScale};
-use crate::light::{LightFrame, StyleLight};
+use super::{Lines, Style};
+use crate::edge_lines::plan::INK;
+use crate::hatch::{HatchEncoding, HatchGround, HatchMap, HatchMapping, HatchShade, HatchSource, HatchTransfer};
+use crate::image_lines::{ImageInk, InkScale};
+use crate::lights::{LightFrame, StyleLight};
+use crate::printed_fins::PrintedLines;
+use crate::shade::Shade;
+use crate::shade::lambert::Lambert;
+use crate::shade::painter::{PainterShade, Ramp2dSource};
+use crate::shade::ramp::{RampShade, RampSource};
 use crate::shadow::{ShadowLines, ShadowStyle};
 use glam::Vec3;
 use npr_gooch::Gooch;
@@ -24,17 +28,15 @@ use std::sync::LazyLock;
 
 /// A warm white.
 const PAPER: Vec3 = Vec3::new(0.98, 0.97, 0.94);
-/// Not quite black.
-pub(super) const INK: [f32; 4] = [0.10, 0.09, 0.11, 1.0];
 
-fn ink_lines(silhouette_px: f32, crease_px: f32) -> Option<Lines> {
+fn ink_lines(silhouette_px: f32, crease_px: f32) -> Lines {
     let width_px = widths_px(silhouette_px, silhouette_px, crease_px, crease_px);
-    Some(Lines::Fins(LineLook { width_px, ink: INK }))
+    Lines::edges(LineLook { width_px, ink: INK })
 }
 
-fn image_lines(ink: ImageInk) -> Option<Lines> {
+fn image_lines(ink: ImageInk) -> Lines {
     let [r, g, b, opacity] = INK;
-    Some(Lines::Image(ImageInk { composite: Composite::Over { color: Vec3::new(r, g, b), opacity }, ..ink }))
+    Lines::image(ImageInk { composite: Composite::Over { color: Vec3::new(r, g, b), opacity }, ..ink })
 }
 
 fn ramp<const N: usize>(blend: RampBlend, stops: [(f32, [f32; 3]); N]) -> Ramp {
@@ -126,7 +128,7 @@ pub fn styles() -> Vec<Style> {
     let from_the_side = vec![StyleLight { light: Light::directional(Vec3::new(-0.7, 0.6, 0.3)), ..StyleLight::KEY }];
     vec![
         style("cartoon", "banded light, highlight, ink lines", Shade::Toon(Bands::default()), ink_lines(2.0, 1.3)),
-        style("toon", "banded light alone", Shade::Toon(Bands::default()), None),
+        style("toon", "banded light alone", Shade::Toon(Bands::default()), Lines::NONE),
         style("lines", "ink on paper, hidden lines removed", Shade::Paper, ink_lines(1.4, 1.0)),
         style("bold", "two tones and a heavy pen", Shade::Toon(Bands::hard_shading()), ink_lines(4.0, 2.0)),
         Style {
@@ -149,7 +151,12 @@ pub fn styles() -> Vec<Style> {
         },
         style("wash", "a smooth ramp of colours, fine lines", Shade::Ramp(wash()), ink_lines(1.2, 0.9)),
         style("wrapped", "four bands of half-Lambert light, ink lines", Shade::Ramp(wrapped()), ink_lines(2.0, 1.3)),
-        style("lambert", "plain diffuse light, no bands, no lines", Shade::Lambert { ambient: 0.25 }, None),
+        style(
+            "lambert",
+            "plain diffuse light, no bands, no lines",
+            Shade::Lambert(Lambert { ambient: 0.25 }),
+            Lines::NONE,
+        ),
         style(
             "ink-image",
             "banded light, lines found in the image",
@@ -158,10 +165,10 @@ pub fn styles() -> Vec<Style> {
         ),
         style(
             "ink-thick",
-            "the same at twice the size, widened by a round brush",
+            "the same at twice the size, widened by a round dilation",
             Shade::Toon(Bands::default()),
             image_lines(ImageInk {
-                brush: Some(Disc { radius_px: 3.0, antialias: true }),
+                dilation: Some(Disc { radius_px: 3.0, antialias: true }),
                 scale: InkScale::Double,
                 ..ImageInk::default()
             }),
@@ -206,9 +213,9 @@ pub fn styles() -> Vec<Style> {
                 "ink on paper, and in blue where shadows end",
                 Shade::Paper,
                 image_lines(ImageInk {
-                    shadows: ShadowLines::Apart {
+                    shadows: ShadowLines::Separate {
                         composite: Composite::Over { color: Vec3::new(0.20, 0.36, 0.72), opacity: 1.0 },
-                        brush: Some(Disc { radius_px: 1.0, antialias: true }),
+                        dilation: Some(Disc { radius_px: 1.0, antialias: true }),
                     },
                     ..ImageInk::default()
                 }),
@@ -221,7 +228,7 @@ pub fn styles() -> Vec<Style> {
                 "normals",
                 "world-space normals, negated in shadow: what the 2002 chapter filters",
                 Shade::Normals,
-                None,
+                Lines::NONE,
             )
         },
         Style {
@@ -240,7 +247,7 @@ pub fn styles() -> Vec<Style> {
                 "vertex-light",
                 "the bands of `toon` by light that is computed at the vertices",
                 Shade::Toon(Bands::default()),
-                None,
+                Lines::NONE,
             )
         },
         Style {
@@ -249,7 +256,7 @@ pub fn styles() -> Vec<Style> {
                 "printed-bands",
                 "the three bands of the 2002 chapter's listing 3, aliased, normals as interpolated",
                 Shade::Toon(Bands::listing_3()),
-                None,
+                Lines::NONE,
             )
         },
         Style {
@@ -259,7 +266,7 @@ pub fn styles() -> Vec<Style> {
                 "printed-gooch",
                 "the cool and warm tones of the 2002 chapter's listing 7, as printed",
                 Shade::Gooch(Gooch::listing_7()),
-                None,
+                Lines::NONE,
             )
         },
         style("hatch", "strokes that follow the form, fine lines", Shade::Hatch(hatching()), ink_lines(1.4, 1.0)),
@@ -300,14 +307,14 @@ pub fn styles() -> Vec<Style> {
                     ink: Vec3::ZERO,
                     ..hatching()
                 }),
-                None,
+                Lines::NONE,
             )
         },
         style(
             "printed-fins",
             "the outline of the 2002 chapter's listing 1, as printed",
             Shade::Toon(hard),
-            Some(Lines::Printed { width_px: 2.0, ink: Vec3::ZERO }),
+            Lines::printed(PrintedLines { width_px: 2.0, ink: Vec3::ZERO }),
         ),
     ]
 }

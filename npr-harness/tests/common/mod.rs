@@ -2,7 +2,14 @@
 #![allow(dead_code, clippy::print_stdout)]
 
 use glam::{Mat4, Vec2, Vec3, Vec4};
-use npr_harness::executor::{Backend, Executor};
+use npr_harness::camera::Camera;
+use npr_harness::capabilities::Capabilities;
+use npr_harness::executor::{Backend, Executor, Picture};
+use npr_harness::picture::Image;
+use npr_harness::plan::Plan;
+use npr_harness::scene::Scene;
+use npr_harness::style::Style;
+use npr_harness::view::View;
 use npr_mesh::{AlphaMode, Material, Model, Texture, Wrap};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -20,6 +27,16 @@ pub fn device() -> Option<Executor> {
         #[cfg(feature = "gpu")]
         executor => Some(executor),
     }
+}
+
+/// The plan for the CPU.
+pub fn planned(scene: &Scene, style: &Style, camera: &Camera, size: (u32, u32)) -> Plan {
+    Plan::new(scene, style, &View::new(*camera, size), &Capabilities::RAY_CASTER).expect("a good style")
+}
+
+/// A picture by an executor.
+pub fn rendered(executor: &Executor, scene: &Scene, style: &Style, camera: &Camera, size: (u32, u32)) -> Image {
+    executor.render(&Picture::new(scene, style, View::new(*camera, size)), &|_| {}).expect("a picture")
 }
 
 /// A fresh folder that goes when the test is over.

@@ -1,8 +1,8 @@
 //! Where `npr render` writes its picture.
 
 use crate::terminal::{say, tell};
-use npr_harness::compare::{Image, PictureFormat};
 use npr_harness::error::{HarnessError, PathRole};
+use npr_harness::picture::{Image, PictureFormat};
 use npr_hatch::files::{check_place, write_file};
 use std::fs;
 use std::io::{self, Write};

@@ -7,12 +7,13 @@ use crate::terminal::{announce, one_line, progress_bar, say, tell};
 use clap::{Args, ValueEnum};
 use glam::{DVec3, DVec4};
 use npr_harness::camera::{Camera, Framing};
+use npr_harness::capabilities::Capabilities;
 use npr_harness::error::HarnessError;
-use npr_harness::executor::{Backend, Candidates, Executor, Picture, Work};
+use npr_harness::executor::{Backend, Candidates, Executor, Picture, Rendered, Work};
 use npr_harness::picture_limits::{MEMORY_BYTES, MOST_SAMPLES, check_picture};
-use npr_harness::plan::Plan;
 use npr_harness::plan::Reason;
 use npr_harness::scene::Scene;
+use npr_harness::view::View;
 use npr_imagespace::artist::LineKind;
 use npr_mesh::{Warning, pn_triangles};
 use serde_json::json;
@@ -179,33 +180,29 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
     let mut executor = candidates.choose_for(&Work::new(&scene, &style, options.size, samples));
     // What of it was not over before.
     let device_ms = elapsed_ms(start);
-    if let Err(error) = check(!executor.is_cpu()) {
-        // What the CPU takes was checked before.
-        executor = Executor::instead(backend, error)?;
-    }
     announce(&executor);
     let start = Instant::now();
-    let decide = || {
-        let camera = Camera::framed(scene.corners(), f64::from(width) / f64::from(height), &framing);
-        Plan::new(&scene, &style, &camera).map(|plan| (camera, plan))
-    };
-    let (camera, plan) = if executor.is_cpu() { scene.while_building_rays(decide) } else { decide() }?;
+    let frame = || Camera::framed(scene.corners(), f64::from(width) / f64::from(height), &framing);
+    let mut picture =
+        Picture { memory_bytes: memory as u64, ..Picture::new(&scene, &style, View::new(frame(), options.size)) };
+    picture.view.samples = samples;
+    // What is planned is found once: rendering finds it there.
+    if executor.is_cpu() {
+        scene.while_building_rays(|| picture.plan(Capabilities::RAY_CASTER))?;
+    }
     prepared_ms += elapsed_ms(start);
     let start = Instant::now();
-    let picture = Picture { scene: &scene, style: &style, plan: &plan, camera: &camera, size: options.size, samples };
     let bar = progress_bar("rendering");
     let tell = |share| bar.set_position((share * 1000.0) as u64);
-    let (image, why_cpu) = executor.render_or_instead(backend, &picture, &tell)?;
+    let Rendered { image, plan, why_cpu } = executor.render_with_fallback(backend, &picture, &tell)?;
     if why_cpu.is_some() {
         executor = Executor::Cpu { why: why_cpu };
         announce(&executor);
     }
-    // Afterwards: a driver may have refused what it had promised.
-    let methods = executor.methods(&picture)?;
     bar.finish_and_clear();
     destination.write(&image)?;
     let drawn_ms = elapsed_ms(start);
-    let (_, counts) = plan.lines(camera.homogeneous_eye());
+    let (_, counts) = plan.lines();
     if options.json {
         let listed = |of: &[Reason]| of.iter().map(|r| json!({"pass": r.pass, "why": r.why})).collect::<Vec<_>>();
         let warnings: Vec<_> = warnings.iter().map(|w| json!({"text": w.text, "count": w.count})).collect();
@@ -217,7 +214,7 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
                 "faces": scene.model.faces.len(), "edges": scene.edges.edges.len(), "folds": scene.edges.folds.len(),
                 "lines": {"silhouette": counts[0], "boundary": counts[1], "crease": counts[2], "material_border": counts[3]},
                 "device_ms": device_ms, "load_ms": loaded_ms, "prepare_ms": prepared_ms, "render_ms": drawn_ms,
-                "passes": listed(&plan.passes), "left_out": listed(&plan.left_out), "methods": listed(&methods),
+                "passes": listed(&plan.passes), "left_out": listed(&plan.left_out), "methods": listed(&plan.methods),
                 "warnings": warnings,
             })
         ))?;
@@ -240,9 +237,6 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
         );
         if options.plan {
             summary.push_str(&plan.to_string());
-            for Reason { pass, why } in &methods {
-                summary.push_str(&format!("  method  {pass:<36} {}\n", one_line(why)));
-            }
         }
         destination.summarize(&summary)?;
     }

@@ -1,12 +1,20 @@
-use super::super::light::ShadeUniform;
-use super::super::shadow::ShadowUniform;
+use super::super::materials::MaterialUniform;
+use super::super::shader::surface_wgsl;
 use super::*;
+use crate::shade::Shade;
+use crate::shadow::gpu::ShadowUniform;
+use crate::style::style;
+use crate::view::View;
 use naga::TypeInner;
 use std::mem::offset_of;
 
 #[test]
 fn the_uniforms_lie_as_the_shader_has_them() {
-    let module = naga::front::wgsl::parse_str(&wgsl()).expect("the shader parses");
+    // Hatched, since that has all of them.
+    let Shade::Hatch(shade) = style("hatch").expect("a style of this crate").shade else { panic!("it hatches") };
+    let view = View::new(crate::gallery::still_life_camera(), (16, 16));
+    let text = surface_wgsl(&Shade::Hatch(shade), &view).expect("good numbers");
+    let module = naga::front::wgsl::parse_str(&text).expect("the shader parses");
     let layout = |name: &str| {
         let (_, ty) = module.types.iter().find(|(_, t)| t.name.as_deref() == Some(name)).expect("it is there");
         let TypeInner::Struct { members, span } = &ty.inner else { panic!("{name} is no struct") };
@@ -41,15 +49,6 @@ fn the_uniforms_lie_as_the_shader_has_them() {
         ("back", offset_of!(InkUniform, back)),
     ];
     assert_eq!(layout("SurfaceInk"), ours(&ink, size_of::<InkUniform>()));
-    let shade = [
-        ("ambient", offset_of!(ShadeUniform, ambient)),
-        ("half_scale", offset_of!(ShadeUniform, half_scale)),
-        ("half_bias", offset_of!(ShadeUniform, half_bias)),
-        ("half_squared", offset_of!(ShadeUniform, half_squared)),
-        ("row_ends", offset_of!(ShadeUniform, row_ends)),
-        ("padding", offset_of!(ShadeUniform, padding)),
-    ];
-    assert_eq!(layout("SurfaceShade"), ours(&shade, size_of::<ShadeUniform>()));
     let hatch = [
         ("light_tones", offset_of!(HatchUniform, light_tones)),
         ("texels", offset_of!(HatchUniform, texels)),

@@ -1,0 +1,7 @@
+//! Lines along the edges of a mesh: silhouettes, boundaries, creases and borders between materials.
+
+pub(crate) mod cpu;
+pub mod plan;
+pub(crate) mod schema;
+
+pub use plan::{EdgeLineMethod, EdgeLinePlan};

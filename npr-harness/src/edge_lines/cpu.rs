@@ -1,0 +1,84 @@
+//! Lines on the CPU: the same segments, coverage and visibility as on the device, in f64.
+
+use super::plan::EdgeLinePlan;
+use crate::cpu::frame::CpuFrame;
+use crate::scene::Scene;
+use crate::view::View;
+use glam::{DVec2, DVec3, Vec3};
+use npr_outline::contour::TRAIT_CUT_OUT;
+use npr_outline::segment::{ScreenSegment, outline_coverage, outline_is_visible, outline_project};
+
+/// Draws lines over `frame`, which has all samples of the view. `shift_px`: where its surfaces were sampled relative to the
+/// samples' centres, in px of the frame.
+pub(crate) fn draw_lines(plan: &EdgeLinePlan, scene: &Scene, view: &View, shift_px: DVec2, frame: &mut CpuFrame) {
+    let coverage = line_coverage(plan, scene, view, shift_px, frame);
+    let [r, g, b, opacity] = plan.style.ink;
+    let ink = DVec3::new(r.into(), g.into(), b.into());
+    for (color, coverage) in frame.color.iter_mut().zip(coverage) {
+        if coverage > 0.0 {
+            let opacity = f64::from(opacity) * coverage;
+            *color = color.truncate().lerp(ink, opacity).extend(opacity + color.w * (1.0 - opacity));
+        }
+    }
+}
+
+/// Per pixel how much of it visible lines cover, the greatest of any line.
+fn line_coverage(plan: &EdgeLinePlan, scene: &Scene, view: &View, shift_px: DVec2, frame: &CpuFrame) -> Vec<f64> {
+    let mut coverage = vec![0.0f64; frame.color.len()];
+    let (contours, scale) = (&plan.contours, f64::from(view.samples.max(1)));
+    let eye = view.camera.homogeneous_eye();
+    let (lines, _) = plan.lines(eye);
+    let view = view.camera.line_view(view.sampled_size_px());
+    let local_eye = contours.local_eye(eye);
+    let last = (i64::from(frame.width) - 1, i64::from(frame.height) - 1);
+    let depth_at = |x: i64, y: i64| frame.depth[(y.clamp(0, last.1) * (last.0 + 1) + x.clamp(0, last.0)) as usize];
+    for line in lines {
+        let edge = line as usize;
+        let Some(kind) = contours.kind(edge, local_eye) else { continue };
+        let width_px = f64::from(plan.style.width_px[kind as usize]) * scale;
+        if width_px <= 0.0 {
+            continue;
+        }
+        let ends = contours.ends[edge].map(|v| scene.model.positions[v as usize].as_dvec3());
+        let normals = contours.normals(edge).map(|n: Vec3| n.as_dvec3());
+        let Some(segment) = outline_project(ends, normals, width_px, &view) else { continue };
+        // The depth samples move, the coverage does not: it is no sample, but a function of where the pixel is.
+        let among_samples = ScreenSegment { ends_px: segment.ends_px.map(|end| end - shift_px), ..segment };
+        let cut_out = contours.traits[edge] & TRAIT_CUT_OUT != 0;
+        let reach = 0.5 * width_px + 1.0;
+        let [p0, p1] = segment.ends_px;
+        let (low, high) = ((p0.min(p1) - reach).floor(), (p0.max(p1) + reach).ceil());
+        for y in (low.y.max(0.0) as i64)..=(high.y.min(last.1 as f64) as i64) {
+            // Of the row what can be within reach: of a long slanted line that is little of its box.
+            let (from, to) = row_reach(segment.ends_px, y as f64 + 0.5, reach);
+            for x in (low.x.max(from).max(0.0) as i64)..=(high.x.min(to).min(last.0 as f64) as i64) {
+                let pixel = &mut coverage[(y * (last.0 + 1) + x) as usize];
+                // No line covers more.
+                if *pixel >= 1.0 {
+                    continue;
+                }
+                let point = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
+                let covered = outline_coverage(&segment, point, width_px);
+                if covered > *pixel
+                    && outline_is_visible(&among_samples, segment.nearest(point), &view, cut_out, depth_at)
+                {
+                    *pixel = covered;
+                }
+            }
+        }
+    }
+    coverage
+}
+
+/// Where a row of pixels may be within reach of a line: the columns' range, a little too wide.
+fn row_reach([p0, p1]: [DVec2; 2], row: f64, reach: f64) -> (f64, f64) {
+    let along = p1 - p0;
+    let length = along.length();
+    // A line along the row has all of its box.
+    if along.y.abs() <= 1e-3 * length {
+        return (f64::NEG_INFINITY, f64::INFINITY);
+    }
+    let middle = p0.x + (row - p0.y) / along.y * along.x;
+    let half = reach * length / along.y.abs() + 1.0;
+    (middle - half, middle + half)
+}

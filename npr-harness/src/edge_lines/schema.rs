@@ -1,0 +1,47 @@
+//! The table `[lines.edges]` of a style's file.
+
+use crate::schema::Color;
+use glam::Vec3;
+use npr_outline::LineKind;
+use npr_outline::line_look::{LineLook, widths_px};
+use serde::{Deserialize, Serialize};
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
+pub(crate) struct EdgesTable {
+    silhouette_px: f32,
+    boundary_px: f32,
+    crease_px: f32,
+    material_border_px: f32,
+    ink: Color,
+    opacity: f32,
+}
+
+/// As in the style `cartoon`, but for borders between materials.
+impl Default for EdgesTable {
+    fn default() -> Self {
+        Self::new(&LineLook { width_px: widths_px(2.0, 2.0, 1.3, 0.0), ink: super::plan::INK })
+    }
+}
+
+impl EdgesTable {
+    pub(crate) fn new(style: &LineLook) -> Self {
+        let width = |kind: LineKind| style.width_px[kind as usize];
+        let [r, g, b, opacity] = style.ink;
+        Self {
+            silhouette_px: width(LineKind::Silhouette),
+            boundary_px: width(LineKind::Boundary),
+            crease_px: width(LineKind::Crease),
+            material_border_px: width(LineKind::MaterialBorder),
+            ink: Color(Vec3::new(r, g, b)),
+            opacity,
+        }
+    }
+
+    pub(crate) fn style(self) -> LineLook {
+        LineLook {
+            width_px: widths_px(self.silhouette_px, self.boundary_px, self.crease_px, self.material_border_px),
+            ink: self.ink.0.extend(self.opacity).to_array(),
+        }
+    }
+}

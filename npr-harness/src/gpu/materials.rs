@@ -1,0 +1,204 @@
+//! Materials on the device.
+
+use super::context::GpuContext;
+use crate::error::HarnessError;
+use crate::plan::Plan;
+use crate::scene::Scene;
+use crate::texture::MipMapped;
+use npr_mesh::{AlphaMode, Texture, Wrap};
+use npr_outline::filled_buffer::filled_buffer;
+use std::collections::HashMap;
+use wgpu::util::DeviceExt;
+
+/// `SurfaceMaterial` of `surface.wgsl`.
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub(super) struct MaterialUniform {
+    pub(super) base_color: [f32; 4],
+    pub(super) texture_size: [f32; 2],
+    pub(super) last_level: f32,
+    pub(super) cutoff: f32,
+    pub(super) wrap: [u32; 2],
+    pub(super) padding: [u32; 2],
+}
+
+/// What surfaces are made of. A bind group of its own for each material would take what a device's driver keeps for each,
+/// which with 40,000 of them is gigabytes.
+pub(super) struct Materials {
+    /// Per material the first one that looks the same.
+    pub(super) duplicates: Vec<usize>,
+    /// Per texture, and last for none, with all materials in the uniform buffer.
+    groups: Vec<wgpu::BindGroup>,
+    /// Per material its group, and where it lies in the uniform buffer, bytes.
+    places: Vec<(usize, u32)>,
+}
+
+impl Materials {
+    pub(super) fn new(
+        context: &GpuContext,
+        layout: &wgpu::BindGroupLayout,
+        scene: &Scene,
+        plan: &Plan,
+    ) -> Result<Self, HarnessError> {
+        materials(context, layout, scene, plan)
+    }
+
+    /// Binds a material's for the following draws.
+    pub(super) fn bind(&self, pass: &mut wgpu::RenderPass<'_>, material: usize) {
+        let (group, offset) = self.places[material];
+        pass.set_bind_group(1, &self.groups[group], &[offset]);
+    }
+}
+
+/// Whether a material's colour differs from pixel to pixel, or its alpha decides.
+pub(super) fn is_looked_up(scene: &Scene, material: usize) -> bool {
+    let m = &scene.model.materials[material];
+    m.texture.is_some() || !scene.model.colors.is_empty() || matches!(m.alpha_mode, AlphaMode::Mask { .. })
+}
+
+/// `uniforms`: of all materials, each where an offset says that is given when the group is bound.
+fn material_group(
+    device: &wgpu::Device,
+    layout: &wgpu::BindGroupLayout,
+    uniforms: &wgpu::Buffer,
+    texture: &wgpu::TextureView,
+    sampler: &wgpu::Sampler,
+) -> wgpu::BindGroup {
+    let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
+    let size = wgpu::BufferSize::new(size_of::<MaterialUniform>() as u64);
+    let uniform = wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer: uniforms, offset: 0, size });
+    device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("material"),
+        layout,
+        entries: &[
+            entry(0, uniform),
+            entry(1, wgpu::BindingResource::TextureView(texture)),
+            entry(2, wgpu::BindingResource::Sampler(sampler)),
+        ],
+    })
+}
+
+pub(super) fn buffer(
+    context: &GpuContext,
+    what: &'static str,
+    contents: &[u8],
+    usage: wgpu::BufferUsages,
+) -> Result<wgpu::Buffer, HarnessError> {
+    let (bytes, limit) = (contents.len() as u64, context.device.limits().max_buffer_size);
+    if bytes > limit {
+        return Err(HarnessError::BufferTooLarge { what, bytes, limit });
+    }
+    Ok(filled_buffer(&context.device, what, contents, usage))
+}
+
+fn materials(
+    context: &GpuContext,
+    layout: &wgpu::BindGroupLayout,
+    scene: &Scene,
+    plan: &Plan,
+) -> Result<Materials, HarnessError> {
+    let white = Texture {
+        name: "white".into(),
+        width: 1,
+        height: 1,
+        rgba8: vec![255; 4],
+        wrap: [Wrap::Clamp; 2],
+        smooth: true,
+    };
+    let of_model: &[Texture] = if plan.looks_up { &scene.model.textures } else { &[] };
+    let upload = |texture| upload_texture(context, texture);
+    let textures: Vec<_> = of_model.iter().chain([&white]).map(upload).collect::<Result<_, _>>()?;
+    // A uniform's dynamic offset is a multiple of this.
+    let stride = size_of::<MaterialUniform>()
+        .next_multiple_of(context.device.limits().min_uniform_buffer_offset_alignment as usize);
+    let mut uniforms: Vec<u8> = Vec::new();
+    let mut first: HashMap<_, usize> = HashMap::new();
+    let (mut duplicates, mut places) = (Vec::new(), Vec::new());
+    for (number, material) in scene.model.materials.iter().enumerate() {
+        let group = material.texture.map(|t| t as usize).filter(|&t| t < of_model.len()).unwrap_or(of_model.len());
+        let (_, _, size, levels) = &textures[group];
+        let cutoff = if let AlphaMode::Mask { cutoff } = material.alpha_mode { cutoff } else { f32::MIN };
+        let base_color = if is_looked_up(scene, number) {
+            material.base_color
+        } else {
+            scene.material_colors[number].as_vec3().extend(material.base_color.w)
+        };
+        let uniform = MaterialUniform {
+            base_color: base_color.to_array(),
+            texture_size: *size,
+            last_level: (*levels - 1) as f32,
+            cutoff,
+            wrap: material.texture.map_or([0; 2], |t| scene.model.textures[t as usize].wrap.map(|wrap| wrap as u32)),
+            padding: [0; 2],
+        };
+        let bytes: [u8; size_of::<MaterialUniform>()] = bytemuck::cast(uniform);
+        // What a draw's pipeline depends on besides.
+        let line_kind = plan.image.as_ref().and_then(|image| image.line_kinds.get(number)).map(|&kind| kind as u32);
+        let is_blended = material.alpha_mode == AlphaMode::Blend;
+        let key = (bytes, material.texture, material.double_sided, is_looked_up(scene, number), is_blended, line_kind);
+        let same = *first.entry(key).or_insert(number);
+        duplicates.push(same);
+        if same == number {
+            let offset = u32::try_from(uniforms.len()).map_err(|_| HarnessError::BufferTooLarge {
+                what: "materials",
+                bytes: uniforms.len() as u64,
+                limit: u32::MAX.into(),
+            })?;
+            places.push((group, offset));
+            uniforms.extend(bytes);
+            uniforms.resize(uniforms.len().next_multiple_of(stride), 0);
+        } else {
+            places.push(places[same]);
+        }
+    }
+    if uniforms.is_empty() {
+        uniforms.resize(stride, 0);
+    }
+    let uniforms = buffer(context, "materials", &uniforms, wgpu::BufferUsages::UNIFORM)?;
+    let group = |(view, sampler, _, _): &_| material_group(&context.device, layout, &uniforms, view, sampler);
+    Ok(Materials { duplicates, groups: textures.iter().map(group).collect(), places })
+}
+
+/// A texture with its mip levels, what it is read with, its size and its number of levels.
+type Uploaded = (wgpu::TextureView, wgpu::Sampler, [f32; 2], u32);
+
+fn upload_texture(context: &GpuContext, texture: &Texture) -> Result<Uploaded, HarnessError> {
+    let levels = MipMapped::new(texture).levels;
+    context.capabilities.check_size("a texture of the model", (texture.width, texture.height))?;
+    let (width, height) = (texture.width, texture.height);
+    let mut bytes = Vec::new();
+    // A texture's levels halve, rounding down, exactly as those of `MipMapped` do.
+    for (_, _, level) in &levels {
+        bytes.extend_from_slice(level);
+    }
+    let uploaded = context.device.create_texture_with_data(
+        &context.queue,
+        &wgpu::TextureDescriptor {
+            label: Some(&texture.name),
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+            mip_level_count: levels.len() as u32,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Rgba8UnormSrgb,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        },
+        wgpu::util::TextureDataOrder::LayerMajor,
+        &bytes,
+    );
+    let address = |wrap| match wrap {
+        Wrap::Repeat => wgpu::AddressMode::Repeat,
+        Wrap::Mirror => wgpu::AddressMode::MirrorRepeat,
+        Wrap::Clamp => wgpu::AddressMode::ClampToEdge,
+    };
+    let sampler = context.device.create_sampler(&wgpu::SamplerDescriptor {
+        label: Some(&texture.name),
+        address_mode_u: address(texture.wrap[0]),
+        address_mode_v: address(texture.wrap[1]),
+        mag_filter: if texture.smooth { wgpu::FilterMode::Linear } else { wgpu::FilterMode::Nearest },
+        min_filter: wgpu::FilterMode::Linear,
+        mipmap_filter: wgpu::MipmapFilterMode::Linear,
+        ..Default::default()
+    });
+    Ok((uploaded.create_view(&Default::default()), sampler, [width as f32, height as f32], levels.len() as u32))
+}

@@ -1,0 +1,174 @@
+//! The shader of surfaces: what it is made of, and the light that it is given.
+
+use super::context::GpuContext;
+use super::uniform::uniform_buffer;
+use crate::error::HarnessError;
+use crate::hatch::gpu::{HATCH_ENTRY_WGSL, HATCH_WGSL, HatchVariant};
+use crate::plan::{PaintPlan, Plan};
+use crate::shade::{Shade, ShadeOnDevice, flag};
+use crate::shadow::gpu::SHADOW_WGSL;
+use crate::view::View;
+use npr_toon::normal::NormalUse;
+use npr_toon::painter::PainterUniform;
+use npr_toon::source::{Light, LightPlace};
+use wgpu::util::DeviceExt;
+
+/// The parts of a shader, each with its name.
+pub(super) type Parts = Vec<(&'static str, &'static str)>;
+
+/// The parts of the shader for a shade: libraries, lights, the shade's own functions, shadows, the geometry pass.
+fn parts(shade: &ShadeOnDevice, hatched: bool) -> Parts {
+    let mut parts = shade.wgsl.to_vec();
+    let own = parts.split_off(parts.iter().position(|(name, _)| name.ends_with(".wgsl")).unwrap_or(parts.len()));
+    parts.push(("npr-imagespace, format", npr_imagespace::format::FORMAT_WGSL));
+    parts.push(("npr-imagespace, shadow", npr_imagespace::shadow::SHADOW_WGSL));
+    parts.push(("npr-imagespace, artist", npr_imagespace::artist::ARTIST_WGSL));
+    if hatched {
+        parts.extend(HATCH_WGSL);
+    }
+    parts.push(("lights.wgsl", include_str!("../shade/lights.wgsl")));
+    parts.extend(own);
+    parts.push(SHADOW_WGSL);
+    parts.push(("surface.wgsl", include_str!("surface.wgsl")));
+    if hatched {
+        parts.push(HATCH_ENTRY_WGSL);
+    }
+    parts
+}
+
+/// The text of a shader, which says at its head, and before each part, what it is made of.
+pub(super) fn assemble(parts: &Parts) -> String {
+    let names: Vec<_> = parts.iter().map(|(name, _)| *name).collect();
+    let mut text = format!("// Made of: {}.\n", names.join("; "));
+    for (name, part) in parts {
+        text.push_str("\n// ---- ");
+        text.push_str(name);
+        text.push('\n');
+        text.push_str(part);
+    }
+    text
+}
+
+/// The whole shader of surfaces with a shade.
+///
+/// # Errors
+/// What is wrong with the shade's numbers.
+pub fn surface_wgsl(shade: &Shade, view: &View) -> Result<String, HarnessError> {
+    let hatched = matches!(shade, Shade::Hatch(_));
+    Ok(assemble(&parts(&shade.model().on_device(view)?, hatched)))
+}
+
+/// What of the light and the shade is known when a pipeline is made.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct ShaderKey {
+    /// Names of the shader's parts.
+    pub(super) parts: Parts,
+    /// Values of its overrides.
+    pub(super) constants: Vec<(&'static str, f64)>,
+    /// Whether light is computed at the vertices alone.
+    pub(super) at_vertices: bool,
+}
+
+/// The light and the shade of a picture on the device. What the shade does not look at is not there.
+pub(super) struct LightOnDevice {
+    pub(super) key: ShaderKey,
+    pub(super) lights: wgpu::Buffer,
+    pub(super) shade: Option<wgpu::Buffer>,
+    pub(super) image: Option<wgpu::TextureView>,
+}
+
+impl LightOnDevice {
+    pub(super) fn new(context: &GpuContext, plan: &Plan) -> Result<Self, HarnessError> {
+        let paint = plan.paint.as_ref();
+        let shade = paint.map_or(&Shade::Paper, |paint| &paint.shade).model().on_device(&plan.view)?;
+        let lights: &[Light] = paint.map_or(&[], |paint| &paint.lights);
+        let mut constants = shade.constants.clone();
+        constants.extend(light_constants(paint, lights));
+        if let Some(hatch) = plan.hatch() {
+            constants.extend(HatchVariant::new(hatch).constants());
+        }
+        let image = match &shade.image {
+            Some((width, height, texels)) => Some(upload_image(context, *width, *height, texels)?),
+            None => None,
+        };
+        let at_vertices = paint.is_some_and(|paint| paint.normals == NormalUse::PerVertex);
+        // Unchecked: two lights that cancel out have no direction, which is no error here.
+        let placed = PainterUniform::unchecked(lights, shade.light_scale);
+        let uniform = |contents: &[u8]| uniform_buffer(&context.device, contents);
+        Ok(Self {
+            key: ShaderKey { parts: parts(&shade, plan.hatch().is_some()), constants, at_vertices },
+            lights: uniform(bytemuck::bytes_of(&placed)),
+            shade: (!shade.uniform.is_empty()).then(|| uniform(&shade.uniform)),
+            image,
+        })
+    }
+}
+
+/// The overrides of `lights.wgsl`.
+fn light_constants(paint: Option<&PaintPlan>, lights: &[Light]) -> [(&'static str, f64); 4] {
+    let positional = |number: usize| {
+        flag(matches!(lights.get(number).map(|light| light.place), Some(LightPlace::Positional { .. })))
+    };
+    let tinted = lights.first().is_none_or(|light| light.brightness != 1.0 || light.color != glam::Vec3::ONE);
+    [
+        (
+            "surface_normals",
+            match paint.map(|paint| paint.normals) {
+                None | Some(NormalUse::PerPixel) => 0.0,
+                Some(NormalUse::Interpolated) => 1.0,
+                Some(NormalUse::PerVertex) => 2.0,
+            },
+        ),
+        ("surface_first_positional", positional(0)),
+        ("surface_second_positional", positional(1)),
+        ("surface_tinted", flag(tinted)),
+    ]
+}
+
+fn upload_image(
+    context: &GpuContext,
+    width: u32,
+    height: u32,
+    texels: &[[u8; 4]],
+) -> Result<wgpu::TextureView, HarnessError> {
+    let limit = context.device.limits().max_texture_dimension_2d;
+    if width.max(height) > limit {
+        return Err(HarnessError::RampTooLarge { width, height, limit });
+    }
+    let texture = context.device.create_texture_with_data(
+        &context.queue,
+        // Display-referred, as all of a style's colours.
+        &image_texture(width, height),
+        wgpu::util::TextureDataOrder::LayerMajor,
+        bytemuck::cast_slice(texels),
+    );
+    Ok(texture.create_view(&Default::default()))
+}
+
+fn image_texture(width: u32, height: u32) -> wgpu::TextureDescriptor<'static> {
+    wgpu::TextureDescriptor {
+        label: Some("image of the shade"),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba8Unorm,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    }
+}
+
+/// What is bound where a shade has nothing of its own.
+pub(super) struct Blank {
+    pub(super) uniform: wgpu::Buffer,
+    pub(super) image: wgpu::TextureView,
+}
+
+impl Blank {
+    pub(super) fn new(device: &wgpu::Device) -> Self {
+        Self {
+            uniform: uniform_buffer(device, &[0; 16]),
+            image: device.create_texture(&image_texture(1, 1)).create_view(&Default::default()),
+        }
+    }
+}

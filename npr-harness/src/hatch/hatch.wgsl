@@ -1,0 +1,251 @@
+// Strokes on surfaces. The twin of `cpu.rs`.
+
+const HATCH_BY_COORDINATES: u32 = 0u;
+const HATCH_BY_PLANES: u32 = 1u;
+const HATCH_BY_FORM: u32 = 2u;
+
+override surface_hatch_mapping: u32 = HATCH_BY_COORDINATES;
+// Whether thresholds are looked up, else six tones.
+override surface_hatch_thresholds: bool = false;
+// Whether the tone is what listing 4 makes of the light, else it is in proportion to it.
+override surface_hatch_listing_4: bool = false;
+// Whether strokes are drawn over the surface's own colour, else over paper.
+override surface_hatch_over_surface: bool = false;
+// Whether the weights of six tones are computed at the vertices and interpolated.
+override surface_hatch_at_vertices: bool = false;
+
+struct SurfaceHatch {
+    // The map's mean tones, the lightest first.
+    light_tones: vec3<f32>,
+    // Texels for the side of the map, as many times more as they are to be larger than pixels.
+    texels: f32,
+    dark_tones: vec3<f32>,
+    last_level: f32,
+    ink: vec3<f32>,
+    // How many sides of the map there are for a unit of length.
+    tiles: f32,
+    paper: vec3<f32>,
+    // Of listing 4.
+    brightness: f32,
+    ambient: f32,
+    // The span of tones over which a texel turns to ink.
+    width: f32,
+    padding: vec2<u32>,
+}
+
+@group(0) @binding(5) var<uniform> hatch: SurfaceHatch;
+@group(0) @binding(6) var hatch_light: texture_2d<f32>;
+@group(0) @binding(7) var hatch_dark: texture_2d<f32>;
+// For six tones it filters texels and levels, for thresholds it takes the nearest: GLSL knows one sampler a texture.
+@group(0) @binding(8) var hatch_sampler: sampler;
+@group(0) @binding(9) var hatch_map: texture_2d<f32>;
+
+struct HatchedSurface {
+    @invariant @builtin(position) position: vec4<f32>,
+    @location(0) normal: vec3<f32>,
+    @location(1) uv: vec2<f32>,
+    @location(2) color: vec4<f32>,
+    @location(3) @interpolate(flat) region: u32,
+    @location(4) first: vec3<f32>,
+    @location(5) second: vec3<f32>,
+    // Where the strokes lie: a position, or texture coordinates.
+    @location(6) at: vec3<f32>,
+    // The field's direction.
+    @location(7) diagonal: vec3<f32>,
+    @location(8) others: vec3<f32>,
+    @location(9) octave: f32,
+    // Listing 4's weights, where they are computed at the vertices.
+    @location(10) light_weights: vec3<f32>,
+    @location(11) dark_weights: vec3<f32>,
+}
+
+// What is asked of strokes at a pixel.
+struct Hatching {
+    at: vec3<f32>,
+    at_dx: vec3<f32>,
+    at_dy: vec3<f32>,
+    normal: vec3<f32>,
+    diagonal: vec3<f32>,
+    others: vec3<f32>,
+    octave: f32,
+    tone: f32,
+    weights: HatchWeights,
+}
+
+// The tone that the light asks for.
+fn hatched_tone(reach: f32) -> f32 {
+    if surface_hatch_listing_4 {
+        return hatch_transfer(hatch.light_tones, hatch.dark_tones, hatch_level(hatch.brightness, reach));
+    }
+    return hatch.ambient + (1.0 - hatch.ambient) * saturate(reach);
+}
+
+fn hatched_weights(tone: f32) -> HatchWeights {
+    return hatch_weights(hatch_linear(hatch.light_tones, hatch.dark_tones, tone));
+}
+
+@vertex
+fn vs_hatched(
+    @location(0) position: vec3<f32>, @location(1) normal: vec3<f32>, @location(2) uv: vec2<f32>,
+    @location(3) color: vec4<f32>, @location(4) region: u32, @location(5) diagonal: vec3<f32>,
+    @location(6) others: vec3<f32>, @location(7) octave: f32,
+) -> HatchedSurface {
+    let plain = lit_vertex(position, normal);
+    var at = position * hatch.tiles;
+    if surface_hatch_mapping == HATCH_BY_COORDINATES {
+        at = vec3<f32>(uv, 0.0);
+    }
+    var out = HatchedSurface(
+        plain.position, plain.normal, uv, color, region, plain.first, plain.second, at, diagonal, others, octave,
+        vec3<f32>(0.0), vec3<f32>(0.0),
+    );
+    if surface_hatch_at_vertices {
+        let weights = hatched_weights(hatched_tone(plain.first.x));
+        out.light_weights = weights.light;
+        out.dark_weights = weights.dark;
+    }
+    return out;
+}
+
+// What one hatching leaves as paper.
+fn hatched_once(uv: vec2<f32>, footprint: HatchFootprint, tone: f32, weights: HatchWeights) -> f32 {
+    let flat = hatch_flat(footprint.level, hatch.last_level);
+    if surface_hatch_thresholds {
+        return mix(1.0 - hatch_ink(hatch_map, hatch_sampler, uv, footprint, tone, hatch.width), tone, flat);
+    }
+    let texels = hatch_texels(hatch_light, hatch_dark, hatch_sampler, uv, footprint);
+    let mean = hatch_blend(hatch.light_tones, hatch.dark_tones, weights);
+    return mix(hatch_blend(texels.light, texels.dark, weights), mean, flat);
+}
+
+// Hatchings that meet at a pixel, as many as there are: they are listed and then looked up in one loop, since software
+// adapters run through every lookup that they branch around. (Listed, a frame takes 0.4 to 0.7 of the time there.)
+struct Hatchings {
+    count: u32,
+    // Place in the map, and spread.
+    places: array<vec4<f32>, 6>,
+    // Level and share.
+    shares: array<vec2<f32>, 6>,
+}
+
+fn hatched_list(list: ptr<function, Hatchings>, uv: vec2<f32>, footprint: HatchFootprint, share: f32) {
+    if share > 0.0 {
+        let last = (*list).count;
+        (*list).places[last] = vec4<f32>(uv, footprint.spread);
+        (*list).shares[last] = vec2<f32>(footprint.level, share);
+        (*list).count = last + 1u;
+    }
+}
+
+// What a hatching leaves that counts for a share, along with what those before it left.
+fn hatched_share(before: f32, asked: Hatching, uv: vec2<f32>, footprint: HatchFootprint, share: f32) -> f32 {
+    if surface_hatch_at_vertices {
+        // Weights that were interpolated are nobody's tone: what is left is their mean.
+        return before + share * hatched_once(uv, footprint, asked.tone, asked.weights);
+    }
+    let tone = hatch_share(asked.tone, share);
+    return before * hatched_once(uv, footprint, tone, hatched_weights(tone));
+}
+
+fn hatched_footprint(uv_dx: vec2<f32>, uv_dy: vec2<f32>) -> HatchFootprint {
+    return hatch_footprint(uv_dx, uv_dy, hatch.texels, hatch.last_level);
+}
+
+fn hatched_by_coordinates(list: ptr<function, Hatchings>, asked: Hatching) {
+    let step = hatch_octave(asked.octave);
+    for (var i = 0; i < 2; i++) {
+        let scale = exp2(f32(step.first + i));
+        let footprint = hatched_footprint(asked.at_dx.xy * scale, asked.at_dy.xy * scale);
+        hatched_list(list, asked.at.xy * scale, footprint, select(1.0 - step.share, step.share, i == 1));
+    }
+}
+
+fn hatched_by_planes(list: ptr<function, Hatchings>, asked: Hatching) {
+    let weights = hatch_plane_weights(asked.normal);
+    for (var axis = 0u; axis < 3u; axis++) {
+        let place = hatch_plane(asked.at, axis);
+        let footprint = hatched_footprint(hatch_plane(asked.at_dx, axis), hatch_plane(asked.at_dy, axis));
+        if surface_hatch_mapping == HATCH_BY_PLANES {
+            hatched_list(list, place + hatch_moved(i32(axis)), footprint, weights[axis]);
+            continue;
+        }
+        let step = hatch_turn(hatch_doubled(asked.diagonal, asked.others, axis));
+        for (var i = 0; i < 2; i++) {
+            let turn = (step.first + i) % 12;
+            let turned = HatchFootprint(footprint.level, hatch_turned(footprint.spread, turn));
+            let uv = hatch_turned(place, turn) + hatch_moved(i32(axis) * 12 + turn);
+            hatched_list(list, uv, turned, weights[axis] * select(1.0 - step.share, step.share, i == 1));
+        }
+    }
+}
+
+fn hatched(asked: Hatching) -> f32 {
+    var list: Hatchings;
+    if surface_hatch_mapping == HATCH_BY_COORDINATES {
+        hatched_by_coordinates(&list, asked);
+    } else {
+        hatched_by_planes(&list, asked);
+    }
+    var paper = select(1.0, 0.0, surface_hatch_at_vertices);
+    for (var i = 0u; i < list.count; i++) {
+        let footprint = HatchFootprint(list.shares[i].x, list.places[i].zw);
+        paper = hatched_share(paper, asked, list.places[i].xy, footprint, list.shares[i].y);
+    }
+    return paper;
+}
+
+// In uniform control flow.
+fn hatched_color(in: HatchedSurface, base: vec3<f32>, front: bool, at: ShadowAt) -> vec3<f32> {
+    let at_dx = dpdxFine(in.at);
+    let at_dy = dpdyFine(in.at);
+    let light = light_of(PlainLitSurface(in.position, in.normal, in.first, in.second), front);
+    var tone = hatched_tone(light.x);
+    var in_shadow = false;
+    if surface_shadow != 0u {
+        in_shadow = at.dark;
+        tone = hatch_shadowed(tone, hatched_tone(0.0), select(1.0, 0.0, in_shadow));
+    }
+    var weights = HatchWeights(in.light_weights, in.dark_weights);
+    if surface_hatch_at_vertices && (!front || in_shadow) {
+        // The tone is known, its weights are not.
+        weights = hatched_weights(tone);
+    }
+    let normal = toon_unit(in.normal);
+    let paper = hatched(Hatching(in.at, at_dx, at_dy, normal, in.diagonal, in.others, in.octave, tone, weights));
+    var ground = hatch.paper;
+    if surface_hatch_over_surface {
+        ground = base;
+    }
+    return hatch_color(paper, ground, hatch.ink);
+}
+
+fn hatched_lit(in: HatchedSurface) -> LitSurface {
+    return LitSurface(in.position, in.normal, in.uv, in.color, in.region, in.first, in.second);
+}
+
+@fragment
+fn fs_hatched(in: HatchedSurface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
+    let lit = hatched_lit(in);
+    let base = lit_base(lit, lit_texel(lit));
+    let at = shadow_at(in.position, facing(in.normal, front));
+    let color = hatched_color(in, base.rgb, front, at);
+    if surface_looked_up && base.a < material.cutoff {
+        discard;
+    }
+    clip_off(in.position);
+    return vec4<f32>(color, surface_alpha(base.a));
+}
+
+@fragment
+fn fs_hatched_inked(in: HatchedSurface, @builtin(front_facing) front: bool) -> Inked {
+    let lit = hatched_lit(in);
+    let texel = lit_texel(lit);
+    let base = lit_base(lit, texel);
+    let at = shadow_at(in.position, facing(in.normal, front));
+    let color = hatched_color(in, base.rgb, front, at);
+    if surface_looked_up && base.a < material.cutoff {
+        discard;
+    }
+    clip_off(in.position);
+    return Inked(vec4<f32>(color, 1.0), lit_words(lit, texel, front, at));
+}

@@ -1,0 +1,149 @@
+//! Lines in the image on the CPU: what a geometry pass writes for a pixel, and the ink over the picture.
+
+use super::plan::ImagePlan;
+use crate::color::encode_rgb;
+use crate::cpu::frame::CpuFrame;
+use crate::shadow::ShadowLines;
+use crate::shadow::cpu::ShadowAt;
+use glam::{DMat3, DVec3, DVec4, UVec2};
+use npr_imagespace::artist::{LineKind, ink_artist_direction, ink_artist_index, ink_artist_texel};
+use npr_imagespace::composite::ink_composite;
+use npr_imagespace::format::texel::{
+    BACKGROUND, TexelLayout, ink_fold_region, ink_narrow_pack, ink_narrow_tap, ink_narrow_word, ink_wide_pack,
+    ink_wide_tap, ink_wide_words,
+};
+use npr_imagespace::region::{ink_region_of_color, ink_region_pair};
+use npr_imagespace::resample::resample;
+use npr_imagespace::shadow::{ShadowState, ink_shadow_normal, ink_shadow_region};
+
+/// A point of a surface as lines in the image see it.
+pub(crate) struct InkSample<'a> {
+    pub(crate) face: u32,
+    /// Where the material's inner lines come from.
+    pub(crate) kind: LineKind,
+    /// World space, of any length, on the viewer's side.
+    pub(crate) normal: DVec3,
+    /// Eye depth.
+    pub(crate) depth: f64,
+    /// Linear, asked for where inner lines come from vertex colours.
+    pub(crate) vertex_color: &'a dyn Fn() -> DVec4,
+    /// Linear, filtered, asked for where they come from a texture.
+    pub(crate) texture_color: &'a dyn Fn() -> DVec4,
+    /// The bytes of the texel there, asked for where regions come from a texture; `None` without one.
+    pub(crate) texture_bytes: &'a dyn Fn() -> Option<[u8; 3]>,
+    /// From the eye to the point, of any length, and right, up and back of the view; world space, asked for where inner
+    /// lines are an artist's.
+    pub(crate) view: &'a dyn Fn() -> (DVec3, [DVec3; 3]),
+    /// What shadows make of it, asked for where their lines are drawn.
+    pub(crate) shadow: &'a dyn Fn() -> ShadowAt,
+}
+
+/// What a geometry pass writes for a pixel; `None` is background.
+pub(crate) fn texel(image: &ImagePlan, sample: Option<&InkSample<'_>>) -> [u32; 2] {
+    let Some(sample) = sample else { return BACKGROUND };
+    let kind = sample.kind;
+    let shadow = if image.ink.shadows == ShadowLines::None { ShadowAt::default() } else { (sample.shadow)() };
+    let negated = image.ink.shadows == ShadowLines::Negated && kind == LineKind::Normals && shadow.negated;
+    let normal = ink_shadow_normal(normal(sample).as_vec3(), negated);
+    let of_face = image.face_region[sample.face as usize];
+    let of_texture = if kind == LineKind::Regions { (sample.texture_bytes)() } else { None };
+    let region = of_texture.map_or(of_face, |rgb| ink_region_pair(of_face, ink_region_of_color(rgb)));
+    let region = if image.ink.shadows.has_states() {
+        let folded = ink_fold_region(region, image.ink.region_most());
+        ink_shadow_region(folded, shadow.state as u32, image.ink.layout)
+    } else {
+        region
+    };
+    let depth = sample.depth as f32;
+    match image.ink.layout {
+        TexelLayout::Narrow => [ink_narrow_pack(normal, region, depth, &image.code), 0],
+        TexelLayout::Wide => ink_wide_pack(normal, region, depth, &image.code),
+    }
+}
+
+/// World space, of any length; zero for no normal.
+fn normal(sample: &InkSample<'_>) -> DVec3 {
+    let index = match sample.kind {
+        LineKind::Normals => return sample.normal,
+        LineKind::Regions | LineKind::None => return DVec3::ZERO,
+        LineKind::VertexColor => ink_artist_index(encode_rgb((sample.vertex_color)().truncate()).as_vec3()),
+        LineKind::Texture => {
+            let linear = (sample.texture_color)();
+            ink_artist_texel(encode_rgb(linear.truncate()).as_vec3().extend(linear.w as f32))
+        }
+    };
+    let (eye_to_point, axes) = (sample.view)();
+    let world_from_view = DMat3::from_cols_array_2d(&axes.map(|axis| axis.to_array()));
+    let eye_to_point = (world_from_view.transpose() * eye_to_point).as_vec3();
+    world_from_view * ink_artist_direction(index, eye_to_point).as_dvec3()
+}
+
+/// What a pixel may show instead, to a rasteriser that rounds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Perturbation {
+    /// What differs from all around it: background where there is a surface, a surface where there is background.
+    Other,
+    /// The same surface in another state of shadow.
+    State(ShadowState),
+}
+
+impl Perturbation {
+    fn on(self, texel: [u32; 2], layout: TexelLayout) -> [u32; 2] {
+        match self {
+            Self::Other if texel == BACKGROUND => [u32::MAX; 2],
+            Self::Other => BACKGROUND,
+            Self::State(_) if texel == BACKGROUND => BACKGROUND,
+            Self::State(state) => {
+                let shadowed = |region: u32| ink_shadow_region(region & !layout.shadow_bits(), state as u32, layout);
+                match layout {
+                    TexelLayout::Narrow => {
+                        let tap = ink_narrow_tap(texel[0]);
+                        [ink_narrow_word(tap.normal.as_vec3(), shadowed(tap.region), tap.depth as u32), 0]
+                    }
+                    TexelLayout::Wide => {
+                        let tap = ink_wide_tap(texel);
+                        ink_wide_words(tap.normal.as_vec3(), shadowed(tap.region), tap.depth as u32)
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The frame's lines over it, were some of the picture's pixels perturbed.
+pub(crate) fn perturbed(image: &ImagePlan, blank: &CpuFrame, pixels: &[usize], perturbation: Perturbation) -> CpuFrame {
+    let mut frame = blank.clone();
+    let size = image.size;
+    for &pixel in pixels {
+        let (x, y) = (pixel as u32 % frame.width, pixel as u32 / frame.width);
+        let along = |at: u32, of: u32, ink: u32| at * ink / of..((at + 1) * ink).div_ceil(of);
+        for row in along(y, frame.height, size.1) {
+            for column in along(x, frame.width, size.0) {
+                let texel = &mut frame.texels[row as usize * size.0 as usize + column as usize];
+                *texel = perturbation.on(*texel, image.ink.layout);
+            }
+        }
+    }
+    draw_ink(image, &mut frame);
+    frame
+}
+
+/// Draws the frame's lines over it, from its texels.
+pub(crate) fn draw_ink(image: &ImagePlan, frame: &mut CpuFrame) {
+    let size = image.size;
+    let picture = UVec2::new(frame.width, frame.height);
+    for lines in image.passes() {
+        let ink = image.ink(lines, &frame.texels);
+        let ink = if size == (frame.width, frame.height) {
+            ink
+        } else {
+            resample(&ink, UVec2::from(size), picture).expect("one ink for each of its pixels")
+        };
+        for (color, ink) in frame.color.iter_mut().zip(ink) {
+            if ink > 0 {
+                let inked = ink_composite(color.truncate(), f64::from(ink) / 255.0, &lines.composite);
+                *color = inked.extend(color.w);
+            }
+        }
+    }
+}

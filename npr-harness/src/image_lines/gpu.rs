@@ -1,0 +1,88 @@
+//! Lines in the image on the device: filter, dilation and composite.
+
+use super::plan::{ImageLines, ImagePlan};
+use crate::camera::Camera;
+use crate::error::HarnessError;
+use crate::gpu::targets::{COLOR_FORMAT, InkTargets};
+use glam::Vec3;
+use npr_imagespace::format::texel::TexelLayout;
+use npr_imagespace::morphology::Operation;
+use npr_imagespace::pass::disc::DiscPass;
+use npr_imagespace::pass::fused::FusedPass;
+use npr_imagespace::pass::lay::LayPass;
+use npr_imagespace::pass::{InkTarget, Onto};
+use npr_imagespace::picture::Taps;
+use std::cell::{OnceCell, RefCell};
+use std::collections::HashMap;
+
+/// What distinguishes one filter's pipeline from another's.
+type FilterKey = (Taps, bool, TexelLayout, InkTarget);
+
+const PICTURE: InkTarget = InkTarget::Picture(COLOR_FORMAT);
+
+/// The passes, made when they are first needed.
+#[derive(Default)]
+pub(crate) struct InkPasses {
+    filters: RefCell<HashMap<FilterKey, FusedPass>>,
+    dilations: RefCell<HashMap<InkTarget, DiscPass>>,
+    lay: OnceCell<LayPass>,
+}
+
+/// A picture over which lines are drawn.
+#[derive(Clone, Copy)]
+pub(crate) struct InkFrame<'a> {
+    pub(crate) device: &'a wgpu::Device,
+    pub(crate) image: &'a ImagePlan,
+    pub(crate) camera: &'a Camera,
+    /// Of the scene; beyond it there are no lines.
+    pub(crate) bounds: Option<(Vec3, Vec3)>,
+    pub(crate) ink: &'a InkTargets,
+    pub(crate) picture: &'a wgpu::TextureView,
+    pub(crate) picture_size: (u32, u32),
+}
+
+impl InkPasses {
+    /// Finds the lines in the texels that were drawn, and draws them over the picture.
+    pub(crate) fn record(&self, encoder: &mut wgpu::CommandEncoder, frame: &InkFrame<'_>) -> Result<(), HarnessError> {
+        frame.image.passes().try_for_each(|lines| self.record_lines(encoder, frame, lines))
+    }
+
+    /// One pass of lines.
+    fn record_lines(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        frame: &InkFrame<'_>,
+        lines: &ImageLines,
+    ) -> Result<(), HarnessError> {
+        let InkFrame { device, image, ink, picture, picture_size, .. } = *frame;
+        let area = |size, around_px| frame.bounds.map(|bounds| frame.camera.area(bounds, size, around_px));
+        let onto = |view, size, around_px| Onto { view, composite: &lines.composite, area: area(size, around_px) };
+        // Beside a surface there is a pixel of line, and then what a dilation adds.
+        let dilation_px = lines.dilation.map_or(0, |disc| disc.radius_px.ceil() as u32 + 1);
+
+        let filter = &lines.filter;
+        let found = ink.found.as_ref().filter(|_| image.is_stored(lines));
+        let target = if found.is_some() { InkTarget::Ink } else { PICTURE };
+        let key = (filter.taps, filter.softness > 0.0, image.ink.layout, target);
+        let mut filters = self.filters.borrow_mut();
+        let pass = filters.entry(key).or_insert_with(|| FusedPass::new(device, filter, image.ink.layout, target));
+        let view = found.unwrap_or(picture);
+        pass.record(device, encoder, filter, &image.code, &ink.texels, &onto(view, ink.size, 1))?;
+        let Some(mut line) = found else { return Ok(()) };
+
+        if let (Some(disc), Some(scratch)) = (&lines.dilation, &ink.dilation) {
+            let thick = ink.thick.as_ref();
+            let target = if thick.is_some() { InkTarget::Ink } else { PICTURE };
+            let mut dilations = self.dilations.borrow_mut();
+            let pass = dilations.entry(target).or_insert_with(|| DiscPass::new(device, target));
+            let onto = onto(thick.unwrap_or(picture), ink.size, 1 + dilation_px);
+            pass.record(device, encoder, Operation::Dilate, disc, line, scratch, &onto)?;
+            let Some(thick) = thick else { return Ok(()) };
+            line = thick;
+        }
+        // A pixel of ink is at most two of the picture's, and reaches as far again.
+        let onto = onto(picture, picture_size, 4 + 2 * dilation_px);
+        self.lay.get_or_init(|| LayPass::new(device, PICTURE)).record(device, encoder, line, &onto);
+        Ok(())
+    }
+}

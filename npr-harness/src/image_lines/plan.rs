@@ -1,0 +1,236 @@
+//! What lines in the image need of a scene seen by a camera.
+
+use super::style::{ImageInk, InkScale, Regions};
+use crate::camera::{Camera, Projection};
+use crate::error::HarnessError;
+use crate::scene::Scene;
+use crate::shadow::ShadowLines;
+use crate::view::View;
+use glam::{DVec3, UVec2};
+use npr_imagespace::ImageSpaceError;
+use npr_imagespace::artist::LineKind;
+use npr_imagespace::composite::Composite;
+use npr_imagespace::filter::fused::{FilterUniform, FusedFilter, ShadowTest, ink_fused};
+use npr_imagespace::format::texel::{DepthCode, TexelLayout, ink_fold_region, ink_narrow_tap, ink_wide_tap};
+use npr_imagespace::morphology::disc::Disc;
+use npr_imagespace::morphology::flood::{FloodPlan, disc_plan, flood};
+use npr_imagespace::picture::filter_picture;
+use npr_imagespace::region::{region_of_index, region_of_pairs, region_of_patches};
+use npr_mesh::edges::{Edge, EdgeKind};
+use std::sync::Arc;
+
+/// What image-space lines need of a scene seen by a camera.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ImagePlan {
+    /// What the style asks for; jumps of depth in a parallel view in units of depth.
+    pub ink: ImageInk,
+    /// How eye depth is packed: the scene's own range, as far as the near plane leaves it.
+    pub code: DepthCode,
+    /// Per face its region, folded to what a texel holds: from 1.
+    pub face_region: Arc<Vec<u32>>,
+    /// Per material where its inner lines come from.
+    pub line_kinds: Vec<LineKind>,
+    /// The objects' lines, and those of shadows where they are drawn by the same pass.
+    pub lines: ImageLines,
+    /// The lines of shadows where they are drawn apart, under the others.
+    pub shadow_lines: Option<ImageLines>,
+    /// Width and height of the target in which they are found, px.
+    pub size: (u32, u32),
+    /// Whether surfaces are drawn for it again, since the picture's are of another size or have several samples a pixel.
+    pub own_surfaces: bool,
+}
+
+/// The key of [`ImagePlan::face_region`] among what is derived of a scene.
+#[derive(PartialEq)]
+struct FaceRegionKey {
+    regions: Regions,
+    crease_angle_rad: f32,
+    line_kinds: Vec<LineKind>,
+    most: u32,
+}
+
+/// What one pass of lines does.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ImageLines {
+    /// What is a line.
+    pub filter: FusedFilter,
+    /// Thickens them.
+    pub dilation: Option<Disc>,
+    /// The passes that thicken, where they are asked for.
+    flood: Option<FloodPlan>,
+    /// How they come over the picture.
+    pub composite: Composite,
+}
+
+impl ImageLines {
+    fn new(filter: FusedFilter, dilation: Option<Disc>, composite: Composite) -> Result<Self, ImageSpaceError> {
+        if let Some(disc) = dilation {
+            // Validates the radius.
+            flood(&[], UVec2::ZERO, &disc, &FloodPlan { passes: Vec::new() })?;
+        }
+        Ok(Self { filter, dilation, flood: dilation.map(|disc| disc_plan(&disc)), composite })
+    }
+}
+
+impl ImagePlan {
+    /// # Errors
+    /// What is wrong with the thresholds or the dilation.
+    pub(crate) fn new(scene: &Scene, ink: &ImageInk, crease_angle_rad: f32, view: &View) -> Result<Self, HarnessError> {
+        ink.validate()?;
+        let camera = &view.camera;
+        let code = depth_code(scene, camera, ink.layout)?;
+        let mut ink = *ink;
+        if let (Projection::Orthographic { .. }, Some(test)) = (camera.projection, &mut ink.filter.depth) {
+            // As large as it may be: no jump is a line then.
+            test.step = (test.step * 2.0 * scene.radius() as f32).min(f32::MAX);
+        }
+        let test = match ink.shadows {
+            ShadowLines::None | ShadowLines::Negated => ShadowTest::Absent,
+            ShadowLines::Lines => ShadowTest::Lines,
+            ShadowLines::Separate { .. } => ShadowTest::Ignored,
+        };
+        let lines = ImageLines::new(FusedFilter { shadows: test, ..ink.filter }, ink.dilation, ink.composite)?;
+        FilterUniform::new(&lines.filter, ink.layout, &code)?;
+        let shadow_lines = match ink.shadows {
+            ShadowLines::Separate { composite, dilation } => {
+                Some(ImageLines::new(FusedFilter { shadows: ShadowTest::Alone, ..ink.filter }, dilation, composite)?)
+            }
+            _ => None,
+        };
+        let materials = scene.model.materials.len();
+        let line_kinds = if ink.artist { scene.line_kinds.clone() } else { vec![LineKind::Normals; materials] };
+        let most = ink.region_most();
+        let key = FaceRegionKey { regions: ink.regions, crease_angle_rad, line_kinds: line_kinds.clone(), most };
+        let face_region = scene.derived.get(key, || {
+            let regions = face_regions(scene, ink.regions, &line_kinds, crease_angle_rad)?;
+            Ok::<_, ImageSpaceError>(regions.into_iter().map(|region| ink_fold_region(region, most)).collect())
+        })?;
+        let own_surfaces = ink.scale != InkScale::One || view.samples > 1;
+        Ok(Self {
+            ink,
+            code,
+            face_region,
+            line_kinds,
+            lines,
+            shadow_lines,
+            size: ink.scale.size(view.size),
+            own_surfaces,
+        })
+    }
+
+    /// Whether ink is needed by itself before it is composited: for a dilation, or since it has not the picture's size.
+    pub fn is_stored(&self, lines: &ImageLines) -> bool {
+        lines.dilation.is_some() || self.ink.scale != InkScale::One
+    }
+
+    /// The code of what the depth buffer holds, for who has that at hand.
+    pub fn buffer_code(&self, camera: &Camera) -> DepthCode {
+        match camera.projection {
+            Projection::Perspective { .. } => self.code.of_buffer(0.0, 1.0 / camera.near),
+            Projection::Orthographic { far, .. } => self.code.of_buffer(far, camera.near - far),
+        }
+    }
+
+    /// The passes of lines, in the order in which they are laid.
+    pub fn passes(&self) -> impl Iterator<Item = &ImageLines> {
+        self.shadow_lines.iter().chain(std::iter::once(&self.lines))
+    }
+
+    /// Whether any lines are thickened.
+    pub fn has_dilation(&self) -> bool {
+        self.passes().any(|lines| lines.dilation.is_some())
+    }
+
+    /// Ink of a picture of texels, the reference: found, and thickened.
+    ///
+    /// - `lines`: [`ImagePlan::lines`] or [`ImagePlan::shadow_lines`];
+    /// - `texels`: of [`ImageInk::layout`]; in one word the second is not looked at.
+    ///
+    /// # Panics
+    /// If there is not one for each pixel.
+    pub fn ink(&self, lines: &ImageLines, texels: &[[u32; 2]]) -> Vec<u8> {
+        let size_px = UVec2::from(self.size);
+        let filter = &lines.filter;
+        let uniform = FilterUniform::new(filter, self.ink.layout, &self.code).expect("it was checked");
+        let tap = |words: [u32; 2]| match self.ink.layout {
+            TexelLayout::Narrow => ink_narrow_tap(words[0]),
+            TexelLayout::Wide => ink_wide_tap(words),
+        };
+        let found = filter_picture(texels, size_px, filter.taps, |centre, taps| {
+            ink_fused(&uniform, &tap(centre), &taps.map(tap)) as f32
+        })
+        .expect("a texel for each pixel");
+        match (&lines.dilation, &lines.flood) {
+            (Some(disc), Some(plan)) => flood(&found, size_px, disc, plan).expect("the disc was checked"),
+            _ => found,
+        }
+    }
+}
+
+/// The range of eye depth in which the scene lies, before the camera.
+fn depth_range(scene: &Scene, camera: &Camera) -> (f64, f64) {
+    let back = camera.axes()[2];
+    let (low, high) = scene.bounds().map_or((DVec3::ZERO, DVec3::ZERO), |(l, h)| (l.as_dvec3(), h.as_dvec3()));
+    let depth = |corner: DVec3| (camera.eye - corner).dot(back);
+    let nearest = depth(DVec3::select(back.cmpgt(DVec3::ZERO), high, low));
+    let farthest = depth(DVec3::select(back.cmpgt(DVec3::ZERO), low, high));
+    // A thousandth to spare: the range's ends are clamped, and what is clamped bends.
+    let spare = 1e-3 * (farthest - nearest);
+    let near = (nearest - spare).max(camera.near * 0.999);
+    (near, (farthest + spare).max(near * 1.001))
+}
+
+fn depth_code(scene: &Scene, camera: &Camera, layout: TexelLayout) -> Result<DepthCode, ImageSpaceError> {
+    let (near, far) = depth_range(scene, camera);
+    match camera.projection {
+        Projection::Perspective { .. } => DepthCode::perspective(near as f32, far as f32, layout),
+        Projection::Orthographic { .. } => DepthCode::parallel(near as f32, far as f32, layout),
+    }
+}
+
+/// Per face its region. Only materials whose lines come from normals or regions are split into patches: of the others
+/// each mesh is one, so that nothing is drawn in it but what the artist wants.
+fn face_regions(
+    scene: &Scene,
+    by: Regions,
+    line_kinds: &[LineKind],
+    crease_angle_rad: f32,
+) -> Result<Vec<u32>, ImageSpaceError> {
+    let model = &scene.model;
+    let faces = model.faces.len();
+    let materials = || model.face_material.iter().map(|&material| region_of_index(material));
+    let meshes = || {
+        let one = (model.face_mesh.is_empty()).then_some(region_of_index(0));
+        let each = model.face_mesh.iter().map(|&mesh| region_of_index(mesh));
+        each.chain(std::iter::repeat_n(one, faces).flatten())
+    };
+    match by {
+        Regions::One => Ok(vec![1; faces]),
+        Regions::Material => Ok(materials().collect()),
+        Regions::Mesh => Ok(meshes().collect()),
+        Regions::Patch => {
+            let is_smooth = |edge: &Edge| {
+                edge.kind() == EdgeKind::TwoFace
+                    && scene.edges.dihedral_rad(edge).is_some_and(|angle| angle <= crease_angle_rad)
+            };
+            let smooth = scene.edges.edges.iter().filter(|edge| is_smooth(edge)).map(Edge::faces);
+            let pairs: Vec<[u32; 2]> = smooth.chain(same_polygon(&model.face_polygon)).collect();
+            let mut patches = region_of_patches(faces, &pairs)?;
+            for ((patch, &material), mesh) in patches.iter_mut().zip(&model.face_material).zip(meshes()) {
+                if !matches!(line_kinds[material as usize], LineKind::Normals | LineKind::Regions) {
+                    *patch = mesh;
+                }
+            }
+            Ok(region_of_pairs(patches.into_iter().zip(materials()).map(<[u32; 2]>::from)))
+        }
+    }
+}
+
+/// Neighbouring triangles of one polygon: the edge between them is none of the model's.
+fn same_polygon(face_polygon: &[u32]) -> impl Iterator<Item = [u32; 2]> + '_ {
+    face_polygon
+        .windows(2)
+        .zip(0u32..)
+        .filter(|(polygons, _)| polygons[0] == polygons[1])
+        .map(|(_, face)| [face, face + 1])
+}

@@ -1,0 +1,90 @@
+//! A style's lights, placed in a scene.
+
+use crate::camera::Camera;
+use crate::scene::{FARTHEST, Scene};
+use glam::{DVec4, Vec3};
+use npr_toon::source::{Light, LightPlace, aggregate};
+
+/// What a light's direction or position is measured in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum LightFrame {
+    /// The viewer's axes, x to the right, y up and z towards the eye. Positions are counted from the middle of the model's
+    /// box in halves of its diagonal, so that a light suits any model, seen from any side.
+    #[default]
+    View,
+    /// The model's own axes and units.
+    World,
+}
+
+/// A light of a style.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StyleLight {
+    /// Where it is, its colour and its brightness.
+    pub light: Light,
+    /// What its place is measured in.
+    pub frame: LightFrame,
+}
+
+impl StyleLight {
+    /// White, over the viewer's left shoulder, so that any model is well lit from any side.
+    pub const KEY: Self = Self {
+        light: Light {
+            place: LightPlace::Directional { to_light: Vec3::new(-0.5, 0.7, 0.6) },
+            color: Vec3::ONE,
+            brightness: 1.0,
+        },
+        frame: LightFrame::View,
+    };
+}
+
+impl Default for StyleLight {
+    fn default() -> Self {
+        Self::KEY
+    }
+}
+
+/// A style's lights in the space of the scene's positions. More than `most` are replaced by the one that stands for them
+/// ([`aggregate`], at the middle of the model's box). Directions are unit vectors, but zero where two lights cancel out.
+pub fn lights_in_world(lights: &[StyleLight], most: usize, scene: &Scene, camera: &Camera) -> Vec<Light> {
+    let lights: Vec<Light> = lights.iter().map(|light| in_world(light, scene, camera)).collect();
+    if lights.len() <= most {
+        return lights;
+    }
+    let one = aggregate(&lights, scene.middle());
+    vec![Light {
+        place: LightPlace::Directional { to_light: one.to_light.as_vec3() },
+        color: one.color.as_vec3(),
+        brightness: one.brightness as f32,
+    }]
+}
+
+/// The light that casts shadows, the first: a point with w = 1, or the unit direction to it with w = 0, in the space of
+/// the scene's positions.
+pub fn casting_light(lights: &[StyleLight], scene: &Scene, camera: &Camera) -> DVec4 {
+    lights.first().map_or(DVec4::ZERO, |light| match in_world(light, scene, camera).place {
+        LightPlace::Directional { to_light } => to_light.as_dvec3().normalize_or_zero().extend(0.0),
+        LightPlace::Positional { position } => position.as_dvec3().extend(1.0),
+    })
+}
+
+fn in_world(StyleLight { light, frame }: &StyleLight, scene: &Scene, camera: &Camera) -> Light {
+    let [right, up, back] = camera.axes();
+    let turned = |v: Vec3| match frame {
+        LightFrame::View => right * f64::from(v.x) + up * f64::from(v.y) + back * f64::from(v.z),
+        LightFrame::World => v.as_dvec3(),
+    };
+    let place = match light.place {
+        LightPlace::Directional { to_light } => {
+            LightPlace::Directional { to_light: turned(to_light).normalize_or_zero().as_vec3() }
+        }
+        LightPlace::Positional { position } => {
+            let position = match frame {
+                LightFrame::View => scene.middle() + turned(position) * scene.radius(),
+                LightFrame::World => scene.place_here(position.as_dvec3()),
+            };
+            // A light that is farther away shines as from there, and its position is an f32 on a device.
+            LightPlace::Positional { position: position.clamp_length_max(FARTHEST).as_vec3() }
+        }
+    };
+    Light { place, ..*light }
+}

@@ -1,0 +1,30 @@
+//! World-space normals as colours, negated in shadow.
+
+use super::{ShadeModel, ShadeOnDevice, Shading};
+use crate::error::HarnessError;
+use crate::view::View;
+use glam::DVec3;
+
+pub(super) struct Normals;
+
+impl ShadeModel for Normals {
+    fn validate(&self) -> Result<(), HarnessError> {
+        Ok(())
+    }
+
+    fn is_normals(&self) -> bool {
+        true
+    }
+
+    fn color(&self, shading: &Shading<'_>) -> DVec3 {
+        (shading.normal)() * 0.5 + 0.5
+    }
+
+    fn on_device(&self, _view: &View) -> Result<ShadeOnDevice, HarnessError> {
+        Ok(ShadeOnDevice::new(&[
+            ("npr-toon", npr_toon::WGSL),
+            ("one_light.wgsl", super::lambert::ONE_LIGHT_WGSL),
+            ("normals.wgsl", include_str!("normals.wgsl")),
+        ]))
+    }
+}

@@ -1,0 +1,26 @@
+//! Surfaces that no shade colours: paper, and hatched ones, which take the diffuse term.
+
+use super::{ShadeModel, ShadeOnDevice, Shading};
+use crate::error::HarnessError;
+use crate::view::View;
+use glam::DVec3;
+
+pub(super) struct Unlit;
+
+impl ShadeModel for Unlit {
+    fn validate(&self) -> Result<(), HarnessError> {
+        Ok(())
+    }
+
+    fn color(&self, shading: &Shading<'_>) -> DVec3 {
+        shading.base
+    }
+
+    fn on_device(&self, _view: &View) -> Result<ShadeOnDevice, HarnessError> {
+        Ok(ShadeOnDevice::new(&[
+            ("npr-toon", npr_toon::WGSL),
+            ("one_light.wgsl", super::lambert::ONE_LIGHT_WGSL),
+            ("unlit.wgsl", include_str!("unlit.wgsl")),
+        ]))
+    }
+}

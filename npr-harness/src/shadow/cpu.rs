@@ -1,0 +1,41 @@
+//! Shadows by rays: the reference. The twin of `shadow.wgsl`.
+
+use super::plan::{ShadowPlan, casts};
+use crate::rays::Hit;
+use crate::scene::Scene;
+use glam::DVec3;
+use npr_imagespace::shadow::ShadowState;
+
+/// What shadows make of a hit. [`Default`] is a surface on which no shadow can fall.
+#[derive(Clone, Copy, Default, PartialEq)]
+pub(crate) struct ShadowAt {
+    /// For its light: in a cast shadow.
+    pub(crate) dark: bool,
+    /// For printed normals: in any shadow, its own included.
+    pub(crate) negated: bool,
+    /// For lines.
+    pub(crate) state: ShadowState,
+}
+
+/// What shadows make of a hit at `at`, whose normal, of any length, is on the viewer's side.
+pub(crate) fn shadow_at(shadow: &ShadowPlan, scene: &Scene, hit: &Hit, at: DVec3, normal: DVec3) -> ShadowAt {
+    let light = shadow.light;
+    let way = light.truncate() - at * light.w;
+    let [a, b, c] = scene.model.faces[hit.face as usize].map(|v| scene.model.positions[v as usize].as_dvec3());
+    let of_face = (b - a).cross(c - a) * if hit.front { 1.0 } else { -1.0 };
+    if of_face.dot(way) <= 0.0 {
+        return ShadowAt { negated: true, ..ShadowAt::default() };
+    }
+    // What is nearer is the surface itself, or a copy of it.
+    let nearest = scene.radius() * 1e-9;
+    let range = (nearest / way.length(), if light.w == 0.0 { f64::INFINITY } else { 1.0 });
+    let is_caster = |other: &Hit| other.face != hit.face && casts(scene, other.face);
+    let falls = scene.rays().any(at, way, range, is_caster);
+    let n_dot_l = normal.normalize_or_zero().dot(way.normalize_or_zero());
+    let state = match falls {
+        _ if n_dot_l <= f64::from(shadow.terminator) => ShadowState::Turned,
+        true => ShadowState::Cast,
+        false => ShadowState::Lit,
+    };
+    ShadowAt { dark: falls && n_dot_l > 0.0, negated: falls, state }
+}

@@ -1,0 +1,359 @@
+//! Shadows on the device: volumes in a stencil, or a map of depths, and what the geometry pass knows of them.
+
+use super::plan::{ShadowPlan, ShadowTechnique, VolumeMethod};
+use crate::camera::{Camera, Projection};
+use crate::error::HarnessError;
+use crate::gpu::context::GpuContext;
+use crate::gpu::uniform::uniform_buffer;
+use crate::scene::Scene;
+use crate::view::size_px;
+use glam::{DMat4, DVec2, DVec3, DVec4};
+use npr_outline::shadow_mask::{MASK_FORMAT, ShadowMaskPass};
+use npr_outline::shadow_pass::{CastersOnDevice, ShadowPass};
+use std::cell::{OnceCell, Ref, RefCell};
+
+/// `SurfaceShadow` of `shadow.wgsl`.
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub(crate) struct ShadowUniform {
+    pub(crate) light: [f32; 4],
+    pub(crate) light_px: [f32; 4],
+    pub(crate) world_from_px: [[f32; 4]; 4],
+    pub(crate) map_from_px: [[f32; 4]; 4],
+    pub(crate) terminator: f32,
+    pub(crate) padding0: f32,
+    pub(crate) padding1: f32,
+    pub(crate) padding2: f32,
+}
+
+/// What the geometry pass binds.
+pub(crate) struct ShadowOnDevice {
+    pub(crate) uniform: wgpu::Buffer,
+    /// Which pixels of the picture are in shadow, [`MASK_FORMAT`].
+    pub(crate) mask: Option<wgpu::TextureView>,
+    /// The map.
+    pub(crate) map: Option<wgpu::TextureView>,
+}
+
+/// What is bound where there are no shadows.
+pub(crate) struct BlankShadow {
+    pub(crate) uniform: wgpu::Buffer,
+    pub(crate) mask: wgpu::TextureView,
+    pub(crate) map: wgpu::TextureView,
+    /// What the map is read with, blank or not.
+    pub(crate) nearest: wgpu::Sampler,
+}
+
+impl BlankShadow {
+    pub(crate) fn new(device: &wgpu::Device) -> Self {
+        let uniform = uniform_buffer(device, &[0; size_of::<ShadowUniform>()]);
+        let view = |format| texture(device, "no shadow", format, (1, 1)).create_view(&Default::default());
+        let nearest = device.create_sampler(&wgpu::SamplerDescriptor { label: Some("nearest"), ..Default::default() });
+        Self { uniform, mask: view(MASK_FORMAT), map: view(MAP_FORMAT), nearest }
+    }
+}
+
+const MAP_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+
+fn texture(device: &wgpu::Device, label: &str, format: wgpu::TextureFormat, size: (u32, u32)) -> wgpu::Texture {
+    device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width: size.0, height: size.1, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    })
+}
+
+/// Depth and stencil, and the mask that is made of them, of one size, made when first needed.
+#[derive(Default)]
+pub(crate) struct StencilTarget {
+    views: OnceCell<(wgpu::TextureView, wgpu::TextureView)>,
+}
+
+impl StencilTarget {
+    /// Depth and stencil, and the mask.
+    fn views(
+        &self,
+        device: &wgpu::Device,
+        format: wgpu::TextureFormat,
+        size: (u32, u32),
+    ) -> &(wgpu::TextureView, wgpu::TextureView) {
+        self.views.get_or_init(|| {
+            let view = |label, format| texture(device, label, format, size).create_view(&Default::default());
+            (view("shadow stencil", format), view("shadow mask", MASK_FORMAT))
+        })
+    }
+}
+
+/// What casts, on the device.
+pub(crate) enum ShadowCasting {
+    /// All of it; the device sorts out what casts under a light.
+    OnDevice(CastersOnDevice),
+    /// What casts under the light of the last frame.
+    Scanned(RefCell<Option<(DVec4, CastersOnDevice)>>),
+}
+
+/// The passes, made when they are first needed.
+#[derive(Default)]
+pub(crate) struct ShadowPasses {
+    /// For perspective and for parallel views.
+    volumes: [OnceCell<ShadowPass>; 2],
+    mask: OnceCell<ShadowMaskPass>,
+    map: OnceCell<MapPass>,
+    map_texture: RefCell<Option<wgpu::Texture>>,
+}
+
+/// Shadows of a picture, or of the surfaces of its ink: what the passes take.
+#[derive(Clone, Copy)]
+pub(crate) struct ShadowFrame<'a> {
+    pub(crate) context: &'a GpuContext,
+    pub(crate) scene: &'a Scene,
+    pub(crate) plan: &'a ShadowPlan,
+    pub(crate) camera: &'a Camera,
+    /// Of the targets, px.
+    pub(crate) size: (u32, u32),
+    /// What casts, where volumes are drawn.
+    pub(crate) casting: Option<&'a ShadowCasting>,
+    /// Positions of vertices, 24 bytes apart, and the faces that cast into a map.
+    pub(crate) vertices: &'a wgpu::Buffer,
+    pub(crate) indices: Option<&'a wgpu::Buffer>,
+}
+
+impl ShadowFrame<'_> {
+    fn uniform(&self) -> ShadowUniform {
+        let size_px = size_px(self.size);
+        let px_from_world = px_from_clip(size_px) * self.camera.clip_from_world(size_px.x / size_px.y);
+        let world_from_px = px_from_world.inverse();
+        let light = self.plan.light;
+        let map_from_px = match self.plan.technique {
+            ShadowTechnique::Map { side } => {
+                let texels = DVec2::splat(side.into());
+                px_from_clip(texels) * map_camera(self.scene, light).clip_from_world(1.0) * world_from_px
+            }
+            ShadowTechnique::Volumes { .. } => DMat4::ZERO,
+        };
+        ShadowUniform {
+            light: light.as_vec4().to_array(),
+            light_px: (px_from_world * light).as_vec4().to_array(),
+            world_from_px: world_from_px.as_mat4().to_cols_array_2d(),
+            map_from_px: map_from_px.as_mat4().to_cols_array_2d(),
+            terminator: self.plan.terminator,
+            padding0: 0.0,
+            padding1: 0.0,
+            padding2: 0.0,
+        }
+    }
+}
+
+/// (x px, y px, depth, 1) times w, from clip space.
+fn px_from_clip(size_px: DVec2) -> DMat4 {
+    let half = size_px / 2.0;
+    DMat4::from_cols(
+        DVec4::new(half.x, 0.0, 0.0, 0.0),
+        DVec4::new(0.0, -half.y, 0.0, 0.0),
+        DVec4::Z,
+        DVec4::new(half.x, half.y, 0.0, 1.0),
+    )
+}
+
+/// What the light sees: all of the model's sphere, no more.
+fn map_camera(scene: &Scene, light: DVec4) -> Camera {
+    // A model without extent has no shadow, and the camera must have a size.
+    let (middle, radius) = (scene.middle(), scene.radius().max(f64::MIN_POSITIVE.sqrt()));
+    let away = if light.w == 0.0 { light.truncate() } else { light.truncate() - middle };
+    let up = if away.y.abs() < 0.9 * away.length() { DVec3::Y } else { DVec3::X };
+    if light.w == 0.0 {
+        // From one radius before the sphere to one behind it.
+        let projection = Projection::Orthographic { height: 2.0 * radius, far: 4.0 * radius };
+        return Camera { eye: middle + away * (2.5 * radius), target: middle, up, projection, near: radius };
+    }
+    let distance = away.length();
+    let projection = Projection::Perspective { fov_y_rad: 2.0 * (radius / distance).asin() };
+    Camera { eye: light.truncate(), target: middle, up, projection, near: (distance - radius) * 0.99 }
+}
+
+impl ShadowPasses {
+    /// Uploads what casts, or gets ready to do so for each light where the CPU decides what bounds the volumes.
+    pub(crate) fn upload(
+        &self,
+        context: &GpuContext,
+        technique: &ShadowTechnique,
+    ) -> Result<Option<ShadowCasting>, HarnessError> {
+        Ok(match technique {
+            ShadowTechnique::Volumes { casters, method: VolumeMethod::OnDevice, .. } => {
+                Some(ShadowCasting::OnDevice(CastersOnDevice::new(&context.device, casters)?))
+            }
+            ShadowTechnique::Volumes { .. } => Some(ShadowCasting::Scanned(RefCell::default())),
+            ShadowTechnique::Map { .. } => None,
+        })
+    }
+
+    /// Volumes counted against the depth that `draw_depth` draws into the view that it is given; or the map.
+    pub(crate) fn record(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        frame: &ShadowFrame<'_>,
+        target: &StencilTarget,
+        draw_depth: &mut dyn FnMut(&mut wgpu::CommandEncoder, &wgpu::TextureView) -> Result<(), HarnessError>,
+    ) -> Result<ShadowOnDevice, HarnessError> {
+        let device = &frame.context.device;
+        let uniform = uniform_buffer(device, bytemuck::bytes_of(&frame.uniform()));
+        let light = frame.plan.light;
+        let (casters, float_depth) = match &frame.plan.technique {
+            ShadowTechnique::Map { side } => {
+                let map = self.draw_map(encoder, frame, *side);
+                return Ok(ShadowOnDevice { uniform, mask: None, map: Some(map) });
+            }
+            ShadowTechnique::Volumes { casters, float_depth, .. } => (casters, *float_depth),
+        };
+        let format = stencil_format(float_depth);
+        let (depth_stencil, mask) = target.views(device, format, frame.size);
+        draw_depth(encoder, depth_stencil)?;
+        let parallel = matches!(frame.camera.projection, Projection::Orthographic { .. });
+        let pass = self.volumes[usize::from(parallel)].get_or_init(|| ShadowPass::new(device, format, parallel));
+        let aspect = f64::from(frame.size.0) / f64::from(frame.size.1);
+        let clip_from_world = frame.camera.clip_from_world(aspect);
+        let casting = frame.casting.expect("what a plan with volumes uploads");
+        let endless = if parallel { casters.endless(light, -frame.camera.axes()[2]) } else { 0 };
+        let area = frame.scene.bounds().map(|bounds| frame.camera.area(bounds, frame.size, 1));
+        let mut draw = |casters: &CastersOnDevice| {
+            pass.record(device, encoder, casters, light, clip_from_world, depth_stencil, endless, area);
+        };
+        match casting {
+            ShadowCasting::OnDevice(casters) => draw(casters),
+            ShadowCasting::Scanned(last) => {
+                let is_same = last.borrow().as_ref().is_some_and(|(of, _)| *of == light);
+                if !is_same {
+                    let scanned = CastersOnDevice::scanned(device, casters, light)?;
+                    *last.borrow_mut() = Some((light, scanned));
+                }
+                draw(&Ref::map(last.borrow(), |last| &last.as_ref().expect("it was just made").1));
+            }
+        }
+        let pass = self.mask.get_or_init(|| ShadowMaskPass::new(device, format));
+        pass.record(encoder, depth_stencil, mask, area);
+        Ok(ShadowOnDevice { uniform, mask: Some(mask.clone()), map: None })
+    }
+
+    fn draw_map(&self, encoder: &mut wgpu::CommandEncoder, frame: &ShadowFrame<'_>, side: u32) -> wgpu::TextureView {
+        let device = &frame.context.device;
+        let mut kept = self.map_texture.borrow_mut();
+        if kept.as_ref().is_none_or(|texture| texture.width() != side) {
+            *kept = Some(texture(device, "shadow map", MAP_FORMAT, (side, side)));
+        }
+        let view = kept.as_ref().expect("it was just made").create_view(&Default::default());
+        let pass = self.map.get_or_init(|| MapPass::new(device));
+        let clip_from_world = map_camera(frame.scene, frame.plan.light).clip_from_world(1.0);
+        pass.record(device, encoder, (frame.vertices, frame.indices), clip_from_world, &view);
+        view
+    }
+}
+
+/// Depth with a stencil.
+fn stencil_format(float_depth: bool) -> wgpu::TextureFormat {
+    if float_depth { wgpu::TextureFormat::Depth32FloatStencil8 } else { wgpu::TextureFormat::Depth24PlusStencil8 }
+}
+
+/// The shader of shadows on surfaces.
+pub(crate) const SHADOW_WGSL: (&str, &str) = ("shadow.wgsl", include_str!("shadow.wgsl"));
+
+const MAP_WGSL: &str = include_str!("shadow_map.wgsl");
+
+/// Depths as a light sees them.
+struct MapPass {
+    layout: wgpu::BindGroupLayout,
+    pipeline: wgpu::RenderPipeline,
+}
+
+impl MapPass {
+    fn new(device: &wgpu::Device) -> Self {
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("shadow map"),
+            source: wgpu::ShaderSource::Wgsl(MAP_WGSL.into()),
+        });
+        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("shadow map"),
+            entries: &[wgpu::BindGroupLayoutEntry {
+                binding: 0,
+                visibility: wgpu::ShaderStages::VERTEX,
+                ty: wgpu::BindingType::Buffer {
+                    ty: wgpu::BufferBindingType::Uniform,
+                    has_dynamic_offset: false,
+                    min_binding_size: None,
+                },
+                count: None,
+            }],
+        });
+        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some("shadow map"),
+            layout: Some(&device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                label: Some("shadow map"),
+                bind_group_layouts: &[Some(&layout)],
+                immediate_size: 0,
+            })),
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some("vs_shadow_map"),
+                compilation_options: Default::default(),
+                buffers: &[Some(wgpu::VertexBufferLayout {
+                    array_stride: 24,
+                    step_mode: wgpu::VertexStepMode::Vertex,
+                    attributes: &wgpu::vertex_attr_array![0 => Float32x3],
+                })],
+            },
+            primitive: Default::default(),
+            depth_stencil: Some(wgpu::DepthStencilState {
+                format: MAP_FORMAT,
+                depth_write_enabled: Some(true),
+                depth_compare: Some(wgpu::CompareFunction::Greater),
+                stencil: Default::default(),
+                // A texel stands for what lies up to half a texel from its middle along both axes, where a plane's depth
+                // differs by up to the larger of its slopes: so far away from the light (reversed: less) nothing shadows
+                // itself. The rest is for rounding.
+                bias: wgpu::DepthBiasState { constant: -16, slope_scale: -1.0, clamp: 0.0 },
+            }),
+            multisample: Default::default(),
+            fragment: None,
+            multiview_mask: None,
+            cache: None,
+        });
+        Self { layout, pipeline }
+    }
+
+    fn record(
+        &self,
+        device: &wgpu::Device,
+        encoder: &mut wgpu::CommandEncoder,
+        (vertices, indices): (&wgpu::Buffer, Option<&wgpu::Buffer>),
+        clip_from_world: DMat4,
+        view: &wgpu::TextureView,
+    ) {
+        let uniform = uniform_buffer(device, bytemuck::bytes_of(&clip_from_world.as_mat4().to_cols_array_2d()));
+        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("shadow map"),
+            layout: &self.layout,
+            entries: &[wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() }],
+        });
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("shadow map"),
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view,
+                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Store }),
+                stencil_ops: None,
+            }),
+            ..Default::default()
+        });
+        // What is not blended casts.
+        if let Some(indices) = indices {
+            pass.set_pipeline(&self.pipeline);
+            pass.set_bind_group(0, &group, &[]);
+            pass.set_vertex_buffer(0, vertices.slice(..));
+            pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
+            pass.draw_indexed(0..(indices.size() / 4) as u32, 0, 0..1);
+        }
+    }
+}

@@ -1,0 +1,75 @@
+//! What a style says of shadows.
+
+use crate::error::HarnessError;
+use npr_imagespace::composite::Composite;
+use npr_imagespace::morphology::disc::Disc;
+
+/// How a device finds what is in shadow.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum ShadowMethod {
+    /// Shadow volumes in a stencil buffer: exact.
+    #[default]
+    Volumes,
+    /// A picture of depths as the light sees them: its cost does not depend on edges, its borders are as coarse as its
+    /// texels.
+    Map {
+        /// Texels along a side, 16..=16384.
+        side: u32,
+    },
+}
+
+/// What a style says of shadows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShadowStyle {
+    /// How a device finds them; the CPU follows rays.
+    pub method: ShadowMethod,
+    /// Where N·L is not above this, 0..1, shadows have no lines.
+    pub terminator: f32,
+}
+
+impl Default for ShadowStyle {
+    fn default() -> Self {
+        Self { method: ShadowMethod::Volumes, terminator: 0.15 }
+    }
+}
+
+impl ShadowStyle {
+    pub(crate) fn validate(&self) -> Result<(), HarnessError> {
+        let range = |what, value, range| Err(HarnessError::Range { what, value, range });
+        if !(0.0..1.0).contains(&self.terminator) {
+            return range("a shadow's terminator", f64::from(self.terminator), "0..1");
+        }
+        match self.method {
+            ShadowMethod::Map { side } if !(16..=16_384).contains(&side) => {
+                range("the side of a shadow map", f64::from(side), "16..=16384 texels")
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// How the borders of shadows are drawn, by styles whose lines are found in the image.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum ShadowLines {
+    /// Not at all.
+    #[default]
+    None,
+    /// As Card & Mitchell 2002 have it: normals are negated in shadow, what is turned away included.
+    Negated,
+    /// Like the objects' lines, by the same pass.
+    Lines,
+    /// By a pass of their own, under the objects' lines.
+    Separate {
+        /// How they come over the picture.
+        composite: Composite,
+        /// Thickens them.
+        dilation: Option<Disc>,
+    },
+}
+
+impl ShadowLines {
+    /// Whether texels hold a state of shadow.
+    pub fn has_states(self) -> bool {
+        matches!(self, Self::Lines | Self::Separate { .. })
+    }
+}

@@ -1,0 +1,554 @@
+//! The exact visible lines of a scene, and how well a picture shows them.
+//!
+//! Shares nothing with the drawing of lines but the list of edges: which edges are lines is decided in f64 from the
+//! corners of their faces, and what of them is seen by rays, not by a depth buffer.
+//!
+//! # What counts as a line
+//!
+//! Boundaries and non-manifold edges always, two-face edges where exactly one face is turned towards the eye or where
+//! the surface turns by more than the crease angle. As for drawing ([`npr_outline::contour`]): a polygon is classified
+//! by its Newell normal through the mean of its corners, a face wound oppositely is turned round, a face of zero area
+//! has the plane of its neighbour over its longest edge, and a face seen exactly edge-on is turned towards the eye.
+//! Which way the triangles of a folded polygon are turned, their own normals say, so that the folds between them can be
+//! silhouettes; creases they are not.
+//!
+//! # What counts as seen
+//!
+//! A point of an edge is seen when nothing solid lies between it and the eye (in a parallel view: the near plane).
+//! Left out are the edge's own faces, with the other triangles of their polygons if those are not folded: they touch the
+//! ray at the point itself, and where one is seen edge-on even the rounding of the point puts it in front or behind. So
+//! is all that is nearer to the point than [`BEHIND`] of its distance. The other faces around the edge's ends count: at
+//! a cusp they are what hides the line.
+//!
+//! Solid is what hides in a picture: not a blended face, and not the back of a single-sided one. Faces cut out by alpha
+//! count as whole. An edge is seen or hidden whatever its own faces are made of.
+
+mod intersections;
+
+pub use intersections::{MOST_FACES_INTERSECTED, true_intersections};
+
+use crate::camera::Camera;
+use crate::rays::Hit;
+use crate::scene::Scene;
+use glam::{DVec2, DVec3, DVec4};
+use npr_mesh::AlphaMode;
+use npr_mesh::edges::{Edge, EdgeKind, Edges, NO_FACE};
+use npr_outline::LineKind;
+use std::collections::HashMap;
+
+/// Of a line that is no edge.
+pub const NO_EDGE: u32 = u32::MAX;
+/// What lies in front of a point by less than this share of its eye depth does not hide it.
+///
+/// Rounding of the ray is below 1e-12 of the distance. Positions, however, are f32, and surfaces that were made to
+/// touch miss each other by 1e-7 of the model's size, times ten or more where they are seen at a slant. A px at the
+/// model's distance is about 1e-3 of it, so that this is a hundredth of a px.
+pub const BEHIND: f64 = 1e-5;
+/// Lines are sampled at most so far apart, px; their visible pieces are exact to half of it.
+pub const STEP_PX: f64 = 0.25;
+/// Lines are followed so far beyond the picture's borders, px: what runs just outside still darkens pixels inside.
+pub const MARGIN_PX: f64 = 2.0;
+/// True lines this near to the borders are not asked for in the picture, px: half of their pixels may lie outside.
+pub const BORDER_PX: f64 = 1.0;
+
+/// A piece of an edge, seen from end to end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TrueSegment {
+    /// Px, y down, pixel centres at halves. Equal for an edge that is seen end on.
+    pub ends_px: [DVec2; 2],
+    /// Why it is a line.
+    pub kind: LineKind,
+    /// Which of the scene's edges, or after those of its folds ([`scene_edge`]); [`NO_EDGE`] where two faces pass through
+    /// each other.
+    pub edge: u32,
+}
+
+/// The visible lines of a scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TrueLines {
+    /// In the order of the scene's edges, and along each edge. Within the picture and [`MARGIN_PX`] around it.
+    pub segments: Vec<TrueSegment>,
+    /// Width and height of the picture.
+    pub size_px: (u32, u32),
+}
+
+/// How well drawn lines agree with the true ones.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LineAccuracy {
+    /// The share of the drawn points that are near a true line, 0..=1; 1 where nothing is drawn.
+    pub precision: f64,
+    /// The share of the true lines' length that is near a drawn point, 0..=1; 1 where there are no lines.
+    pub recall: f64,
+    /// Their harmonic mean, 0..=1.
+    pub f1: f64,
+    /// Points of the drawn centreline.
+    pub drawn_px: u64,
+    /// Of the true lines, at least [`BORDER_PX`] within the picture.
+    pub true_length_px: f64,
+    /// What near means.
+    pub within_px: f64,
+    /// Mean distance of the drawn points near a true line from it; for points at pixel centres 0.25 at best, but for
+    /// lines along the grid.
+    pub mean_distance_px: f64,
+}
+
+/// The side of a plane that is asked for: a normal of any length, and a point.
+#[derive(Clone, Copy)]
+struct Plane {
+    normal: DVec3,
+    point: DVec3,
+}
+
+impl Plane {
+    fn faces(&self, eye: DVec4) -> bool {
+        self.normal.dot(eye.truncate() - self.point * eye.w) >= 0.0
+    }
+}
+
+/// The lines of a scene that are seen from a camera.
+///
+/// - `size`: of the picture, px.
+/// - `crease_angle_rad`: edges whose faces meet at more than this are lines, 0..=π.
+///
+/// It takes a ray for every [`STEP_PX`] of line, hidden ones too. The result does not depend on the number of threads.
+pub fn true_lines(scene: &Scene, camera: &Camera, size: (u32, u32), crease_angle_rad: f64) -> TrueLines {
+    true_lines_of_steps(scene, camera, size, crease_angle_rad, 0.0)
+}
+
+/// The same, without those silhouettes and boundaries behind which the next surface is less than `least_step` deeper,
+/// world units: what a picture cannot show but by the normals there.
+///
+/// Creases stay, also where they are silhouettes or the borders of a third face.
+pub fn true_lines_of_steps(
+    scene: &Scene,
+    camera: &Camera,
+    size: (u32, u32),
+    crease_angle_rad: f64,
+    least_step: f64,
+) -> TrueLines {
+    let planes = face_planes(scene);
+    let eye = camera.homogeneous_eye();
+    let numbers = 0..(scene.edges.edges.len() + scene.edges.folds.len()) as u32;
+    let lines: Vec<(u32, LineKind)> = numbers
+        .filter_map(|number| Some((number, line_kind(scene, number, &planes, eye, crease_angle_rad)?)))
+        .collect();
+    let visibility = Visibility::new(scene, camera, size);
+    let step_of = |number: u32, kind: LineKind| {
+        if kind == LineKind::Boundary || !is_crease(scene, number, &planes, crease_angle_rad) {
+            least_step
+        } else {
+            0.0
+        }
+    };
+    // Built before the threads ask for it, so that they do not wait for each other.
+    scene.rays();
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let share = lines.len().div_ceil(threads).max(1);
+    let segments = std::thread::scope(|scope| {
+        let visibility = &visibility;
+        let follow = |share: &[(u32, LineKind)]| -> Vec<TrueSegment> {
+            share.iter().flat_map(|&(edge, kind)| visibility.visible_pieces(edge, kind, step_of(edge, kind))).collect()
+        };
+        // Some platforms have no other thread than this one.
+        if threads == 1 {
+            return follow(&lines);
+        }
+        let running: Vec<_> = lines.chunks(share).map(|share| scope.spawn(move || follow(share))).collect();
+        running.into_iter().flat_map(|thread| thread.join().expect("following lines does not panic")).collect()
+    });
+    TrueLines { segments, size_px: size }
+}
+
+/// Per face, the normal zero where no neighbour lends one.
+struct FacePlanes {
+    /// Of the polygon: whose edges are creases.
+    of_polygons: Vec<Plane>,
+    /// The same but for the triangles of folded polygons, which have their own: whose edges are silhouettes.
+    of_sides: Vec<Plane>,
+}
+
+fn face_planes(scene: &Scene) -> FacePlanes {
+    let model = &scene.model;
+    let own: Vec<Plane> = model
+        .faces
+        .iter()
+        .map(|face| {
+            let [a, b, c] = face.map(|v| model.positions[v as usize].as_dvec3());
+            Plane { normal: (b - a).cross(c - a), point: a }
+        })
+        .collect();
+    let mut planes = own.clone();
+    if !model.face_polygon.is_empty() {
+        let mut start = 0;
+        for polygon in model.face_polygon.chunk_by(|a, b| a == b) {
+            let range = start..start + polygon.len();
+            start = range.end;
+            let normal = own[range.clone()].iter().map(|plane| plane.normal).sum();
+            let corners = model.faces[range.clone()].iter().flatten();
+            let sum: DVec3 = corners.map(|&v| model.positions[v as usize].as_dvec3()).sum();
+            planes[range.clone()].fill(Plane { normal, point: sum / (3 * range.len()) as f64 });
+        }
+    }
+    if planes.iter().any(|plane| plane.normal == DVec3::ZERO) {
+        borrow_planes(scene, &mut planes);
+    }
+    let mut of_sides = planes.clone();
+    for face in scene.edges.folds.iter().flat_map(Edge::faces).map(|face| face as usize) {
+        if own[face].normal != DVec3::ZERO {
+            of_sides[face] = own[face];
+        }
+    }
+    FacePlanes { of_polygons: planes, of_sides }
+}
+
+/// Gives faces of zero area the plane of the neighbour over their longest edge, turned to be wound like the face.
+fn borrow_planes(scene: &Scene, planes: &mut [Plane]) {
+    let mut lenders = HashMap::<u32, (f64, u32, bool)>::new();
+    for edge in scene.edges.edges.iter().filter(|edge| edge.kind() == EdgeKind::TwoFace) {
+        let [p, q] = edge.ends.map(|v| scene.model.positions[v as usize].as_dvec3());
+        let length = p.distance(q);
+        let [first, second] = edge.faces();
+        for (face, other) in [(first, second), (second, first)] {
+            if planes[face as usize].normal == DVec3::ZERO
+                && lenders.get(&face).is_none_or(|&(longest, ..)| length > longest)
+            {
+                lenders.insert(face, (length, other, edge.wound_oppositely()));
+            }
+        }
+    }
+    let lent: Vec<(u32, Plane)> = lenders
+        .keys()
+        .filter_map(|&face| {
+            let (mut at, mut turned) = (face, false);
+            // Slivers may lean on slivers, and in a ring.
+            for _ in 0..lenders.len() {
+                let &(_, lender, oppositely) = lenders.get(&at)?;
+                (at, turned) = (lender, turned ^ oppositely);
+                let Plane { normal, point } = planes[at as usize];
+                if normal != DVec3::ZERO {
+                    return Some((face, Plane { normal: if turned { -normal } else { normal }, point }));
+                }
+            }
+            None
+        })
+        .collect();
+    for (face, plane) in lent {
+        planes[face as usize] = plane;
+    }
+}
+
+/// Why an edge is a line for an eye, if it is.
+fn line_kind(scene: &Scene, number: u32, planes: &FacePlanes, eye: DVec4, crease_angle_rad: f64) -> Option<LineKind> {
+    let edge = scene_edge(scene, number);
+    let [first, second] = edge.faces();
+    if second == NO_FACE {
+        return Some(LineKind::Boundary);
+    }
+    let [plane0, plane1] = wound_alike(edge, &planes.of_sides, [first, second]);
+    if plane0.faces(eye) != plane1.faces(eye) {
+        return Some(LineKind::Silhouette);
+    }
+    is_crease(scene, number, planes, crease_angle_rad).then_some(LineKind::Crease)
+}
+
+/// An edge of the scene, or after those a fold.
+pub fn scene_edge(scene: &Scene, number: u32) -> &Edge {
+    let Edges { edges, folds, .. } = &scene.edges;
+    edges.get(number as usize).unwrap_or_else(|| &folds[number as usize - edges.len()])
+}
+
+/// The planes of an edge's two faces, the second turned to be wound like the first.
+fn wound_alike(edge: &Edge, planes: &[Plane], [first, second]: [u32; 2]) -> [Plane; 2] {
+    let (plane0, mut plane1) = (planes[first as usize], planes[second as usize]);
+    if edge.kind() == EdgeKind::TwoFace && edge.wound_oppositely() {
+        plane1.normal = -plane1.normal;
+    }
+    [plane0, plane1]
+}
+
+/// Whether the surface turns by more than an angle at an edge, or a third face begins there.
+fn is_crease(scene: &Scene, number: u32, planes: &FacePlanes, crease_angle_rad: f64) -> bool {
+    let edge = scene_edge(scene, number);
+    let faces = edge.faces();
+    if faces[1] == NO_FACE || number as usize >= scene.edges.edges.len() {
+        return false;
+    }
+    let [plane0, plane1] = wound_alike(edge, &planes.of_polygons, faces);
+    // Well conditioned at any angle, and 0 where there is no normal.
+    let turn_rad = plane0.normal.cross(plane1.normal).length().atan2(plane0.normal.dot(plane1.normal));
+    edge.kind() == EdgeKind::NonManifold || turn_rad > crease_angle_rad
+}
+
+/// A scene and from where it is seen.
+struct Visibility<'a> {
+    scene: &'a Scene,
+    camera: &'a Camera,
+    size_px: DVec2,
+    /// Of all folded polygons, ascending.
+    folded_faces: Vec<u32>,
+}
+
+impl<'a> Visibility<'a> {
+    fn new(scene: &'a Scene, camera: &'a Camera, size: (u32, u32)) -> Self {
+        let mut folded_faces: Vec<u32> = scene.edges.folds.iter().flat_map(Edge::faces).collect();
+        folded_faces.sort_unstable();
+        Self { scene, camera, size_px: DVec2::new(size.0.into(), size.1.into()), folded_faces }
+    }
+
+    fn visible_pieces(&self, number: u32, kind: LineKind, least_step: f64) -> Vec<TrueSegment> {
+        let edge = scene_edge(self.scene, number);
+        let ends = edge.ends.map(|v| self.scene.model.positions[v as usize].as_dvec3());
+        let own = |face: u32| self.is_own(face, edge);
+        let seen =
+            |point| self.sees_past(point, own) && (least_step <= 0.0 || self.step_behind(point, own) >= least_step);
+        let pieces = self.seen_pieces(ends, seen);
+        pieces.into_iter().map(|ends_px| TrueSegment { ends_px, kind, edge: number }).collect()
+    }
+
+    /// The pieces, px, of a line in the world that are in the picture, or just outside, and seen.
+    fn seen_pieces(&self, ends: [DVec3; 2], seen: impl Fn(DVec3) -> bool) -> Vec<[DVec2; 2]> {
+        let Some(world) = self.clip(ends) else { return Vec::new() };
+        let [(from, depth0), (to, depth1)] = world.map(|end| self.project(end));
+        let cells = (from.distance(to) / STEP_PX).ceil().max(1.0) as u32;
+        // In perspective the middle of the picture of a line is not the picture of its middle.
+        let (w0, w1) = if self.is_parallel() { (1.0, 1.0) } else { (depth0, depth1) };
+        let on_line = |fraction: f64| world[0].lerp(world[1], fraction * w0 / (w1 + fraction * (w0 - w1)));
+        let on_screen = |cell: u32| from.lerp(to, f64::from(cell) / f64::from(cells));
+        let mut pieces = Vec::new();
+        let mut since = None;
+        for cell in 0..=cells {
+            let seen = cell < cells && seen(on_line((f64::from(cell) + 0.5) / f64::from(cells)));
+            match (since, seen) {
+                (None, true) => since = Some(cell),
+                (Some(start), false) => {
+                    pieces.push([on_screen(start), on_screen(cell)]);
+                    since = None;
+                }
+                _ => {}
+            }
+        }
+        pieces
+    }
+
+    fn is_parallel(&self) -> bool {
+        self.camera.homogeneous_eye().w == 0.0
+    }
+
+    /// Right, up and eye depth, world units.
+    fn in_view(&self, point: DVec3) -> DVec3 {
+        let [right, up, back] = self.camera.axes();
+        let from_eye = point - self.camera.eye;
+        DVec3::new(right.dot(from_eye), up.dot(from_eye), -back.dot(from_eye))
+    }
+
+    /// Half of the picture's width and height in world units, at eye depth 1 in perspective.
+    fn half_extent(&self) -> DVec2 {
+        let half_height = match self.camera.projection {
+            crate::camera::Projection::Perspective { fov_y_rad } => (fov_y_rad / 2.0).tan(),
+            crate::camera::Projection::Orthographic { height, .. } => height / 2.0,
+        };
+        DVec2::new(self.size_px.x / self.size_px.y, 1.0) * half_height
+    }
+
+    /// A point's place in px, and its eye depth.
+    fn project(&self, point: DVec3) -> (DVec2, f64) {
+        let view = self.in_view(point);
+        let scale = if self.is_parallel() { 1.0 } else { view.z };
+        let ndc = view.truncate() / (self.half_extent() * scale);
+        (DVec2::new(0.5 + 0.5 * ndc.x, 0.5 - 0.5 * ndc.y) * self.size_px, view.z)
+    }
+
+    /// What of an edge lies behind the near plane and in the picture with its margin, in world space.
+    fn clip(&self, ends: [DVec3; 2]) -> Option<[DVec3; 2]> {
+        let half = self.half_extent() * (DVec2::ONE + 2.0 * MARGIN_PX / self.size_px);
+        let inside = |point: DVec3| {
+            let view = self.in_view(point);
+            let scale = if self.is_parallel() { 1.0 } else { view.z };
+            let (x, y) = (half.x * scale, half.y * scale);
+            [view.z - self.camera.near, x - view.x, x + view.x, y - view.y, y + view.y]
+        };
+        let (mut from, mut to) = (0.0f64, 1.0f64);
+        for (a, b) in inside(ends[0]).into_iter().zip(inside(ends[1])) {
+            match (a < 0.0, b < 0.0) {
+                (true, true) => return None,
+                (true, false) => from = from.max(a / (a - b)),
+                (false, true) => to = to.min(a / (a - b)),
+                (false, false) => {}
+            }
+        }
+        (from <= to).then(|| [ends[0].lerp(ends[1], from), ends[0].lerp(ends[1], to)])
+    }
+
+    /// Whether nothing hides a point but the faces of which it is.
+    fn sees_past(&self, point: DVec3, own: impl Fn(u32) -> bool) -> bool {
+        let depth = self.in_view(point).z;
+        let origin = self.origin_of_sight(point, depth);
+        let range = (self.camera.near / depth, 1.0 - BEHIND);
+        !self.scene.rays().any(origin, point - origin, range, |hit| self.is_solid(hit) && !own(hit.face))
+    }
+
+    fn origin_of_sight(&self, point: DVec3, depth: f64) -> DVec3 {
+        if self.is_parallel() { point + self.camera.axes()[2] * depth } else { self.camera.eye }
+    }
+
+    fn is_solid(&self, hit: &Hit) -> bool {
+        let model = &self.scene.model;
+        let material = &model.materials[model.face_material[hit.face as usize] as usize];
+        (hit.front || material.double_sided) && material.alpha_mode != AlphaMode::Blend
+    }
+
+    /// How much deeper than a point of some faces the next surface behind it is, world units; infinite if there is none.
+    fn step_behind(&self, point: DVec3, own: impl Fn(u32) -> bool) -> f64 {
+        let depth = self.in_view(point).z;
+        let origin = self.origin_of_sight(point, depth);
+        let range = (1.0 + BEHIND, f64::INFINITY);
+        let is_next = |hit: &Hit| self.is_solid(hit) && !own(hit.face);
+        let next = self.scene.rays().closest(origin, point - origin, range, is_next);
+        next.map_or(f64::INFINITY, |hit| (hit.t - 1.0) * depth)
+    }
+
+    fn same_polygon(&self, a: u32, b: u32) -> bool {
+        let of = &self.scene.model.face_polygon;
+        a == b || (!of.is_empty() && of[a as usize] == of[b as usize])
+    }
+
+    /// Whether a face has the edge, or is of the polygon of one that has and not folded.
+    fn is_own(&self, face: u32, edge: &Edge) -> bool {
+        let model = &self.scene.model;
+        let corners = model.faces[face as usize].map(|v| self.scene.edges.representative[v as usize]);
+        edge.ends.iter().all(|end| corners.contains(end))
+            || edge.faces().iter().any(|&own| {
+                own != NO_FACE && self.same_polygon(own, face) && self.folded_faces.binary_search(&face).is_err()
+            })
+    }
+}
+
+/// The centreline of antialiased lines 1 px wide: the centres of the pixels that are at least half dark.
+///
+/// Across such a line one of any two neighbouring pixels is, so that the points are at most a pixel's diagonal apart,
+/// and each is within half a px of the line.
+///
+/// - `darkness`: per pixel, rows from the top, 0 for paper to 1 for ink. A byte's rounding is allowed for.
+///
+/// # Panics
+/// If there are not `width * height` of them.
+pub fn drawn_centreline(darkness: &[f64], width: u32, height: u32) -> Vec<DVec2> {
+    assert_eq!(darkness.len(), width as usize * height as usize);
+    const HALF: f64 = 0.5 - 0.5 / 255.0;
+    (0u32..height)
+        .flat_map(|y| (0..width).map(move |x| DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5)))
+        .zip(darkness)
+        .filter(|&(_, &dark)| dark >= HALF)
+        .map(|(center, _)| center)
+        .collect()
+}
+
+impl TrueLines {
+    /// Evenly spaced points along the visible lines that a picture is asked to show: place, length that the point stands
+    /// for (at most [`STEP_PX`]), and the segment's number. What is within [`BORDER_PX`] of a border is left out.
+    pub fn samples(&self) -> Vec<(DVec2, f64, usize)> {
+        let high = DVec2::new(self.size_px.0.into(), self.size_px.1.into()) - BORDER_PX;
+        let mut samples = Vec::new();
+        for (number, TrueSegment { ends_px: [from, to], .. }) in self.segments.iter().enumerate() {
+            let length = from.distance(*to);
+            let count = (length / STEP_PX).ceil() as u32;
+            for i in 0..count {
+                let point = from.lerp(*to, (f64::from(i) + 0.5) / f64::from(count));
+                if point.cmpge(DVec2::splat(BORDER_PX)).all() && point.cmple(high).all() {
+                    samples.push((point, length / f64::from(count), number));
+                }
+            }
+        }
+        samples
+    }
+}
+
+/// Compares drawn points with the true lines.
+///
+/// - `drawn`: px, as from [`drawn_centreline`].
+/// - `within_px`: how far apart they may be and still agree, above 0, at most [`MARGIN_PX`]: beyond it a
+///   line outside the picture is not known.
+pub fn accuracy(truth: &TrueLines, drawn: &[DVec2], within_px: f64) -> LineAccuracy {
+    let distances = distances_to_lines(truth, drawn, within_px);
+    let near: Vec<f64> = distances.into_iter().filter(|&distance| distance <= within_px).collect();
+    let found = are_near(drawn, truth.samples().iter().map(|sample| sample.0), within_px);
+    let (mut length, mut found_length) = (0.0, 0.0);
+    for ((_, piece, _), found) in truth.samples().into_iter().zip(found) {
+        length += piece;
+        found_length += if found { piece } else { 0.0 };
+    }
+    let share = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 1.0 };
+    let precision = share(near.len() as f64, drawn.len() as f64);
+    let recall = share(found_length, length);
+    LineAccuracy {
+        precision,
+        recall,
+        f1: if precision + recall > 0.0 { 2.0 * precision * recall / (precision + recall) } else { 0.0 },
+        drawn_px: drawn.len() as u64,
+        true_length_px: length,
+        within_px,
+        mean_distance_px: near.iter().sum::<f64>() / near.len().max(1) as f64,
+    }
+}
+
+/// For each point the distance in px to the nearest true line, infinite beyond `reach_px`.
+pub fn distances_to_lines(truth: &TrueLines, points: &[DVec2], reach_px: f64) -> Vec<f64> {
+    // A segment is entered in pieces, since the box around a long slanted one holds most of the picture.
+    const PIECE_PX: f64 = 4.0;
+    let mut grid: HashMap<(i64, i64), Vec<u32>> = HashMap::new();
+    for (number, TrueSegment { ends_px: [from, to], .. }) in (0u32..).zip(&truth.segments) {
+        let pieces = (from.distance(*to) / PIECE_PX).ceil().max(1.0) as u32;
+        for i in 0..pieces {
+            let [a, b] = [i, i + 1].map(|i| from.lerp(*to, f64::from(i) / f64::from(pieces)));
+            let (low, high) = (cell(a.min(b) - reach_px), cell(a.max(b) + reach_px));
+            for y in low.1..=high.1 {
+                for x in low.0..=high.0 {
+                    let entries = grid.entry((x, y)).or_default();
+                    if entries.last() != Some(&number) {
+                        entries.push(number);
+                    }
+                }
+            }
+        }
+    }
+    let distance = |point: DVec2| {
+        let candidates = grid.get(&cell(point)).into_iter().flatten();
+        let nearest = candidates
+            .map(|&number| distance_to_segment(point, truth.segments[number as usize].ends_px))
+            .fold(f64::INFINITY, f64::min);
+        if nearest <= reach_px { nearest } else { f64::INFINITY }
+    };
+    points.iter().map(|&point| distance(point)).collect()
+}
+
+/// For each of the `asked` whether one of the `points` is within `reach_px`.
+pub fn are_near(points: &[DVec2], asked: impl Iterator<Item = DVec2>, reach_px: f64) -> Vec<bool> {
+    let mut grid: HashMap<(i64, i64), Vec<DVec2>> = HashMap::new();
+    for &point in points {
+        grid.entry(cell(point)).or_default().push(point);
+    }
+    let is_near = |asked: DVec2| {
+        let (low, high) = (cell(asked - reach_px), cell(asked + reach_px));
+        (low.1..=high.1).any(|y| {
+            (low.0..=high.0)
+                .any(|x| grid.get(&(x, y)).is_some_and(|points| points.iter().any(|p| p.distance(asked) <= reach_px)))
+        })
+    };
+    asked.map(is_near).collect()
+}
+
+/// The cell of the search grid in which a point lies; the cells' size, in px, only matters for speed.
+fn cell(point: DVec2) -> (i64, i64) {
+    const CELL_PX: f64 = 2.0;
+    ((point.x / CELL_PX).floor() as i64, (point.y / CELL_PX).floor() as i64)
+}
+
+fn distance_to_segment(point: DVec2, [from, to]: [DVec2; 2]) -> f64 {
+    let span = to - from;
+    let squared = span.length_squared();
+    let along = if squared > 0.0 { ((point - from).dot(span) / squared).clamp(0.0, 1.0) } else { 0.0 };
+    (from + span * along).distance(point)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,50 @@
+//! Where a picture is taken from, and how finely.
+
+use crate::camera::{Camera, Projection};
+use glam::{DVec2, DVec3, DVec4};
+
+/// A camera, the size of the picture, and the samples of its pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    /// Where the picture is taken from.
+    pub camera: Camera,
+    /// Width and height of the picture, px.
+    pub size: (u32, u32),
+    /// Samples per pixel along each axis, at least 1. The picture is drawn that many times as large, with lines as much
+    /// wider, and averaged; lines found in the image are found at the picture's own size.
+    pub samples: u32,
+}
+
+impl View {
+    /// One sample a pixel.
+    pub fn new(camera: Camera, size: (u32, u32)) -> Self {
+        Self { camera, size, samples: 1 }
+    }
+
+    /// Width and height of the grid of samples, px.
+    pub fn sampled_size(&self) -> (u32, u32) {
+        let samples = self.samples.max(1);
+        (self.size.0.saturating_mul(samples), self.size.1.saturating_mul(samples))
+    }
+
+    /// [`Self::sampled_size`] as a vector.
+    pub fn sampled_size_px(&self) -> DVec2 {
+        size_px(self.sampled_size())
+    }
+
+    /// Whether all rays are parallel.
+    pub fn is_parallel(&self) -> bool {
+        matches!(self.camera.projection, Projection::Orthographic { .. })
+    }
+
+    /// The plane (n, d) of which n · p + d is the eye depth of a point p.
+    pub fn eye_depth_plane(&self) -> DVec4 {
+        let back: DVec3 = self.camera.axes()[2];
+        (-back).extend(back.dot(self.camera.eye))
+    }
+}
+
+/// A size as a vector.
+pub(crate) fn size_px((width, height): (u32, u32)) -> DVec2 {
+    DVec2::new(width.into(), height.into())
+}
