@@ -1,6 +1,7 @@
 //! Spheres in cool and warm tones, as a PPM picture: `cargo run -p npr-gooch --example sphere -- spheres.ppm`.
 //!
-//! The equation on the left, Card & Mitchell's listing 7 with the same numbers on the right; four objects' colours.
+//! The left column uses the equation, the right column Card & Mitchell's listing 7 with the same parameters. Each row has
+//! another object colour.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -8,8 +9,9 @@ use std::io::{self, BufWriter, Write};
 use glam::{DVec2, DVec3};
 use npr_gooch::{Gooch, Tones, gooch_shade};
 
-/// Pixels from one sphere to the next, and from one sample to the next within a pixel.
+/// Pixels from one sphere to the next.
 const CELL: u32 = 256;
+/// Samples per pixel along each axis.
 const SAMPLES: u32 = 4;
 const OBJECTS: [DVec3; 4] =
     [DVec3::new(0.9, 0.2, 0.15), DVec3::new(0.2, 0.6, 0.25), DVec3::new(0.85, 0.85, 0.8), DVec3::new(0.1, 0.1, 0.12)];
@@ -31,18 +33,17 @@ fn main() -> io::Result<()> {
     out.flush()
 }
 
-/// The colour at a point of the picture, pixels from its upper left.
+/// The colour at a position in pixels from the upper left corner of the picture.
 fn color(at: DVec2) -> DVec3 {
     let cell = (at / f64::from(CELL)).floor();
     let p = ((at / f64::from(CELL) - cell) * 2.0 - 1.0) * DVec2::new(1.0, -1.0) / 0.88;
-    // Paper, and a black line around the sphere.
+    // The background, and a black outline around the sphere.
     if p.length() > 1.0 {
         return if p.length() < 1.025 { DVec3::ZERO } else { DVec3::splat(0.95) };
     }
     let normal = p.extend((1.0 - p.length_squared()).sqrt());
     let tones = if cell.x == 0.0 { Tones::Equation } else { Tones::Listing7 };
     let model = Gooch { tones, ..Gooch::default() };
-    // Seen from far along +Z, with the light up and to the right, nearly at a right angle to that, so that all of the
-    // ramp is seen.
+    // An orthographic view along -Z. The light is nearly perpendicular to the view, so that the full tone range is visible.
     gooch_shade(&model, OBJECTS[cell.y as usize], normal, DVec3::new(0.7, 0.8, 0.45), DVec3::Z)
 }

@@ -4,10 +4,10 @@ use npr_gooch::{Gooch, GoochUniform, WGSL};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu::*;
 
-/// The picture's side; rows of 2048 bytes, a multiple of 256, are copied without padding.
+/// Width and height in pixels. Rows of 2048 bytes, a multiple of 256, need no padding in buffer copies.
 const SIZE: u32 = 512;
 const FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
-/// A sphere that is seen from far along +Z; its outline is a circle of 230 pixels.
+/// A sphere with a radius of 230 pixels, seen along -Z by an orthographic camera.
 const SHADER: &str = "
     @group(0) @binding(0) var<uniform> u_model: GoochModel;
     @vertex fn vs(@builtin(vertex_index) i: u32) -> @builtin(position) vec4<f32> {
@@ -16,7 +16,7 @@ const SHADER: &str = "
     @fragment fn fs(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {
         let p = (at.xy - 256.0) * vec2(1.0, -1.0) / 230.0;
         let normal = vec3(p, sqrt(max(1.0 - dot(p, p), 0.0)));
-        // Nearly at a right angle to the view, so that all of the tones are seen.
+        // The light is nearly perpendicular to the view, so that the full tone range is visible.
         let color = gooch_shade(u_model, vec3(0.85, 0.35, 0.3), normal, vec3(-0.7, 0.7, 0.3), vec3(0.0, 0.0, 1.0));
         return vec4(mix(vec3(0.95), color, saturate((1.0 - length(p)) * 230.0 + 0.5)), 1.0);
     }";
@@ -25,7 +25,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let instance = Instance::new(InstanceDescriptor::new_without_display_handle_from_env());
     let adapter = pollster::block_on(instance.request_adapter(&Default::default()))?;
     let (device, queue) = pollster::block_on(adapter.request_device(&Default::default()))?;
-    // The library, and what uses it; and the model.
+    // The library is prepended to the shader.
     let source = ShaderSource::Wgsl(format!("{WGSL}{SHADER}").into());
     let module = &device.create_shader_module(ShaderModuleDescriptor { label: None, source });
     let uniform = GoochUniform::new(&Gooch::default())?;

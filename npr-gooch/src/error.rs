@@ -1,52 +1,52 @@
-//! What is refused.
+//! Errors of this crate.
 
 use glam::Vec3;
 use thiserror::Error;
 
-/// Why a [`crate::Gooch`] cannot be used.
+/// A field of a [`crate::Gooch`] that is outside its valid range.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum GoochError {
     /// k_blue has a component that is negative, NaN or infinite.
     #[error("k_blue is {value}: components must be finite and not negative")]
     Blue {
-        /// What it is.
+        /// The rejected value.
         value: Vec3,
     },
     /// k_yellow has a component that is negative, NaN or infinite.
     #[error("k_yellow is {value}: components must be finite and not negative")]
     Yellow {
-        /// What it is.
+        /// The rejected value.
         value: Vec3,
     },
     /// α is negative, NaN or infinite.
     #[error("alpha is {value}: it must be finite and not negative")]
     Alpha {
-        /// What it is.
+        /// The rejected value.
         value: f32,
     },
     /// β is negative, NaN or infinite.
     #[error("beta is {value}: it must be finite and not negative")]
     Beta {
-        /// What it is.
+        /// The rejected value.
         value: f32,
     },
     /// The highlight's colour has a component that is negative, NaN or infinite.
     #[error("the highlight's colour is {value}: components must be finite and not negative")]
     HighlightColor {
-        /// What it is.
+        /// The rejected value.
         value: Vec3,
     },
-    /// The highlight's strength is not within 0..=1.
-    #[error("the highlight's strength is {value}, not within 0..=1")]
+    /// The highlight's strength is outside 0..=1.
+    #[error("the highlight's strength is {value}: it must be within 0..=1")]
     HighlightStrength {
-        /// What it is.
+        /// The rejected value.
         value: f32,
     },
-    /// The highlight's exponent is not above 0 and finite.
+    /// The highlight's exponent is not finite or not above 0.
     #[error("the highlight's exponent is {value}: it must be finite and above 0")]
     HighlightExponent {
-        /// What it is.
+        /// The rejected value.
         value: f32,
     },
 }

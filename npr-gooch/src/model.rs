@@ -1,57 +1,63 @@
-//! What the light is made of.
+//! The parameters of the model.
 
 use glam::Vec3;
 
 use crate::GoochError;
 
-/// The object's colour in listing 7's comments, k_d: display-referred RGB.
-pub const LISTING_7_K_D: Vec3 = Vec3::new(0.0, 0.0, 0.4);
+/// The object colour k_d in the comments of Card & Mitchell 2002, listing 7: display-referred RGB.
+pub const EXAMPLE_K_D: Vec3 = Vec3::new(0.0, 0.0, 0.4);
 
-/// Cool and warm, and how much of the object's colour is in each.
+/// The cool and the warm colour, and the shares of the object's colour in each.
 ///
-/// Check a value that was not made by a constructor with [`Gooch::validate`]. The functions of this crate do not
-/// panic on bad ones, but what they return then means nothing.
+/// Values that do not come from a constructor should be checked with [`Gooch::validate`]. The functions of this crate do
+/// not panic on invalid values, but their results are then unspecified.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(default, rename_all = "kebab-case", deny_unknown_fields))]
 pub struct Gooch {
     /// k_blue, display-referred RGB.
     pub blue: Vec3,
     /// k_yellow, display-referred RGB.
     pub yellow: Vec3,
-    /// α: how much of the object's colour is in the cool tone, usually 0..=1.
+    /// α: the share of the object's colour in the cool tone, usually 0..=1.
     pub alpha: f32,
-    /// β: how much of it is in the warm tone, usually 0..=1.
+    /// β: the share of the object's colour in the warm tone, usually 0..=1.
     pub beta: f32,
-    /// Which of the two goes with which.
+    /// The assignment of α and β to the two tones.
     pub tones: Tones,
-    /// What lies over the tones.
+    /// The highlight, which covers the tones.
     pub highlight: Option<Highlight>,
 }
 
-/// How cool and warm are made.
+/// The assignment of α and β to the cool and the warm tone.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Tones {
-    /// k_cool = k_blue + α k_d, k_warm = k_yellow + β k_d: Gooch 1998, and Card & Mitchell's equation.
+    /// k_cool = k_blue + α k_d and k_warm = k_yellow + β k_d: Gooch et al. 1998, and the equation of Card & Mitchell 2002.
     #[default]
     Equation,
-    /// The lit side is k_yellow + α k_d and the other one k_blue + β k_d: Card & Mitchell's listing 7 as printed,
-    /// with α and β the other way around.
+    /// k_cool = k_blue + β k_d and k_warm = k_yellow + α k_d: Card & Mitchell 2002, listing 7, which swaps α and β.
     Listing7,
 }
 
-/// A spot that is mixed over the tones, not added, so that it reaches its own colour and does not clip on the way.
+/// A highlight that is blended over the tones. Unlike an added highlight it reaches exactly its own colour and does not
+/// clip.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case", deny_unknown_fields))]
 pub struct Highlight {
     /// Display-referred RGB.
     pub color: Vec3,
-    /// How opaque it is in its middle: 0 leaves the tone, 1 replaces it.
+    /// The opacity at the centre of the highlight, 0..=1.
     pub strength: f32,
-    /// The exponent of Phong's term (R·E)^n: the larger, the smaller the spot.
+    /// The exponent n of Phong's term (R·E)^n, above 0.
     pub exponent: f32,
 }
 
 impl Gooch {
-    /// The paper's four numbers: k_blue = (0, 0, `b`), k_yellow = (`y`, `y`, 0), all usually within 0..=1. With the
-    /// highlight of [`Gooch::default`].
+    /// A model from the four parameters of Gooch et al. 1998: k_blue = (0, 0, `b`), k_yellow = (`y`, `y`, 0), all usually
+    /// within 0..=1. With the highlight of [`Gooch::default`].
     pub fn from_numbers(b: f32, y: f32, alpha: f32, beta: f32) -> Self {
         Self {
             blue: Vec3::new(0.0, 0.0, b),
@@ -63,13 +69,13 @@ impl Gooch {
         }
     }
 
-    /// Card & Mitchell's listing 7 as printed, with the numbers of its comments: α 0.4, β 0.5, k_yellow (0.5, 0.5, 0),
-    /// k_blue (0, 0, 0.4). No highlight. Its k_d is [`LISTING_7_K_D`].
+    /// Card & Mitchell 2002, listing 7, which swaps α and β, with the numbers of its comments: α 0.4, β 0.5, k_yellow
+    /// (0.5, 0.5, 0), k_blue (0, 0, 0.4), no highlight. Its example of k_d is [`EXAMPLE_K_D`].
     pub fn listing_7() -> Self {
         Self { tones: Tones::Listing7, highlight: None, ..Self::from_numbers(0.4, 0.5, 0.4, 0.5) }
     }
 
-    /// How much of the object's colour is in the cool tone, and how much in the warm.
+    /// The shares of the object's colour in the cool and in the warm tone.
     pub fn shares(&self) -> [f32; 2] {
         match self.tones {
             Tones::Equation => [self.alpha, self.beta],
@@ -77,7 +83,7 @@ impl Gooch {
         }
     }
 
-    /// Which rule is broken, if one is; the first found.
+    /// Checks all fields and returns the first violation.
     pub fn validate(&self) -> Result<(), GoochError> {
         if !is_color(self.blue) {
             return Err(GoochError::Blue { value: self.blue });
@@ -107,8 +113,8 @@ impl Gooch {
 }
 
 impl Default for Gooch {
-    /// Gooch 1998: b = 0.55, y = 0.3, α = 0.25, β = 0.5, and a white highlight. The paper gives no exponent; 32 is this
-    /// crate's.
+    /// The parameters of Gooch et al. 1998: b = 0.55, y = 0.3, α = 0.25, β = 0.5, and a white highlight. The paper states
+    /// no exponent; this crate uses 32.
     fn default() -> Self {
         Self::from_numbers(0.55, 0.3, 0.25, 0.5)
     }

@@ -1,20 +1,20 @@
-//! The model as the shader reads it.
+//! The uniform buffer layout of [`Gooch`].
 
 use bytemuck::{Pod, Zeroable};
 
 use crate::{Gooch, GoochError};
 
-/// `GoochModel` of the WGSL: what to write into the uniform buffer, 64 bytes.
+/// `GoochModel` of the WGSL, 64 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct GoochUniform {
-    /// k_blue, and the cool tone's share of the object's colour: α, or β for [`crate::Tones::Listing7`].
+    /// k_blue, and the share of the object's colour in the cool tone: α, or β for [`crate::Tones::Listing7`].
     pub blue: [f32; 4],
-    /// k_yellow, and the warm tone's share.
+    /// k_yellow, and the share of the object's colour in the warm tone.
     pub yellow: [f32; 4],
-    /// The highlight's colour and strength; strength 0 where there is none.
+    /// The colour and the strength of the highlight; strength 0 without a highlight.
     pub highlight: [f32; 4],
-    /// The highlight's exponent.
+    /// The exponent of the highlight; 1 without a highlight.
     pub exponent: f32,
     /// Unused, 0.
     pub padding: [u32; 3],

@@ -1,4 +1,4 @@
-//! The equation and the listing by hand, what holds for any model, what is refused.
+//! The equation and the listing by hand, properties of any model, and validation.
 
 use approx::assert_abs_diff_eq;
 use glam::{DVec3, Vec3};
@@ -26,11 +26,11 @@ fn the_equation_by_hand() {
 fn listing_7_by_hand() {
     // The lit side is c2 + c0 c4 = (0.5, 0.5, 0) + 0.4 (0, 0, 0.4), the other c3 + c1 c4 = (0, 0, 0.4) + 0.5 (0, 0,
     // 0.4).
-    let (printed, k_d) = (Gooch::listing_7(), LISTING_7_K_D.as_dvec3());
+    let (printed, k_d) = (Gooch::listing_7(), EXAMPLE_K_D.as_dvec3());
     assert_near(gooch_tone(&printed, k_d, 1.0), [0.5, 0.5, 0.16]);
     assert_near(gooch_tone(&printed, k_d, -1.0), [0.0, 0.0, 0.6]);
     assert_near(gooch_tone(&printed, k_d, 0.5), [0.375, 0.375, 0.27]);
-    // The equation has it the other way around.
+    // The equation assigns the shares the other way round.
     let equation = Gooch { tones: Tones::Equation, ..printed };
     assert_near(gooch_tone(&equation, k_d, 1.0), [0.5, 0.5, 0.2]);
     assert_near(gooch_tone(&equation, k_d, -1.0), [0.0, 0.0, 0.56]);
@@ -41,7 +41,7 @@ fn listing_7_by_hand() {
 
 #[test]
 fn the_lit_side_is_warm() {
-    // Gooch 1998's equation as printed would have it blue.
+    // With the equation as printed in Gooch et al. 1998 it would be blue.
     for model in [Gooch::default(), Gooch::listing_7()] {
         let gray = DVec3::splat(0.5);
         let (lit, unlit) = (gooch_tone(&model, gray, 1.0), gooch_tone(&model, gray, -1.0));
@@ -67,17 +67,17 @@ fn weight() {
 
 #[test]
 fn highlight_is_phongs() {
-    // The light 45 degrees to one side, the eye 45 degrees to the other: right in the mirror.
+    // The light at 45 degrees on one side, the eye at 45 degrees on the other: the eye is in the reflected direction.
     let (n, l) = (DVec3::Z * 2.0, DVec3::new(-3.0, 0.0, 3.0));
     assert_abs_diff_eq!(gooch_r_dot_e(n, l, DVec3::new(1.0, 0.0, 1.0)), 1.0, epsilon = 1e-15);
-    // The eye above: 45 degrees from it.
+    // The eye along the normal, 45 degrees from the reflected direction.
     assert_abs_diff_eq!(gooch_r_dot_e(n, l, DVec3::Z), 0.5_f64.sqrt(), epsilon = 1e-15);
     assert_abs_diff_eq!(gooch_r_dot_e(n, l, l), 0.0, epsilon = 1e-15);
 
     let highlight = Highlight { color: Vec3::ONE, strength: 0.5, exponent: 4.0 };
     let model = Gooch { highlight: Some(highlight), ..Gooch::default() };
     assert_abs_diff_eq!(gooch_highlight(&model, 0.7, 0.5_f64.sqrt()), 0.5 * 0.25, epsilon = 1e-15);
-    // None on the far side, none away from the mirrored direction.
+    // There is no highlight on the unlit side, nor at 90 degrees and more from the reflected direction.
     for (n_dot_l, r_dot_e) in [(0.0, 1.0), (-0.5, 1.0), (0.5, 0.0), (0.5, -1.0), (f64::NAN, 1.0), (0.5, f64::NAN)] {
         assert_eq!(gooch_highlight(&model, n_dot_l, r_dot_e), 0.0);
     }
@@ -88,7 +88,7 @@ fn highlight_is_phongs() {
 
 #[test]
 fn all_together() {
-    // The light and the eye along the normal: warm, and in the middle of the highlight.
+    // The light and the eye along the normal: the centre of the highlight.
     let (model, k_d) = (Gooch::default(), DVec3::X);
     assert_eq!(gooch_shade(&model, k_d, DVec3::Z, DVec3::Z * 5.0, DVec3::Z), DVec3::ONE);
     let plain = Gooch { highlight: None, ..model };
@@ -102,7 +102,7 @@ fn no_direction_is_halfway_and_not_nan() {
     let between = gooch_tone(&model, k_d, 0.0);
     for none in [DVec3::ZERO, DVec3::NAN, DVec3::splat(1e-200)] {
         assert_eq!(gooch_shade(&model, k_d, none, DVec3::Z, DVec3::Z), between);
-        // At the light's own position.
+        // At the position of the light.
         assert_eq!(gooch_shade(&model, k_d, DVec3::Z, none, DVec3::Z), between);
     }
     assert!(gooch_shade(&model, k_d, DVec3::Z, DVec3::Z, DVec3::ZERO).is_finite());
@@ -111,7 +111,7 @@ fn no_direction_is_halfway_and_not_nan() {
 }
 
 #[test]
-fn what_is_refused() {
+fn invalid_models_are_rejected() {
     for model in [Gooch::default(), Gooch::listing_7()] {
         assert_eq!(model.validate(), Ok(()));
     }
@@ -146,12 +146,12 @@ fn vector() -> impl Strategy<Value = DVec3> {
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// What the model is for: black lines and white highlights are seen on every tone of every object.
+    /// The purpose of the model: black lines and white highlights are visible on every tone of every object.
     #[test]
     fn default_tones_stay_in_the_middle(k_d in color(), n_dot_l in -1.0..=1.0_f64) {
         let tone = gooch_tone(&Gooch::default(), k_d, n_dot_l);
         prop_assert!(tone.max_element() <= 0.8 + 1e-7);
-        // At the darkest, a black object where 0.3 w = 0.55 (1 - w).
+        // The darkest tone is that of a black object where 0.3 w = 0.55 (1 - w).
         prop_assert!(tone.max_element() >= 0.165 / 0.85 - 1e-7);
     }
 
@@ -166,7 +166,7 @@ proptest! {
         prop_assert!(color.min_element() >= 0.0 && color.max_element() <= 1.0 + 1e-12, "{}", color);
     }
 
-    /// Toward the light it gets warmer all the way, and evenly.
+    /// The tone becomes warmer linearly with N·L.
     #[test]
     fn tones_are_linear(k_d in color(), a in -1.0..=1.0_f64, b in -1.0..=1.0_f64) {
         let tone = |n_dot_l| gooch_tone(&Gooch::default(), k_d, n_dot_l);

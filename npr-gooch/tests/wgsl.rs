@@ -1,9 +1,13 @@
-//! The WGSL is valid, and the uniform lies in memory as naga lays it out.
+//! The WGSL is valid, its signatures are those of the Rust functions, and the uniform has the layout that naga computes.
+
+#[path = "../../npr-toon/tests/signatures/mod.rs"]
+mod signatures;
 
 use std::mem::{offset_of, size_of};
 
 use naga::{Module, TypeInner};
 use npr_gooch::{Gooch, GoochUniform, WGSL};
+use signatures::{Exceptions, Pair, differences};
 
 fn validated(source: &str) -> Module {
     let module = naga::front::wgsl::parse_str(source).unwrap_or_else(|e| panic!("{}", e.emit_to_string(source)));
@@ -31,15 +35,32 @@ fn is_a_library() {
     }
 }
 
-/// Every function of the WGSL stands in the Rust file, but for a helper.
+/// The differences between the WGSL file, with one text replaced, and the Rust file.
+fn differences_with(old: &str, new: &str) -> Vec<String> {
+    let exceptions = Exceptions {
+        wgsl_only: &[("gooch_unit", "Rust calls DVec3::normalize_or_zero")],
+        renamed: &[],
+        types: &[("Gooch", "GoochModel", "the uniform of the style")],
+        split: &[],
+        types_of: &[],
+    };
+    let changed = WGSL.replace(old, new);
+    assert!(old == new || changed != WGSL, "{old} is not there");
+    let pair = Pair { wgsl: &changed, rust: include_str!("../src/shade.rs") };
+    differences(&validated(&changed), &[pair], &exceptions)
+}
+
 #[test]
-fn functions_have_the_names_of_the_rust_ones() {
-    let rust = include_str!("../src/shade.rs");
-    for (_, function) in validated(WGSL).functions.iter() {
-        let name = function.name.as_deref().unwrap();
-        let known = rust.contains(&format!("fn {name}("));
-        assert!(known != (name == "gooch_unit"), "{name}");
-    }
+fn functions_have_the_signatures_of_the_rust_ones() {
+    assert_eq!(differences_with("", ""), [""; 0]);
+}
+
+#[test]
+fn a_different_signature_is_found() {
+    let swapped = differences_with("n_dot_l: f32, r_dot_e: f32", "r_dot_e: f32, n_dot_l: f32");
+    assert!(matches!(&swapped[..], [line] if line.starts_with("gooch_highlight: ")), "{swapped:?}");
+    let missing = differences_with("gooch_weight", "gooch_warmth");
+    assert!(matches!(&missing[..], [line] if line.starts_with("gooch_warmth: no Rust function")), "{missing:?}");
 }
 
 #[test]
@@ -81,7 +102,7 @@ fn packs_the_model() {
     let uniform = GoochUniform::new(&Gooch::default()).unwrap();
     assert_eq!((uniform.blue, uniform.yellow), ([0.0, 0.0, 0.55, 0.25], [0.3, 0.3, 0.0, 0.5]));
     assert_eq!((uniform.highlight, uniform.exponent), ([1.0; 4], 32.0));
-    // As printed: the cool side has beta, the warm one alpha.
+    // Listing 7 has beta in the cool tone and alpha in the warm tone.
     let uniform = GoochUniform::new(&Gooch::listing_7()).unwrap();
     assert_eq!((uniform.blue, uniform.yellow), ([0.0, 0.0, 0.4, 0.5], [0.5, 0.5, 0.0, 0.4]));
     assert_eq!(uniform.highlight[3], 0.0);

@@ -14,7 +14,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let folder = PathBuf::from(arguments.next().unwrap_or_else(|| "tam".into()));
     let side = arguments.next().map_or(Ok(256), |text| text.parse())?;
     let stroke = arguments.next().map(StrokeImage::load).transpose()?;
-    // In 1.5 texels there is nothing to be seen of a picture.
+    // A width of 1.5 texels is too small to show a picture.
     let width_px = if stroke.is_some() { 4.0 } else { TamParameters::default().width_px };
     let parameters = TamParameters { side, width_px, ..TamParameters::default() };
 

@@ -5,10 +5,10 @@ use npr_hatch::upload::{hatch_sampler, upload_tam};
 use npr_hatch::{LOOKUP_WGSL, TamParameters, WGSL, draw};
 use wgpu::*;
 
-/// The picture's side; rows of 2048 bytes, a multiple of 256, are copied without padding.
+/// Width and height in pixels. Rows of 2048 bytes, a multiple of 256, need no padding in buffer copies.
 const SIZE: u32 = 512;
 const FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
-/// A sphere that is seen from far along +Z; its outline is a circle of 230 pixels. On its radius lie 1.5 maps.
+/// A sphere with a radius of 230 pixels, seen along -Z by an orthographic camera. Its radius is 1.5 tiles of the map.
 const SHADER: &str = "
     @group(0) @binding(0) var light: texture_2d<f32>;
     @group(0) @binding(1) var dark: texture_2d<f32>;
@@ -25,7 +25,7 @@ const SHADER: &str = "
         let at_dy = dpdy(at);
         let texels = f32(textureDimensions(light).x);
         let last_level = f32(textureNumLevels(light) - 1u);
-        // Where planes meet, each has a share: the strokes of one get fewer while those of the other come in between.
+        // Where planes overlap, each gets a lighter tone, and the results are multiplied.
         let shares = hatch_plane_weights(normal);
         var paper = 1.0;
         for (var axis = 0u; axis < 3u; axis++) {
@@ -49,7 +49,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (device, queue) = pollster::block_on(adapter.request_device(&Default::default()))?;
     let tam = draw(&TamParameters::default(), None)?.tam;
     let map = upload_tam(&device, &queue, &tam, Default::default())?;
-    // The libraries, the tones that this map has, and what uses them.
+    // The libraries are prepended to the shader.
     let [a, b, c, d, e, f] = tam.tones[..] else { return Err("the map has six tones".into()) };
     let tones =
         format!("const LIGHT_TONES = vec3<f32>({a}, {b}, {c});\nconst DARK_TONES = vec3<f32>({d}, {e}, {f});\n");

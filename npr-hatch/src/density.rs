@@ -1,8 +1,8 @@
-//! Texel density of texture coordinates, and what evens it out.
+//! The texel density of texture coordinates, and its compensation.
 //!
-//! Hatching laid on by a model's own texture coordinates is coarse where these are stretched and dense where they are
-//! squeezed. [`octaves`] says per vertex by what power of two they are to be multiplied so that a texture's tile is as
-//! long everywhere; a shader takes the two whole octaves around the interpolated value and blends.
+//! Hatching mapped by a model's own texture coordinates is coarse where these are stretched and dense where they are
+//! compressed. [`octaves`] computes, per vertex, the power of two by which to multiply them so that a tile of the texture
+//! has the same size everywhere. A shader blends the two integer octaves next to the interpolated value.
 //!
 //! ```
 //! use glam::{Vec2, Vec3};
@@ -25,29 +25,29 @@ use crate::{
     field::{check_indices, check_lengths},
 };
 
-/// Octaves are clamped to this.
+/// The range to which octaves are clamped.
 pub const OCTAVES: RangeInclusive<f32> = -8.0..=16.0;
 
-/// How often each value is averaged with the mean of its neighbours.
+/// The number of smoothing steps, each of which averages a value with the mean of its neighbours.
 const SWEEPS: u32 = 3;
-/// Over how many edges values spread to vertices that have none.
+/// The maximum number of edges over which values are propagated to vertices without a value.
 const RINGS: u32 = 32;
 
-/// Per vertex the octave, log2 of the number of tiles in one unit of the texture coordinates: `uv * octave.exp2()`
-/// advances by 1 for each `tile_length` of the surface, by area.
+/// Per vertex the octave: log2 of the number of tiles per unit of the texture coordinates, so that `uv * octave.exp2()`
+/// advances by 1 per `tile_length` of the surface, on average over both directions.
 ///
 /// - `positions`, `uvs`: per vertex. `faces`: three vertices each.
-/// - `representative`: per vertex the one that stands for all at its position. Vertices with one representative and
-///   equal coordinates are one; at a seam of the coordinates each side has its own density.
+/// - `representative`: per vertex, a common vertex for all vertices at its position. Vertices with one representative and
+///   equal texture coordinates are treated as one; at a texture seam each side has its own density.
 /// - `tile_length`: in units of the positions, above 0.
 ///
-/// A face has log2(√(area / area of its coordinates) / `tile_length`); a vertex the mean over its faces, weighted by
-/// area, and then three times the mean of itself and its neighbours'. Faces without area, in space or in the texture,
-/// or with numbers that are not finite, do not count. A vertex in no other has the mean of its neighbours', from up to
-/// 32 edges away, or, without any, the median of all vertices; where no face counts at all, 0. Within [`OCTAVES`], and
-/// always finite.
+/// The octave of a face is log2(√(area / area of its texture coordinates) / `tile_length`). That of a vertex is the mean
+/// over its faces weighted by area, smoothed by three steps of averaging with its neighbours. Faces with zero area in space
+/// or in texture coordinates, or with non-finite numbers, are ignored. A vertex without other faces has the mean of its
+/// neighbours, propagated over up to 32 edges, or else the median of all vertices; if all faces are ignored the result is
+/// 0. The result is finite and within [`OCTAVES`].
 ///
-/// Errors: slices of unequal length, indices out of range, a tile length that is not finite and above 0.
+/// Errors: slices of different lengths, indices out of range, a tile length that is not finite or not above 0.
 pub fn octaves(
     positions: &[Vec3],
     uvs: &[Vec2],
@@ -109,9 +109,9 @@ impl Sum {
     }
 }
 
-/// Per vertex its node, and how many there are.
+/// Merges vertices with equal position and texture coordinates: the node of each vertex, and the number of nodes.
 fn nodes(uvs: &[Vec2], representative: &[u32]) -> (Vec<u32>, usize) {
-    // Adding zero takes the sign off a negative one.
+    // Adding zero turns -0 into 0.
     let key = |&vertex: &u32| {
         let uv = uvs[vertex as usize] + 0.0;
         (representative[vertex as usize], uv.x.to_bits(), uv.y.to_bits())
@@ -129,7 +129,7 @@ fn nodes(uvs: &[Vec2], representative: &[u32]) -> (Vec<u32>, usize) {
     (node_of, nodes as usize)
 }
 
-/// log2 of the length for one unit of the coordinates, and the area.
+/// log2 of the length per unit of the texture coordinates, and twice the area.
 fn of_face(positions: &[Vec3], uvs: &[Vec2], face: &[u32; 3]) -> Option<(f64, f64)> {
     let [a, b, c]: [DVec3; 3] = face.map(|v| positions[v as usize].as_dvec3());
     let [d, e, f]: [DVec2; 3] = face.map(|v| uvs[v as usize].as_dvec2());
@@ -139,15 +139,15 @@ fn of_face(positions: &[Vec3], uvs: &[Vec2], face: &[u32; 3]) -> Option<(f64, f6
     octave.is_finite().then_some((octave, area))
 }
 
-/// Each corner with each other corner of its face.
+/// All ordered pairs of corners of each face.
 fn neighbours(faces: &[[u32; 3]]) -> impl Iterator<Item = (usize, usize)> {
     let of = |[a, b, c]: [usize; 3]| [(a, b), (b, a), (b, c), (c, b), (c, a), (a, c)];
     faces.iter().flat_map(move |face| of(face.map(|node| node as usize)))
 }
 
-/// Gives nodes without a value the mean of their neighbours', ring by ring.
+/// Sets nodes without a value to the mean of their neighbours, one ring of neighbours after another.
 fn fill(values: &mut [Option<f64>], faces: &[[u32; 3]]) {
-    // Only faces with a corner that has no value have anything to fill.
+    // Only faces with a corner without a value are relevant.
     let lacking = |values: &[Option<f64>], face: &[u32; 3]| face.iter().any(|&node| values[node as usize].is_none());
     let mut faces: Vec<_> = faces.iter().copied().filter(|face| lacking(values, face)).collect();
     for _ in 0..RINGS {

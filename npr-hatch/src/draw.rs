@@ -1,56 +1,56 @@
-//! Strokes onto paper, until each image has its tone.
+//! Draws strokes until each image has its tone.
 
-use crate::place::Order;
+use crate::order::Order;
 use crate::stroke::{Pen, cover};
 use crate::{HatchError, Stroke, StrokeImage, Tam, TamParameters};
 
-/// Which stroke.
+/// Identifies a stroke of a drawing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Mark {
-    /// 0 lengthwise, 1 crosswise.
+    /// The layer: 0 lengthwise strokes, 1 crosswise strokes.
     pub layer: usize,
-    /// Into the layer's strokes.
+    /// Index into the strokes of the layer.
     pub index: u32,
 }
 
-/// How much of the two layers an image has.
+/// The prefixes of the two layers that an image contains.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Extent {
-    /// How many strokes from the layer's beginning it has in full.
+    /// Per layer, the number of strokes with full ink.
     pub whole: [u32; 2],
-    /// With what share of its ink it has the stroke after those, in 255ths; 0: not at all.
+    /// Per layer, the ink of the following stroke in 255ths of its full ink; 0 if the image does not contain it.
     pub part: [u8; 2],
 }
 
 impl Extent {
-    /// Whether the image has a stroke, be it in part.
+    /// Whether the image contains a stroke, with full or reduced ink.
     pub fn contains(&self, mark: Mark) -> bool {
         let whole = self.whole[mark.layer];
         mark.index < whole || mark.index == whole && self.part[mark.layer] > 0
     }
 
-    /// How many strokes the image has, those in part included.
+    /// The number of strokes of the image, including those with reduced ink.
     pub fn strokes(&self) -> usize {
         (0..2).map(|layer| self.whole[layer] as usize + usize::from(self.part[layer] > 0)).sum()
     }
 }
 
-/// A tonal art map, and the strokes that it was made of.
+/// A tonal art map and its strokes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drawing {
     /// The images.
     pub tam: Tam,
-    /// The strokes of the two layers, in the order in which they are placed.
+    /// The strokes of the two layers in the order of placement.
     pub layers: [Vec<Stroke>; 2],
-    /// By level, the finest first: its strokes in the order in which they are drawn.
+    /// Per level, the finest first: its strokes in the order of drawing.
     pub marks: Vec<Vec<Mark>>,
-    /// In the order of [`Tam::images`]: what each image has.
+    /// The strokes of each image, in the order of [`Tam::images`].
     pub extents: Vec<Extent>,
 }
 
 impl Drawing {
-    /// The images, drawn once more, with the parameters and the picture that this was made with: for strokes that have
-    /// been moved or changed since.
+    /// Draws the images again after strokes have been changed. `parameters` and `image` are those that the drawing was made
+    /// with.
     pub fn images(&self, parameters: &TamParameters, image: Option<&StrokeImage>) -> Tam {
         let pen = Pen::new(parameters, image);
         let (tones, levels) = (self.tam.tones.len(), self.marks.len());
@@ -74,11 +74,13 @@ impl Drawing {
     }
 }
 
-/// Makes a tonal art map, of strokes that thin out at their ends, or that look like `image`.
+/// Draws a tonal art map with tapered strokes, or with strokes from `image`.
 ///
-/// Level by level from the coarsest, and tone by tone from the lightest, strokes are drawn until the image has its tone.
-/// The last stroke of an image would be too much: there it has so much less ink as makes the tone come out, and in
-/// darker tones and finer levels, where it must be as well, it has all of it.
+/// The levels are drawn from the coarsest to the finest, and the tones of a level from the lightest to the darkest. Strokes
+/// are added until an image has its tone. The last stroke of an image has reduced ink so that the tone is met, and full ink
+/// in darker tones and finer levels, which contain it as well.
+///
+/// Errors: those of [`TamParameters::validate`], and [`HatchError::Unreachable`] if the strokes are too faint for a tone.
 pub fn draw(parameters: &TamParameters, image: Option<&StrokeImage>) -> Result<Drawing, HatchError> {
     parameters.validate()?;
     let pen = Pen::new(parameters, image);
@@ -90,7 +92,8 @@ pub fn draw(parameters: &TamParameters, image: Option<&StrokeImage>) -> Result<D
     let mut marks = vec![Vec::new(); levels];
     for level in (0..levels).rev() {
         let side = parameters.side >> level;
-        // How many strokes have as much ink as all texels, and 32 times as many: a texel remains paper under e^-32.
+        // 32 times the number of strokes whose ink equals that of a black image: the expected fraction of paper is then
+        // below e^-32.
         let stroke = f64::from(parameters.length[0] * side as f32 * pen.width_px) * pen.mean_ink().max(0.01);
         let limit = 1024 + (32.0 * f64::from(side * side) / stroke) as usize;
         let mut sheet = Sheet::new(side, pen, limit);
@@ -113,16 +116,16 @@ pub fn draw(parameters: &TamParameters, image: Option<&StrokeImage>) -> Result<D
     Ok(Drawing { tam, layers: orders.map(|order| order.strokes), marks, extents })
 }
 
-/// One level, as it becomes darker.
+/// One level while strokes are added.
 struct Sheet<'a> {
     side: u32,
     pen: Pen<'a>,
     ink: Vec<u8>,
-    /// Of all the ink.
+    /// The sum of `ink`.
     sum: u64,
     extent: Extent,
     marks: Vec<Mark>,
-    /// So many strokes that more would not help.
+    /// The number of strokes after which a tone counts as unreachable.
     limit: usize,
     covered: Vec<(u32, u8)>,
 }
@@ -137,14 +140,14 @@ impl<'a> Sheet<'a> {
         1.0 - self.sum as f64 / (255.0 * self.ink.len() as f64)
     }
 
-    /// Draws strokes until the tone is reached. All of the next coarser level's are among them. If the tone stays out of
-    /// reach, how many strokes were drawn.
+    /// Adds strokes, first those of the next coarser level, until the tone is reached. The error is the number of strokes if
+    /// the tone is unreachable.
     fn darken(&mut self, orders: &mut [Order; 2], asked: f32, is_crossed: bool, coarser: Extent) -> Result<(), usize> {
         let target = ((1.0 - f64::from(asked)) * 255.0 * self.ink.len() as f64).round() as u64;
         for layer in 0..2 {
             while self.extent.whole[layer] < coarser.whole[layer] {
-                self.look(orders, layer);
-                self.put(layer, 255);
+                self.cover_next(orders, layer);
+                self.draw_covered(layer, 255);
             }
         }
         while self.sum < target {
@@ -152,18 +155,18 @@ impl<'a> Sheet<'a> {
                 return Err(self.marks.len());
             }
             let layer = self.next_layer(is_crossed, coarser);
-            self.look(orders, layer);
+            self.cover_next(orders, layer);
             let strength = self.strength(layer, target - self.sum);
-            self.put(layer, strength);
+            self.draw_covered(layer, strength);
             if strength < 255 {
                 break;
             }
         }
         for layer in 0..2 {
-            // The image is dark enough, but the coarser one has a stroke more.
+            // The image is dark enough, but the coarser level contains one more stroke, with reduced ink.
             if self.lacks_part(layer, coarser) {
-                self.look(orders, layer);
-                self.put(layer, 1);
+                self.cover_next(orders, layer);
+                self.draw_covered(layer, 1);
             }
         }
         Ok(())
@@ -174,28 +177,29 @@ impl<'a> Sheet<'a> {
         coarser.part[layer] > 0 && whole[layer] == coarser.whole[layer] && part[layer] == 0
     }
 
-    /// What was begun comes first, then what the coarser level has begun.
+    /// The layer of the next stroke: first one with reduced ink in this image, then one with reduced ink in the coarser
+    /// level, then by `is_crossed`.
     fn next_layer(&self, is_crossed: bool, coarser: Extent) -> usize {
         let Extent { whole: [lengthwise, crosswise], part } = self.extent;
-        let begun = (0..2).find(|&layer| part[layer] > 0);
-        let owed = (0..2).find(|&layer| self.lacks_part(layer, coarser));
-        begun.or(owed).unwrap_or(usize::from(is_crossed && crosswise < lengthwise))
+        let partial = (0..2).find(|&layer| part[layer] > 0);
+        let partial_in_coarser = (0..2).find(|&layer| self.lacks_part(layer, coarser));
+        partial.or(partial_in_coarser).unwrap_or(usize::from(is_crossed && crosswise < lengthwise))
     }
 
-    /// Finds out what the next stroke of a layer covers.
-    fn look(&mut self, orders: &mut [Order; 2], layer: usize) {
+    /// Finds the texels that the next stroke of a layer covers.
+    fn cover_next(&mut self, orders: &mut [Order; 2], layer: usize) {
         let stroke = orders[layer].stroke(self.extent.whole[layer] as usize);
         cover(&stroke, &self.pen, self.side, &mut self.covered);
     }
 
-    /// By how much the stroke looked at makes the sum larger if it has so much of its ink.
+    /// The increase of the sum by the covered texels if the stroke has this share of its ink, in 255ths.
     fn gain(&self, strength: u8) -> u64 {
         let more = |&(texel, ink): &(u32, u8)| u64::from(share(ink, strength).saturating_sub(self.ink[texel as usize]));
         self.covered.iter().map(more).sum()
     }
 
-    /// How much of its ink the stroke looked at may have for the sum to grow by as close to `wanted` as it can: 1..=255,
-    /// and no less than it has.
+    /// The share of ink, 1..=255 and at least its present share, with which the stroke increases the sum by an amount as
+    /// close to `wanted` as possible.
     fn strength(&self, layer: usize, wanted: u64) -> u8 {
         if self.gain(255) <= wanted {
             return 255;
@@ -208,8 +212,8 @@ impl<'a> Sheet<'a> {
         if low > 0 && wanted - self.gain(low) <= self.gain(high) - wanted { low } else { high }
     }
 
-    /// Draws the stroke looked at, which is the layer's next one.
-    fn put(&mut self, layer: usize, strength: u8) {
+    /// Draws the covered texels with this share of ink, and counts the stroke.
+    fn draw_covered(&mut self, layer: usize, strength: u8) {
         for &(texel, ink) in &self.covered {
             let under = &mut self.ink[texel as usize];
             let over = share(ink, strength).max(*under);
@@ -229,7 +233,7 @@ impl<'a> Sheet<'a> {
     }
 }
 
-/// So many 255ths of the ink.
+/// `strength` 255ths of the ink, rounded.
 fn share(ink: u8, strength: u8) -> u8 {
     ((u32::from(ink) * u32::from(strength) + 127) / 255) as u8
 }

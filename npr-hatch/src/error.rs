@@ -1,247 +1,247 @@
-//! What is refused.
+//! Errors of this crate.
 
 use thiserror::Error;
 
-/// Why parameters, a picture or a file cannot be used.
+/// An invalid parameter, picture, map, mesh or file.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum HatchError {
-    /// The side is no power of two, or too small or too large.
+    /// The side is not a power of two, or out of range.
     #[error("the side is {side} texels: it must be a power of two from {} to {}", crate::MIN_SIDE, crate::MAX_SIDE)]
     Side {
-        /// What it is.
+        /// The rejected value.
         side: u32,
     },
-    /// No tone, or too many.
+    /// The number of tones is out of range.
     #[error("{tones} tones: there must be 1 to {}", crate::MAX_TONES)]
     TonesCount {
-        /// How many there are.
+        /// The number given.
         tones: usize,
     },
-    /// A tone is not strictly between black and the tone before it.
+    /// A tone is not strictly between black and the preceding tone.
     #[error("tone {index} is {value}: it must be above 0 and below {before}")]
     Tone {
-        /// Into the tones.
+        /// Index of the tone.
         index: usize,
-        /// What it is.
+        /// The rejected value.
         value: f32,
-        /// The tone before it; for the first one white, 1.
+        /// The preceding tone; 1 for the first.
         before: f32,
     },
-    /// A number is outside of its range, or not a number.
+    /// A number is outside its range or NaN.
     #[error("{name} is {value}: it must be within {low}..={high}")]
     Range {
-        /// The field's name.
+        /// The name of the field.
         name: &'static str,
-        /// What it is.
+        /// The rejected value.
         value: f32,
-        /// The least that it may be.
+        /// The minimum.
         low: f32,
-        /// The most.
+        /// The maximum.
         high: f32,
     },
-    /// The second end of a range is below the first.
-    #[error("{name} goes from {low} to {high}, which is less")]
+    /// The end of a range is below its start.
+    #[error("{name} is the range from {low} to {high}: the end must not be below the start")]
     Order {
-        /// The field's name.
+        /// The name of the field.
         name: &'static str,
-        /// Where the range begins.
+        /// The start of the range.
         low: f32,
-        /// Where it ends.
+        /// The end of the range.
         high: f32,
     },
-    /// Crosswise strokes are to begin with a tone that is not there.
-    #[error("crosswise strokes are to begin with tone {tone} of {tones}")]
+    /// The first tone with crosswise strokes does not exist.
+    #[error("crosswise strokes begin with tone {tone}, but there are {tones} tones, numbered from 0")]
     CrossFrom {
-        /// Counted from 0, the lightest.
+        /// Index of the tone; 0 is the lightest.
         tone: usize,
         /// How many tones there are.
         tones: usize,
     },
-    /// No candidate to choose from, or too many.
+    /// The number of candidates is out of range.
     #[error("{candidates} candidates: there must be 1 to {}", crate::MAX_CANDIDATES)]
     Candidates {
-        /// How many there are.
+        /// The number given.
         candidates: u32,
     },
-    /// The strokes are too faint for a tone.
-    #[error("tone {tone} ({asked}) is out of reach at {side} texels: {strokes} strokes give {reached}")]
+    /// The strokes are too faint to reach a tone.
+    #[error("tone {tone} ({asked}) cannot be reached at {side} texels: {strokes} strokes give {reached}")]
     Unreachable {
-        /// Into the tones.
+        /// Index of the tone.
         tone: usize,
-        /// The tone that was asked for.
+        /// The requested tone.
         asked: f32,
-        /// The level's side.
+        /// Side of the level in texels.
         side: u32,
-        /// How many strokes were drawn.
+        /// The number of strokes that were drawn.
         strokes: usize,
-        /// The mean tone that they gave.
+        /// Their mean tone.
         reached: f64,
     },
-    /// The picture of a stroke has no texels, more than fit, or another number of them than its size says.
+    /// A picture has no texels, too many texels, or a number of texels that is not width × height.
     #[error(
-        "a picture of {width} by {height} with {texels} texels: it must have as many as that, 1 to {}",
+        "a picture of {width} by {height} has {texels} texels: it must have width times height texels, 1 to {}",
         crate::StrokeImage::MAX_TEXELS
     )]
     Texels {
-        /// Columns.
+        /// The number of columns.
         width: u32,
-        /// Rows.
+        /// The number of rows.
         height: u32,
-        /// How many there are.
+        /// The number given.
         texels: usize,
     },
-    /// The picture of a stroke is all paper.
+    /// The picture of a stroke contains no ink.
     #[error("the picture of {width} by {height} texels has no ink")]
     NoInk {
-        /// Columns.
+        /// The number of columns.
         width: u32,
-        /// Rows.
+        /// The number of rows.
         height: u32,
     },
-    /// Not six tones.
+    /// The map to be packed does not have six tones.
     #[error("{tones} tones cannot be packed: two RGB textures hold {}", crate::HATCH_TONES)]
     PackTones {
-        /// How many there are.
+        /// The number given.
         tones: usize,
     },
-    /// The number of images, or of one's texels, is not what tones and side say.
+    /// The number of images of a map, or the number of texels of an image, does not match its tones and its side.
     #[error("image {image} has {texels} texels, not {expected}")]
     ImageSize {
-        /// Into [`crate::Tam::images`]; their number if one is missing or too many.
+        /// Index into [`crate::Tam::images`]; the first index that is missing or superfluous.
         image: usize,
-        /// How many it has.
+        /// The actual number.
         texels: usize,
-        /// How many it must have.
+        /// The required number.
         expected: usize,
     },
     /// A texel is lighter in a darker tone.
     #[error("level {level}, texel {texel}: tone {tone} is lighter than the tone before it")]
     NotNested {
-        /// Counted from 0, the finest.
+        /// Index of the level; 0 is the finest.
         level: usize,
-        /// Row by row.
+        /// Index of the texel, row by row.
         texel: usize,
-        /// The darker one.
+        /// Index of the darker tone.
         tone: usize,
     },
-    /// Thresholds of another map.
+    /// The thresholds belong to a map of another side.
     #[error("the thresholds' side is {found} texels, the map's {expected}")]
     ThresholdSide {
-        /// The thresholds'.
+        /// The side of the thresholds in texels.
         found: u32,
-        /// The map's.
+        /// The side of the map in texels.
         expected: u32,
     },
-    /// The number of the thresholds' levels, or of one's texels, is not what the side says.
+    /// The number of levels of thresholds, or the number of texels of a level, does not match the side.
     #[error("level {level} has {texels} thresholds, not {expected}")]
     ThresholdSize {
-        /// Counted from 0, the finest; the first one that is missing or too many.
+        /// Index of the level; 0 is the finest. The first level that is missing or superfluous.
         level: usize,
-        /// How many it has; 0 if it is missing.
+        /// The number of its texels; 0 if it is missing.
         texels: usize,
-        /// How many it must have; 0 if it is one too many.
+        /// The required number of texels; 0 if it is superfluous.
         expected: usize,
     },
-    /// Another number of a level's texels have a threshold than in an order of all of them.
+    /// The thresholds of a level are not those of an order of its texels.
     #[error("level {level}: {found} texels have the threshold {threshold}, not {expected}")]
     ThresholdCount {
-        /// Counted from 0, the finest.
+        /// Index of the level; 0 is the finest.
         level: usize,
-        /// The least one of which that is so.
+        /// The lowest threshold whose number of texels is wrong.
         threshold: u16,
-        /// How many have it.
+        /// The number of texels with this threshold.
         found: u32,
-        /// How many must have it.
+        /// The required number.
         expected: u32,
     },
-    /// The file does not begin as one of this crate's.
-    #[error("no tonal art map: the file begins with {found:02x?}")]
+    /// The file does not begin with [`crate::store::MAGIC`].
+    #[error("not a tonal art map: the file begins with {found:02x?}")]
     Magic {
-        /// Up to eight bytes.
+        /// The first bytes of the file, at most eight.
         found: Vec<u8>,
     },
-    /// A version that this crate does not know.
-    #[error("version {found}, where 1 to {} are known", crate::store::VERSION)]
+    /// The version of the file format is unknown.
+    #[error("format version {found} is unknown: versions 1 to {} are supported", crate::store::VERSION)]
     Version {
-        /// What the file says.
+        /// The version in the file.
         found: u32,
     },
-    /// A flag that this crate does not know.
-    #[error("the flags are {found:#x}, where only 0x1 is known")]
+    /// The file has unknown flags.
+    #[error("the flags {found:#x} are unknown: only 0x1 is supported")]
     Flags {
-        /// All of them.
+        /// The flags in the file.
         found: u32,
     },
-    /// The file is shorter or longer than its header says.
+    /// The length of the file does not match its header.
     #[error("the file has {found} bytes, not {expected}")]
     Length {
-        /// How many it has.
+        /// The actual number.
         found: usize,
-        /// How many it must have.
+        /// The required number.
         expected: usize,
     },
-    /// The texels are not those that were stored.
+    /// The checksum does not match: the file is damaged.
     #[error("the checksum is {found:016x}, not {expected:016x}: the file is damaged")]
     Checksum {
-        /// That of what was read.
+        /// The checksum of the bytes.
         found: u64,
-        /// What the file says.
+        /// The checksum in the file.
         expected: u64,
     },
-    /// A map larger than the device's textures can be.
+    /// The map is larger than the textures that the device supports.
     #[cfg(feature = "wgpu")]
-    #[error("a map of {side}² texels: this device's textures are at most {limit}²")]
+    #[error("the map has {side} by {side} texels: the textures of this device have at most {limit} by {limit}")]
     TooLarge {
-        /// Of the finest level.
+        /// Side of the finest level in texels.
         side: u32,
-        /// Texels along a side.
+        /// The maximum side in texels.
         limit: u32,
     },
-    /// An array that has one entry for each vertex has another number of them.
+    /// The length of a per-vertex array is not the number of vertices.
     #[error("{name} has {found} entries for {vertices} vertices")]
     PerVertex {
-        /// Which.
+        /// The name of the array.
         name: &'static str,
-        /// How many it has.
+        /// The actual number.
         found: usize,
-        /// How many positions there are.
+        /// The number of vertices.
         vertices: usize,
     },
-    /// An index names a vertex that is not there.
-    #[error("{name}, entry {index}: vertex {vertex} of {vertices}")]
+    /// A vertex index is out of range.
+    #[error("{name}, entry {index}: vertex {vertex} does not exist, there are {vertices} vertices")]
     NoVertex {
-        /// In which array.
+        /// The name of the array.
         name: &'static str,
-        /// Into it.
+        /// Index into the array.
         index: usize,
-        /// What it names.
+        /// The vertex index.
         vertex: u32,
-        /// How many there are.
+        /// The number of vertices.
         vertices: usize,
     },
-    /// A direction has no length, or one that is not finite.
-    #[error("{value:?} is no direction")]
+    /// The length of a direction is zero or not finite.
+    #[error("the direction {value:?} must have a finite length above 0")]
     Direction {
-        /// What it is.
+        /// The rejected value.
         value: [f32; 3],
     },
-    /// A picture cannot be read or written.
+    /// A picture could not be read or written.
     #[cfg(feature = "image")]
     #[error("{path}: {source}")]
     Image {
-        /// Which.
+        /// The path.
         path: std::path::PathBuf,
-        /// Why.
+        /// The cause.
         source: image::ImageError,
     },
-    /// A folder cannot be made.
+    /// A folder could not be created.
     #[cfg(feature = "image")]
     #[error("{path}: {source}")]
     Folder {
-        /// Which.
+        /// The path.
         path: std::path::PathBuf,
-        /// Why.
+        /// The cause.
         source: std::io::Error,
     },
 }

@@ -1,10 +1,10 @@
-//! A field of directions on any triangle mesh, for strokes that follow the form.
+//! Direction fields on triangle meshes, for strokes that follow the form.
 //!
 //! ```
 //! use glam::Vec3;
 //! use npr_hatch::field::{FieldOptions, direction_field};
 //!
-//! // An open cylinder around y: 16 corners below, 16 above.
+//! // An open cylinder around the y axis: 16 vertices at the bottom, 16 at the top.
 //! let ring = |y: f32| (0..16).map(move |i| (Vec3::Z.rotate_y(i as f32 * std::f32::consts::TAU / 16.0), y));
 //! let (normals, positions): (Vec<_>, Vec<_>) = ring(-1.0).chain(ring(1.0)).map(|(n, y)| (n, n + Vec3::Y * y)).unzip();
 //! let faces: Vec<_> = (0..16).flat_map(|i| { let j = (i + 1) % 16; [[i, j, j + 16], [i, j + 16, i + 16]] }).collect();
@@ -17,41 +17,42 @@
 //! # Ok::<(), npr_hatch::HatchError>(())
 //! ```
 //!
-//! # How
+//! # Method
 //!
-//! 1. Curvature, in each face by least squares from the normals at its corners, summed by area over the faces around a
-//!    position (Rusinkiewicz 2004). Hard edges, where corners at one position have different normals, are no curvature.
-//!    Where a connected part has only facets, or a normal is missing, means of face normals stand in (Max 1999).
-//! 2. The curvature is averaged over [`FieldOptions::smoothing`]: bumps that are smaller cancel out.
-//! 3. Principal directions, and confidence: the two absolute curvatures are |H| ± r by the mean curvature H and half
-//!    their difference r, or the other way round, so apart by 2 min(|H|, r). By this, relative to the larger and to the
-//!    part's size, the confidence goes from 0 (planes, spheres, saddles that bend as much either way) to 1
-//!    (cylinders).
-//! 4. The directions diffuse over the surface, those with confidence holding on; lines are carried from one tangent
-//!    plane to the next by the smallest rotation. What they reach within about 20 smoothing lengths takes on their
-//!    direction; beyond, the fallback takes over.
+//! 1. The curvature of each face is a least-squares fit to the normals at its corners; a position has the mean over its
+//!    faces weighted by area (Rusinkiewicz 2004). Hard edges, where corners at one position have different normals, do not
+//!    contribute. Where a connected component consists of flat facets, or a normal is missing, means of face normals are
+//!    used instead (Max 1999).
+//! 2. The curvature is averaged over [`FieldOptions::smoothing`], so that smaller bumps cancel.
+//! 3. The principal directions have a confidence. With the mean curvature H and half the difference r of the principal
+//!    curvatures, the absolute principal curvatures are ||H| ± r| and differ by 2 min(|H|, r). By this difference, relative
+//!    to the larger of |H| and r and to the size of the component, the confidence goes from 0 (planes, spheres, symmetric
+//!    saddles) to 1 (cylinders).
+//! 4. The directions are diffused over the surface, weighted by confidence. Lines are transported between tangent planes by
+//!    the smallest rotation. Within about 20 smoothing lengths, points of low confidence adopt the surrounding directions;
+//!    beyond, the fallback direction is used.
 //!
-//! Lengths are shares of a connected part's size, the root of its area. Both averages are solved coarse to fine, so
-//! that the tessellation has little part in them. The fallback aside, the field turns with the model, and it does not
-//! depend on its size. The same input gives the same field to the bit.
+//! Lengths are fractions of the size of a connected component, the square root of its area. Both averages are solved from
+//! coarse to fine, so that they hardly depend on the tessellation. Apart from the fallback the field is invariant to
+//! rotation and scale. The result is deterministic to the bit.
 //!
-//! # What to expect
+//! # Limits
 //!
-//! Where the mean curvature of a saddle changes its sign, the larger absolute curvature changes over, and the field
-//! turns by 90° within a smoothing length or so. And every field on a closed surface that is no torus has singular
-//! points. Interpolated tensors pass through a double eigenvalue at both.
+//! Where the mean curvature of a saddle changes its sign, the direction of the larger absolute curvature changes, and the
+//! field turns by 90° within about one smoothing length. On every closed surface other than a torus a field has singular
+//! points. In both cases interpolated tensors pass through a double eigenvalue.
 //!
-//! Smoothing bends lines towards straight ones where principal directions turn fast: with the default, on an ellipsoid
-//! of semi-axes 1.5, 1 and 0.7, by up to 4.5° where the smaller curvature is less than 0.7 of the larger one, and by
-//! 0.4° in the mean.
+//! Smoothing straightens lines where principal directions turn quickly. With the default, on an ellipsoid with the
+//! semi-axes 1.5, 1 and 0.7, the error is at most 4.5° where the smaller curvature is less than 0.7 of the larger, and 0.4°
+//! on average.
 //!
 //! # Sources
 //!
 //! - S. Rusinkiewicz: *Estimating Curvatures and Their Derivatives on Triangle Meshes*, 3DPVT 2004.
 //! - A. Hertzmann, D. Zorin: *Illustrating Smooth Surfaces*, SIGGRAPH 2000: directions of curvature where they are
-//!   certain, smoothed into the rest.
+//!   reliable, smoothed elsewhere.
 //! - F. Knöppel, K. Crane, U. Pinkall, P. Schröder: *Globally Optimal Direction Fields*, SIGGRAPH 2013: lines as
-//!   complex numbers in tangent planes, and their transport.
+//!   complex numbers in tangent planes, and their parallel transport.
 //! - U. Pinkall, K. Polthier: *Computing Discrete Minimal Surfaces and Their Conjugates*, 1993: cotangent weights.
 //! - N. Max: *Weights for Computing Vertex Normals from Facet Normals*, 1999.
 
@@ -73,37 +74,37 @@ use tangent::{Tangent, carry};
 
 pub use tensor::LineTensor;
 
-/// Along which of the two principal directions strokes run.
+/// A principal direction of curvature.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Principal {
-    /// That of the larger absolute curvature: round a cylinder.
+pub enum PrincipalDirection {
+    /// The direction of the larger absolute curvature: around a cylinder.
     #[default]
-    Most,
-    /// That of the smaller one: along a cylinder.
-    Least,
+    Larger,
+    /// The direction of the smaller absolute curvature: along a cylinder.
+    Smaller,
 }
 
-/// How a field is made.
+/// Options of [`direction_field`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FieldOptions {
-    /// Over what length curvature and directions are averaged, as a share of the root of the connected part's area:
-    /// 0..=1. At 0 each vertex speaks for itself.
+    /// The length over which curvature and directions are averaged, as a fraction of the square root of the area of the
+    /// connected component: 0..=1. At 0 there is no averaging.
     pub smoothing: f32,
-    /// What strokes follow where the form says nothing, projected into the surface: any finite length but 0.
+    /// The direction of strokes, projected into the surface, where curvature determines none. Any finite vector except 0.
     pub fallback: Vec3,
-    /// Along or across.
-    pub principal: Principal,
+    /// The principal direction that strokes follow.
+    pub principal: PrincipalDirection,
 }
 
 impl Default for FieldOptions {
-    /// A smoothing of 0.02, and a fallback oblique to all axes.
+    /// A smoothing of 0.02, the direction of the larger curvature, and a fallback oblique to all axes.
     fn default() -> Self {
-        Self { smoothing: 0.02, fallback: Vec3::new(0.48, 0.64, 0.6), principal: Principal::Most }
+        Self { smoothing: 0.02, fallback: Vec3::new(0.48, 0.64, 0.6), principal: PrincipalDirection::Larger }
     }
 }
 
 impl FieldOptions {
-    /// Which rule is broken, if one is; the first found.
+    /// Checks all fields and returns the first violation.
     pub fn validate(&self) -> Result<(), HatchError> {
         let Self { smoothing, fallback, .. } = *self;
         if !(0.0..=1.0).contains(&smoothing) {
@@ -116,27 +117,26 @@ impl FieldOptions {
     }
 }
 
-/// The share of each curvature in the larger one at which the confidence is half: a0 in a⁴ / (a⁴ + a0⁴).
-const APART: f32 = 0.2;
-/// The difference of absolute curvatures, times the part's size, at which the confidence is half. A cylinder twice as
-/// long as its radius has 3.5.
-const CURVED: f32 = 0.5;
-/// The confidence of the fallback: directions reach 1 / √ of this, 20, smoothing lengths.
+/// The ratio min(|H|, r) / max(|H|, r) at which the confidence is 1/2.
+const HALF_CONFIDENCE_RATIO: f32 = 0.2;
+/// The difference of the absolute principal curvatures, times the size of the component, at which the confidence is 1/2. A
+/// cylinder twice as long as its radius has 3.5.
+const HALF_CONFIDENCE_CURVATURE: f32 = 0.5;
+/// The confidence of the fallback: directions spread over 1 / √FLOOR = 20 smoothing lengths.
 const FLOOR: f32 = 0.0025;
 
-/// Per vertex the direction of strokes, a unit tangent direction as a tensor.
+/// Per vertex the direction of strokes: a unit vector in the tangent plane, as a tensor.
 ///
-/// - `positions`, and `normals` for shading: per vertex; normals of any length.
+/// - `positions`, `normals`: per vertex. Normals may have any length.
 /// - `faces`: three vertices each.
-/// - `representative`: per vertex the one that stands for all at its position. The field is one at all of them: it goes
-///   on across seams of texture coordinates, and where normals differ it bends over the edge with the surface. (The
-///   fallback is projected into each vertex's own plane.)
+/// - `representative`: per vertex, a common vertex for all vertices at its position, which share one line of the field. The
+///   field is continuous across texture seams, and follows the surface over hard edges. The fallback is projected into each
+///   vertex's own plane.
 ///
-/// Every tensor is finite and has the trace 1, whatever the numbers. Faces without an area or with corners that are not
-/// finite do not count, and a vertex that is in no other has the fallback; so has a normal that is zero or not finite,
-/// where nothing can be said about its plane, the fallback itself.
+/// Every tensor is finite and has a trace of 1, for any input. Faces with zero area or non-finite corners are ignored.
+/// Vertices without other faces have the fallback direction, projected unless their normal is zero or not finite.
 ///
-/// Errors: slices of unequal length, indices out of range, options that [`FieldOptions::validate`] refuses.
+/// Errors: slices of different lengths, indices out of range, and those of [`FieldOptions::validate`].
 pub fn direction_field(
     positions: &[Vec3],
     normals: &[Vec3],
@@ -168,7 +168,7 @@ pub fn direction_field(
     Ok(surface.node_of.iter().zip(normals).map(of_vertex).collect())
 }
 
-/// Per node the plane of the mean of its corners' normals.
+/// Per node the tangent plane of the mean of the normals at its corners.
 fn tangents(surface: &Surface, corner_normals: &[[DVec3; 3]]) -> Vec<Tangent> {
     let mut sums = vec![DVec3::ZERO; surface.nodes()];
     let mut first = vec![DVec3::ZERO; surface.nodes()];
@@ -181,7 +181,7 @@ fn tangents(surface: &Surface, corner_normals: &[[DVec3; 3]]) -> Vec<Tangent> {
             }
         }
     }
-    // Back to back, the sides cancel: then the first one counts.
+    // Where the normals of two back-to-back sides cancel, the first normal is used.
     let unit = |(sum, first): (DVec3, DVec3)| {
         let sum = sum.normalize_or(first);
         Tangent::new(sum.as_vec3().normalize_or(Vec3::Z))
@@ -189,27 +189,28 @@ fn tangents(surface: &Surface, corner_normals: &[[DVec3; 3]]) -> Vec<Tangent> {
     sums.into_iter().zip(first).map(unit).collect()
 }
 
-/// From curvature to the line that strokes follow, and how sure that is.
-fn principal(curvature: Value, principal: Principal) -> (f32, Value) {
+/// The confidence and the line of a principal direction of this curvature.
+fn principal(curvature: Value, principal: PrincipalDirection) -> (f32, Value) {
     let (mean, half) = (curvature.scalar.abs(), curvature.line.length());
     let (less, more) = (mean.min(half), mean.max(half));
     let Some(line) = curvature.line.try_normalize().filter(|_| more > 0.0 && more.is_finite()) else {
         return (0.0, Value::default());
     };
-    // The line is that of the larger signed curvature; where both are mostly negative the other one is larger.
-    let sign = if (curvature.scalar < 0.0) == (principal == Principal::Most) { -1.0 } else { 1.0 };
-    let confidence = saturate(less / more / APART) * saturate(2.0 * less / CURVED);
+    // The line is that of the larger signed curvature, which for a negative mean has the smaller absolute value.
+    let sign = if (curvature.scalar < 0.0) == (principal == PrincipalDirection::Larger) { -1.0 } else { 1.0 };
+    let confidence = saturate(less / more / HALF_CONFIDENCE_RATIO) * saturate(2.0 * less / HALF_CONFIDENCE_CURVATURE);
     (confidence, Value { scalar: 1.0, line: line * sign })
 }
 
-/// 0 at 0, half at 1, nearly 1 beyond 2.
+/// x⁴ / (1 + x⁴): 0 at 0, 1/2 at 1, and close to 1 above 2.
 fn saturate(x: f32) -> f32 {
     let x = x.min(100.0);
     let x = x * x * x * x;
     x / (1.0 + x)
 }
 
-/// The unit direction at a vertex: its node's line carried into its own plane, and of the fallback what that lacks.
+/// The unit direction at a vertex: the line of its node, transported into the plane of the vertex, plus the fallback
+/// weighted by the missing confidence.
 fn at_vertex(node: Option<(&Tangent, Value)>, normal: Vec3, fallback: Vec3) -> Vec3 {
     let Some(normal) = normal.try_normalize().or(node.map(|(tangent, _)| tangent.normal)) else { return fallback };
     let tangent = Tangent::new(normal);
@@ -222,12 +223,12 @@ fn at_vertex(node: Option<(&Tangent, Value)>, normal: Vec3, fallback: Vec3) -> V
             line = carried.normalize_or_zero() * value.line.length();
         }
     }
-    // Squared, so that what is all but known stays what it is.
+    // Squared, so that the fallback hardly affects directions of high confidence.
     line += tangent.line(fallback) * missing * missing;
     tangent.direction(line).unwrap_or(tangent.u)
 }
 
-/// Per vertex arrays must have the positions' length.
+/// Checks that per-vertex arrays have the length of the positions.
 pub(crate) fn check_lengths(vertices: usize, arrays: &[(&'static str, usize)]) -> Result<(), HatchError> {
     match arrays.iter().find(|(_, found)| *found != vertices) {
         Some(&(name, found)) => Err(HatchError::PerVertex { name, found, vertices }),
@@ -235,11 +236,11 @@ pub(crate) fn check_lengths(vertices: usize, arrays: &[(&'static str, usize)]) -
     }
 }
 
-/// Every index must be one of a vertex.
+/// Checks that all indices are in range.
 pub(crate) fn check_indices(vertices: usize, faces: &[[u32; 3]], representative: &[u32]) -> Result<(), HatchError> {
     let corners = faces.iter().enumerate().flat_map(|(index, face)| face.map(|vertex| ("faces", index, vertex)));
-    let standing = representative.iter().enumerate().map(|(index, &vertex)| ("representative", index, vertex));
-    match corners.chain(standing).find(|&(.., vertex)| vertex as usize >= vertices) {
+    let representatives = representative.iter().enumerate().map(|(index, &vertex)| ("representative", index, vertex));
+    match corners.chain(representatives).find(|&(.., vertex)| vertex as usize >= vertices) {
         Some((name, index, vertex)) => Err(HatchError::NoVertex { name, index, vertex, vertices }),
         None => Ok(()),
     }

@@ -1,7 +1,7 @@
-// Lookups in the textures of a map, which the caller binds and hands on; after hatch.wgsl. See the Rust functions of the
-// same names.
+// Lookups in the textures of a map, which the caller binds and passes as arguments. The counterpart of `lookup.rs`. It
+// needs the other files of the library.
 
-// What two textures of three tones each have at a place; the sampler repeats, and filters texels and levels.
+// The tones of two textures with three channels each at one position.
 struct HatchTexels {
     light: vec3<f32>,
     dark: vec3<f32>,
@@ -10,8 +10,8 @@ struct HatchTexels {
 fn hatch_texels_at(
     light: texture_2d<f32>, dark: texture_2d<f32>, trilinear: sampler, uv: vec2<f32>, level: f32,
 ) -> HatchTexels {
-    // Levels are mixed here: samplers mix them in steps of 1/256 and may round what they have of each to 8 bits. (On
-    // llvmpipe that takes 6 to 8 % of a frame more, and errs by 1.4 of 255 instead of 2.1.)
+    // Levels are blended in f32, since samplers quantise the weight to 1/256 and may round the value of each level to 8
+    // bits. On llvmpipe the error is 1.4/255 instead of 2.1/255, for 6 to 8 % more time per frame.
     let finer = floor(level);
     let share = level - finer;
     return HatchTexels(
@@ -29,27 +29,27 @@ fn hatch_texels_at(
 fn hatch_texels(
     light: texture_2d<f32>, dark: texture_2d<f32>, trilinear: sampler, uv: vec2<f32>, footprint: HatchFootprint,
 ) -> HatchTexels {
-    // One loop, whether it runs once or four times: software adapters run through what they branch around.
+    // One loop for both sample counts: software adapters execute both sides of a branch.
     let samples = hatch_samples(footprint);
     var sum = HatchTexels(vec3<f32>(0.0), vec3<f32>(0.0));
     for (var i = 0; i < samples; i++) {
-        let at = uv + footprint.spread * (-0.375 + 0.25 * f32(i));
-        let one = hatch_texels_at(light, dark, trilinear, at, footprint.level);
-        sum.light += one.light;
-        sum.dark += one.dark;
+        let sample_uv = uv + footprint.spread * (-0.375 + 0.25 * f32(i));
+        let texels = hatch_texels_at(light, dark, trilinear, sample_uv, footprint.level);
+        sum.light += texels.light;
+        sum.dark += texels.dark;
     }
     return HatchTexels(sum.light / f32(samples), sum.dark / f32(samples));
 }
 
-// A threshold of a level with `side` texels along a side: 16 bits in two channels, the higher byte in red. Through a
-// sampler that takes the nearest texel of the nearest level: what GLSL makes of `textureLoad` asks for the size of the
-// level, and Mesa's llvmpipe answers all pixels of a group for one's level.
+// A threshold of a level with `side` × `side` texels: 16 bits in two channels, the higher byte in red. It is read through
+// a sampler with nearest filtering: the GLSL translation of `textureLoad` queries the size of the level, for which Mesa's
+// llvmpipe uses one pixel's level for a whole group of pixels.
 fn hatch_ink_texel(map: texture_2d<f32>, nearest: sampler, texel: vec2<u32>, side: u32, level: i32) -> f32 {
     let bytes = textureSampleLevel(map, nearest, (vec2<f32>(texel) + 0.5) / f32(side), f32(level)).xy;
     return (256.0 * bytes.x + bytes.y) / 257.0;
 }
 
-// One level of a texture of thresholds, compared and then filtered.
+// The ink of one level of a texture of thresholds, compared and then filtered.
 fn hatch_ink_of_level(
     map: texture_2d<f32>, nearest: sampler, uv: vec2<f32>, level: i32, tone: f32, width: f32,
 ) -> f32 {
@@ -86,8 +86,8 @@ fn hatch_ink(
     let samples = hatch_samples(footprint);
     var ink = 0.0;
     for (var i = 0; i < samples; i++) {
-        let at = uv + footprint.spread * (-0.375 + 0.25 * f32(i));
-        ink += hatch_ink_at(map, nearest, at, footprint.level, softened, width);
+        let sample_uv = uv + footprint.spread * (-0.375 + 0.25 * f32(i));
+        ink += hatch_ink_at(map, nearest, sample_uv, footprint.level, softened, width);
     }
     return ink / f32(samples);
 }

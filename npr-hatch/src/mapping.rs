@@ -1,43 +1,40 @@
-//! Texture coordinates for surfaces that have none, or uneven ones, without tears and without changing the tone.
+//! Texture coordinates for surfaces without, or with uneven, texture coordinates: seamless and tone-preserving.
 //!
-//! A surface is covered by several hatchings, each of which is right for a part of it: one for each of three planes, for
-//! each of twelve directions, for each scale. Where two meet, one goes over into the other. Blending them would draw both
-//! at half strength, gray. Here every hatching is made *lighter*: one that counts for the share w of a place where the
-//! tone t is wanted gets the tone t^w ([`hatch_share`]), and what one leaves as paper the next draws on, so that the
-//! picture is their product. Since shares add up to 1, so do exponents: the product of the t^w is t, if strokes of different
-//! hatchings lie independently of each other, as different cut-outs and rotations of a map do. So strokes do not fade
-//! from one hatching into the other: those of one get fewer, while others come in between, and strokes are nested, so that
-//! those that are there stay.
+//! A surface is covered by several hatchings, each of which fits a part of it: one per projection plane, per direction and
+//! per scale. Adjacent hatchings overlap. Alpha blending would draw gray strokes in the overlap, so every hatching is drawn
+//! *lighter* instead: where the tone t is requested, a hatching of weight w gets the tone t^w ([`hatch_share`]), and the
+//! results are multiplied. Since the weights sum to 1, the product of the t^w is t, provided that the strokes of different
+//! hatchings are placed independently, as in different sections and rotations of a map. In the transition the strokes of
+//! one hatching become fewer while those of the other increase; no stroke fades. Strokes are nested, so those that remain
+//! do not move.
 //!
 //! # Planes
 //!
-//! [`hatch_plane_weights`]: shares of projections along the three axes by the normal; one alone wherever the normal
-//! is within 23.6° of an axis.
+//! [`hatch_plane_weights`]: the weights of the projections along the three axes by the normal. A single projection is used
+//! where the normal is within 23.6° of an axis.
 //!
 //! # Directions
 //!
-//! A projection's strokes run one way. For strokes that follow the form, turn them: by one of [`HATCH_TURNS`] angles, by a
-//! field of directions ([`crate::field`]) at the vertices. A field has lines, not vectors (a direction and
-//! its opposite are one), so it is given as the tensor d dᵀ, which may be interpolated; seen along an axis, two of its
-//! elements and a difference are the doubled angle ([`hatch_doubled`]), and that is between two of the turns
-//! ([`hatch_turn`]). Each turned hatching covers its whole plane, so nothing is cut, and no parametrisation has to be
-//! found. A stroke is straight, and at its middle at most 7.5° off its direction where its hatching counts for half or
-//! more, and 9.4° where it counts at all.
+//! The strokes of a projection are parallel. To follow the form, they are rotated by one of [`HATCH_TURNS`] angles according
+//! to a field of directions at the vertices ([`crate::field`]). The field consists of undirected lines, so it is given as
+//! the tensor d dᵀ, which can be interpolated. Projected along an axis, an element and a difference of elements give the
+//! doubled angle ([`hatch_doubled`]), which is between two of the rotations ([`hatch_turn`]). Each rotated hatching covers
+//! its whole plane, so strokes are not cut and no parametrisation is needed. Strokes are straight. At its centre a stroke
+//! deviates from the field by at most 7.5° where its hatching has a weight of 1/2 or more, and by at most 9.4° elsewhere.
 //!
 //! # Scales
 //!
-//! Texture coordinates have as many texels for an area as whoever made them found right. [`hatch_octave`] multiplies
-//! them by a power of two, so that they still close where they wrap, by what the vertices' density asks for
-//! ([`crate::density`]); levels do the rest.
+//! The texel density of a model's texture coordinates varies. [`hatch_octave`] scales them by a power of two, which keeps
+//! them seamless where they wrap, according to the density at the vertices ([`crate::density`]); mip levels do the rest.
 
 use glam::{DVec2, DVec3};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Into how many directions strokes are turned, 15° apart: half a turn has all of them.
+/// The number of stroke directions, 15° apart over half a turn.
 pub const HATCH_TURNS: u32 = 12;
 
-/// The share of each axis' projection at a normal of unit length: cubes of how far its component is above 0.4, together
-/// 1. Without a normal, all of the last.
+/// The weights of the projections along x, y and z for a unit normal: the cubes of the amounts by which its absolute
+/// components exceed 0.4, normalised to a sum of 1. A zero normal gives (0, 0, 1).
 pub fn hatch_plane_weights(normal: DVec3) -> DVec3 {
     let above = (normal.abs() - 0.4).max(DVec3::ZERO);
     let cubes = above * above * above;
@@ -45,17 +42,18 @@ pub fn hatch_plane_weights(normal: DVec3) -> DVec3 {
     if sum > 0.0 { cubes / sum } else { DVec3::Z }
 }
 
-/// A point, or a vector, as it is seen along an axis, 0 x, 1 y, 2 z: horizontal, then vertical for the upright planes.
-pub fn hatch_plane(at: DVec3, axis: u32) -> DVec2 {
+/// The projection of a position or vector along an axis: 0 for x, 1 for y, 2 for z. In the planes that contain the y axis
+/// the second coordinate is y.
+pub fn hatch_plane(position: DVec3, axis: u32) -> DVec2 {
     match axis {
-        0 => DVec2::new(at.z, at.y),
-        1 => DVec2::new(at.x, at.z),
-        _ => DVec2::new(at.x, at.y),
+        0 => DVec2::new(position.z, position.y),
+        1 => DVec2::new(position.x, position.z),
+        _ => DVec2::new(position.x, position.y),
     }
 }
 
-/// The direction of a field as it is seen along an axis: cosine and sine of twice its angle in [`hatch_plane`], times what
-/// is left of its square. `diagonal` is xx, yy, zz of the tensor, `others` xy, xz, yz.
+/// The direction of a field projected along an axis, as the cosine and sine of twice its angle in [`hatch_plane`] times the
+/// squared length of the projection. `diagonal` holds the elements xx, yy, zz of the tensor, `others` xy, xz, yz.
 pub fn hatch_doubled(diagonal: DVec3, others: DVec3, axis: u32) -> DVec2 {
     match axis {
         0 => DVec2::new(diagonal.z - diagonal.y, 2.0 * others.z),
@@ -64,29 +62,29 @@ pub fn hatch_doubled(diagonal: DVec3, others: DVec3, axis: u32) -> DVec2 {
     }
 }
 
-/// Two hatchings that follow each other in a row of them, and the share of the second.
+/// Two consecutive hatchings of a series and the weight of the second.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HatchStep {
-    /// The first one's number; the second one's is the next.
+    /// The index of the first hatching; the second has the next index.
     pub first: i32,
-    /// 0..=1.
+    /// The weight of the second hatching, 0..=1.
     pub share: f64,
 }
 
-/// The two turns on both sides of a direction, of [`hatch_doubled`]; numbers are 0..[`HATCH_TURNS`], and the one after
-/// the last is 0. Without a direction, the first.
+/// The two directions next to a doubled angle ([`hatch_doubled`]). Indices are 0..[`HATCH_TURNS`], and the last direction is
+/// followed by direction 0. A zero vector gives direction 0 with a share of 0.
 pub fn hatch_turn(doubled: DVec2) -> HatchStep {
     if doubled == DVec2::ZERO {
         return HatchStep { first: 0, share: 0.0 };
     }
-    // Twice the angle, so a whole turn has them all once.
+    // The angle is doubled, so a full turn covers each direction once. `turns` is within 6..=18.
     let turns = (doubled.y.atan2(doubled.x) / (2.0 * PI) + 1.0) * f64::from(HATCH_TURNS);
     let HatchStep { first, share } = hatch_octave(turns);
     HatchStep { first: first % HATCH_TURNS as i32, share }
 }
 
-/// The two whole numbers on both sides of a number, and the share of the greater. The step from one to the other takes
-/// the middle quarter alone: elsewhere there is one hatching, not two.
+/// The two integers next to a number, and the weight of the greater. The transition is limited to the middle quarter of
+/// the interval, so that elsewhere a single hatching is drawn.
 ///
 /// ```
 /// use npr_hatch::mapping::hatch_octave;
@@ -98,22 +96,24 @@ pub fn hatch_octave(octave: f64) -> HatchStep {
     HatchStep { first: whole as i32, share: ((octave - whole - 0.5) * 4.0 + 0.5).clamp(0.0, 1.0) }
 }
 
-/// Where a place of a plane is in the map of a turn: turned back, so that the map's strokes run in the turn's direction.
-pub fn hatch_turned(place: DVec2, turn: i32) -> DVec2 {
+/// A position of a plane rotated by -`turn` · 15°, so that the strokes of a map that is looked up there run in the
+/// direction with the index `turn`.
+pub fn hatch_turned(position: DVec2, turn: i32) -> DVec2 {
     let angle = f64::from(turn) * (PI / f64::from(HATCH_TURNS));
-    // The sine as a cosine, so that a quarter turn is one exactly on every machine.
+    // The sine is computed as a cosine, so that a quarter turn is exact on every machine.
     let (sin, cos) = ((angle - FRAC_PI_2).cos(), angle.cos());
-    DVec2::new(cos * place.x + sin * place.y, cos * place.y - sin * place.x)
+    DVec2::new(cos * position.x + sin * position.y, cos * position.y - sin * position.x)
 }
 
-/// What a hatching's place in the map is moved by, so that no two of them show the same texels: by its number.
+/// The offset in the map of the hatching with this index, 0..1, so that different hatchings show different texels.
 pub fn hatch_moved(number: i32) -> DVec2 {
-    // Multiples of the plastic number's reciprocal and its square, which stay apart from each other best in two
-    // dimensions (M. Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018).
+    // Multiples of the reciprocal of the plastic number and of its square, a 2D low-discrepancy sequence (M. Roberts, "The
+    // Unreasonable Effectiveness of Quasirandom Sequences", 2018).
     (DVec2::new(0.754_877_666_246_692_8, 0.569_840_290_998_053_3) * f64::from(number)).fract_gl()
 }
 
-/// The tone of a hatching that counts for a share of a place, so that the product of all has the tone: 0..=1 both.
+/// The tone of a hatching of weight `share`, tone^share, so that the product over all hatchings has the tone. Both arguments
+/// are within 0..=1.
 pub fn hatch_share(tone: f64, share: f64) -> f64 {
     if share < 1.0 { tone.max(1e-6).powf(share) } else { tone }
 }

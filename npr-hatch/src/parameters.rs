@@ -1,71 +1,77 @@
-//! What a tonal art map is to be like.
+//! The parameters of a tonal art map.
 
 use crate::HatchError;
 
-/// The smallest side of a map's finest level.
+/// The minimum side of a map's finest level in texels.
 pub const MIN_SIDE: u32 = 8;
-/// The largest side of a map's finest level.
+/// The maximum side of a map's finest level in texels.
 pub const MAX_SIDE: u32 = 4096;
-/// The most tones that a map may have.
+/// The maximum number of tones of a map.
 pub const MAX_TONES: usize = 64;
-/// The most candidates for a stroke.
+/// The maximum number of candidates per stroke.
 pub const MAX_CANDIDATES: u32 = 4096;
 
-/// How the next stroke's place is found.
+/// The method that determines the positions of strokes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case", deny_unknown_fields))]
 #[non_exhaustive]
 pub enum Placement {
-    /// The (0, 2)-sequence of Sobol', its digits scrambled (Owen 1995): among any 2^(a+b) strokes in a row from a
-    /// multiple of that, each of the 2^a × 2^b equal boxes has one, for every a and b. The places cost a few
-    /// integer operations each and are even in both axes after any number of strokes, so nothing has to be
-    /// searched.
+    /// The (0, 2)-sequence of Sobol' with scrambled digits (Owen 1995): of any 2^(a+b) consecutive strokes that begin at a
+    /// multiple of 2^(a+b), each of the 2^a × 2^b equal boxes contains one, for every a and b. A position takes a few
+    /// integer operations.
     Sequence,
-    /// The best of some random candidates, as in Praun 2001: that which adds the most ink to the levels, by its own.
+    /// The best of several random candidates (Praun et al. 2001): the one that adds the most ink to the levels relative to
+    /// its own ink.
     BestOf {
-        /// How many are tried for each stroke, 1..=[`MAX_CANDIDATES`].
+        /// The number of candidates per stroke, 1..=[`MAX_CANDIDATES`].
         candidates: u32,
     },
 }
 
-/// What a tonal art map is to be like.
+/// The parameters of a tonal art map.
 ///
-/// Angles turn from the texture's x axis toward its y axis. Where `jitter_deg`, `bow`, `length` and `pressure` say how
-/// much strokes differ, each stroke's own value is drawn evenly from the range.
+/// Angles are measured from the x axis of the texture towards its y axis. `jitter_deg`, `bow`, `length` and `pressure`
+/// define ranges, from which the value of each stroke is drawn with uniform distribution.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(default, rename_all = "kebab-case", deny_unknown_fields))]
 pub struct TamParameters {
-    /// Mean tones, 0 black and 1 white, the lightest first: strictly falling, white and black excluded.
+    /// The mean tones, 0 black and 1 white, exclusive, in strictly descending order: the lightest first.
     pub tones: Vec<f32>,
-    /// Side of the finest level in texels: a power of two, [`MIN_SIDE`]..=[`MAX_SIDE`].
+    /// The side of the finest level in texels: a power of two, [`MIN_SIDE`]..=[`MAX_SIDE`].
     pub side: u32,
-    /// What the strokes' places and shapes are drawn from.
+    /// The seed of the random positions and shapes of strokes.
     pub seed: u64,
-    /// A stroke's width in texels, the same at every level: 1..=64, and at most a quarter of the side. (A thinner
-    /// one could make no texel black.)
+    /// The width of strokes in texels, equal at every level: 1..=64, and at most a quarter of the side. Thinner strokes
+    /// could not make a texel black.
     pub width_px: f32,
-    /// A stroke's length as a share of the side: 0.02..=1. (No stroke is drawn shorter than two texels.)
+    /// The minimum and maximum length of strokes as a fraction of the side: 0.02..=1. Strokes are drawn with a length of at
+    /// least two texels.
     pub length: [f32; 2],
-    /// Along what the strokes run.
+    /// The direction of strokes in degrees, -360..=360.
     pub angle_deg: f32,
-    /// How far a stroke may be turned from that, either way: 0..=45.
+    /// The maximum deviation from that direction in degrees: 0..=45.
     pub jitter_deg: f32,
-    /// How far a stroke may bend from its chord, either way, as a share of its length: 0..=0.2.
+    /// The maximum sagitta of a stroke to either side of its chord, as a fraction of its length: 0..=0.2.
     pub bow: f32,
-    /// The share of a stroke over which it thins out: 0..=1, half as fast where it is lifted as where it is set down.
-    /// Of no effect on strokes from a picture.
+    /// The fraction of a stroke over which its width decreases at the ends: 0..=1, over half that length at the start. It
+    /// has no effect on strokes from a picture.
     pub taper: f32,
-    /// How black a stroke is: 0.05..=1.
+    /// The minimum and maximum ink of strokes: 0.05..=1, where 1 is black.
     pub pressure: [f32; 2],
-    /// From which tone on, counted from 0, the lightest, new strokes run crosswise, until there are as many as
-    /// lengthwise ones; then both take turns. `None`: never.
+    /// The index of the first tone with crosswise strokes; 0 is the lightest. From this tone on, new strokes are crosswise
+    /// until both directions have equal numbers of strokes, and then alternate. `None` disables crosswise strokes.
     pub cross_from: Option<usize>,
-    /// From the lengthwise strokes to the crosswise ones.
+    /// The angle from lengthwise to crosswise strokes in degrees, -360..=360.
     pub cross_deg: f32,
-    /// How places are found.
+    /// The method that determines positions.
     pub placement: Placement,
 }
 
 impl Default for TamParameters {
-    /// Six tones from 6/7 to 1/7, 256 texels, strokes 1.5 texels wide, the three darker tones hatched crosswise.
+    /// Six tones from 6/7 to 1/7, a side of 256 texels, strokes 1.5 texels wide, and crosswise strokes in the three darker
+    /// tones.
     fn default() -> Self {
         Self {
             tones: even_tones(6),
@@ -85,14 +91,14 @@ impl Default for TamParameters {
     }
 }
 
-/// `count` tones in equal steps between white and black, these excluded: 1 - i / (count + 1). With six of them the blend
-/// of listing 5 is as light as its light factor says ([`crate::hatch_transfer`]).
+/// `count` tones in equal steps between white and black, exclusive: 1 - i / (count + 1). With six such tones the transfer
+/// curve of [`crate::hatch_transfer`] is linear.
 pub fn even_tones(count: usize) -> Vec<f32> {
     (1..=count).map(|i| 1.0 - i as f32 / (count + 1) as f32).collect()
 }
 
 impl TamParameters {
-    /// Which rule is broken, if one is; the first found.
+    /// Checks all fields and returns the first violation.
     pub fn validate(&self) -> Result<(), HatchError> {
         validate_shape(&self.tones, self.side)?;
         let within = |name, value: f32, low, high| {
@@ -125,7 +131,7 @@ impl TamParameters {
     }
 }
 
-/// Whether a map can have this side.
+/// Checks the side of a map.
 pub(crate) fn validate_side(side: u32) -> Result<(), HatchError> {
     if !side.is_power_of_two() || !(MIN_SIDE..=MAX_SIDE).contains(&side) {
         return Err(HatchError::Side { side });
@@ -133,7 +139,7 @@ pub(crate) fn validate_side(side: u32) -> Result<(), HatchError> {
     Ok(())
 }
 
-/// Whether a map can have these tones and this side.
+/// Checks the tones and the side of a map.
 pub(crate) fn validate_shape(tones: &[f32], side: u32) -> Result<(), HatchError> {
     validate_side(side)?;
     if tones.is_empty() || tones.len() > MAX_TONES {

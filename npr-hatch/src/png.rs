@@ -1,4 +1,4 @@
-//! Pictures of strokes from PNG files, and maps into them.
+//! Reading pictures of strokes from PNG files and writing maps to PNG files.
 
 use std::fs;
 use std::io::Cursor;
@@ -10,36 +10,35 @@ use crate::files::{read_file, write_file};
 use crate::sheet::Sheet;
 use crate::{HatchError, StrokeImage, Tam};
 
-/// A picture of a stroke that is longer holds none.
-const MOST_BYTES: u64 = 1 << 30;
+/// The maximum length of a picture file in bytes.
+const MAX_BYTES: u64 = 1 << 30;
 
 type Gray16 = image::ImageBuffer<Luma<u16>, Vec<u16>>;
 
 impl StrokeImage {
-    /// From a picture of any size and depth: dark is ink, light or transparent is paper. Colours count by their
-    /// luminance.
+    /// A stroke from a picture of any size and bit depth. Ink is (1 - luminance) times alpha.
     pub fn from_picture(picture: &DynamicImage) -> Result<Self, HatchError> {
         let (width, height) = (picture.width(), picture.height());
         let texels = width as usize * height as usize;
         if texels > Self::MAX_TEXELS {
             return Err(HatchError::Texels { width, height, texels });
         }
-        // Through RGBA with 16 bits, as the luminance in integers is the same everywhere.
+        // Integer arithmetic on 16 bits per channel gives the same result on every platform.
         let picture = picture.to_rgba16();
         let ink = picture.pixels().map(|pixel| {
             let [r, g, b, a] = pixel.0.map(u64::from);
-            // Rec. 709, in 10,000ths.
+            // The luminance of Rec. 709, with weights in 1/10,000.
             let luminance = (2126 * r + 7152 * g + 722 * b) / 10_000;
             ((65535 - luminance) * a / 65535) as u16
         });
         Self::from_ink(width, height, &ink.collect::<Vec<_>>())
     }
 
-    /// From a PNG file of at most 1 GiB. The number of texels is looked at before they are decoded.
+    /// A stroke from a PNG file of at most 1 GiB. The number of texels is checked before decoding.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, HatchError> {
         let path = path.as_ref();
         let failed = |source: ImageError| HatchError::Image { path: path.into(), source };
-        let bytes = read_file(path, MOST_BYTES).map_err(|error| failed(error.into()))?;
+        let bytes = read_file(path, MAX_BYTES).map_err(|error| failed(error.into()))?;
         let reader = || ImageReader::new(Cursor::new(&bytes)).with_guessed_format().map_err(|e| failed(e.into()));
         let (width, height) = reader()?.into_dimensions().map_err(failed)?;
         let texels = u64::from(width) * u64::from(height);
@@ -50,8 +49,8 @@ impl StrokeImage {
     }
 }
 
-/// Writes each image of a map into a folder, which is made if it is not there, as `tone_N_SIDE.png`, N counted from 0,
-/// the lightest. Gives the files, in the order of [`Tam::images`].
+/// Writes each image of a map into a folder, which is created if necessary, as `tone_N_SIDE.png`, where N is the index of
+/// the tone. Returns the paths in the order of [`Tam::images`].
 pub fn write_images(tam: &Tam, folder: impl AsRef<Path>) -> Result<Vec<PathBuf>, HatchError> {
     tam.validate()?;
     let folder = folder.as_ref();
@@ -68,7 +67,7 @@ pub fn write_images(tam: &Tam, folder: impl AsRef<Path>) -> Result<Vec<PathBuf>,
     Ok(paths)
 }
 
-/// Writes 8-bit gray texels as a PNG file, whole or not at all ([`write_file`]).
+/// Writes 8-bit gray texels as a PNG file, atomically ([`write_file`]).
 pub fn write_gray(path: impl AsRef<Path>, width: u32, height: u32, texels: &[u8]) -> Result<(), HatchError> {
     let path = path.as_ref();
     let image = GrayImage::from_raw(width, height, texels.to_vec());
@@ -89,7 +88,7 @@ pub fn write_gray16(path: impl AsRef<Path>, width: u32, height: u32, texels: &[u
     save(path, |to| image.write_to(to, ImageFormat::Png))
 }
 
-/// Encodes a picture, and only then touches the file.
+/// Encodes a picture in memory and writes it to a file.
 fn save(path: &Path, encode: impl Fn(&mut Cursor<Vec<u8>>) -> Result<(), ImageError>) -> Result<(), HatchError> {
     let failed = |source| HatchError::Image { path: path.into(), source };
     let mut bytes = Cursor::new(Vec::new());

@@ -1,30 +1,29 @@
-//! Sheets to look at: 8-bit gray pictures of a whole map, for [`crate::png`].
+//! Overview pictures: 8-bit gray pictures of a whole map, for [`crate::png`].
 //!
-//! They begin with the finest level of at most [`LARGEST_SIDE`] texels, so that a large map's are not larger than can be
-//! looked at.
+//! They begin with the finest level that has at most [`LARGEST_SIDE`] texels along a side, which limits their size.
 
 use crate::{Tam, Thresholds, hatch_threshold};
 
-/// The most texels along a side that a sheet shows of one image.
+/// The maximum side in texels of an image on a sheet.
 pub const LARGEST_SIDE: u32 = 512;
 
-/// Texels between images.
+/// The distance between images in texels.
 const GAP: u32 = 8;
-/// What is between them.
+/// The gray between images.
 const BACKGROUND: u8 = 160;
-/// The most tones beside each other.
+/// The maximum number of tones per row.
 const COLUMNS: u32 = 8;
-/// Levels below each other.
+/// The number of levels per tone.
 const LEVELS: usize = 4;
 
-/// A picture, 0 black.
+/// An 8-bit gray picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sheet {
-    /// Columns.
+    /// The number of columns.
     pub width: u32,
-    /// Rows.
+    /// The number of rows.
     pub height: u32,
-    /// Row by row.
+    /// The gray of each texel row by row, 0 black and 255 white.
     pub texels: Vec<u8>,
 }
 
@@ -46,7 +45,7 @@ fn first_level(side: u32) -> usize {
     (0..).find(|&level| side >> level <= LARGEST_SIDE).unwrap_or(0)
 }
 
-/// Tones beside each other, eight in a row, each with four levels below each other.
+/// All tones, eight per row, each with its four finest levels below each other.
 pub fn contact(tam: &Tam) -> Sheet {
     let first = first_level(tam.side);
     let side = tam.level_side(first);
@@ -65,7 +64,7 @@ pub fn contact(tam: &Tam) -> Sheet {
     sheet
 }
 
-/// Each tone twice beside and below itself, without a gap; half as fine as [`contact`].
+/// Each tone tiled 2 × 2 without gaps, one level coarser than in [`contact`].
 pub fn tiled(tam: &Tam) -> Sheet {
     let level = first_level(tam.side) + 1;
     let side = tam.level_side(level);
@@ -80,7 +79,7 @@ pub fn tiled(tam: &Tam) -> Sheet {
     sheet
 }
 
-/// All tones from white to black, four maps wide, by thresholds.
+/// A gradient from white to black over four tiles, drawn with thresholds.
 pub fn ramp(thresholds: &Thresholds) -> Sheet {
     let level = first_level(thresholds.side);
     let (side, texels) = (thresholds.side >> level, &thresholds.levels[level]);

@@ -1,51 +1,51 @@
-//! A map in one file, with its thresholds.
+//! The file format of a map with its thresholds.
 //!
-//! All numbers are little-endian. The texels lie as an upload wants them, so a file can be read where it lies.
+//! All numbers are little-endian. Texels are stored in the layout of texture uploads.
 //!
-//! | bytes | what |
+//! | bytes | content |
 //! | --- | --- |
 //! | 8 | [`MAGIC`] |
 //! | 4 | [`VERSION`] |
 //! | 4 | side of the finest level, a power of two |
 //! | 4 | number of tones n |
-//! | 4 | flags: bit 0 (1), thresholds are there; the others are 0. Version 1 has no flags and no thresholds |
-//! | 4 n | the tones' values, f32, the lightest first |
-//! | | the images as in [`Tam::images`], a byte a texel |
-//! | | the thresholds as in [`Thresholds::levels`], u16 |
-//! | 8 | FNV-1a (64 bits) of all bytes before |
+//! | 4 | flags: bit 0 is set if there are thresholds, all others are 0. Version 1 has no flags and no thresholds |
+//! | 4 n | the tones as f32, the lightest first |
+//! | | the images in the order of [`Tam::images`], one byte per texel |
+//! | | the thresholds in the order of [`Thresholds::levels`], u16 |
+//! | 8 | FNV-1a checksum (64 bits) of all preceding bytes |
 //!
-//! What [`from_bytes`] accepts has just the length that its header says, the checksum, texels that are nested in
-//! tones ([`Tam::validate`]), and thresholds that are an order of the texels ([`Thresholds::validate`]). Before the length is
-//! known to be right it allocates nothing but the tones' values.
+//! [`from_bytes`] checks the length against the header, the checksum, that texels are nested ([`Tam::validate`]) and that
+//! thresholds are an order of the texels ([`Thresholds::validate`]). Before the length has been checked it allocates nothing
+//! but the tones.
 
 use crate::parameters::validate_shape;
 use crate::{HatchError, MAX_TONES, Tam, Thresholds};
 
-/// How a file begins.
+/// The first bytes of a file.
 pub const MAGIC: [u8; 8] = *b"NPR\0TAM\n";
-/// The version that is written. Version 1 can be read, too.
+/// The version that is written. Version 1 can be read as well.
 pub const VERSION: u32 = 2;
 
-/// Bytes before the tones' values.
+/// The length in bytes of the header, before the tones.
 const HEADER: usize = 24;
-/// Those of version 1.
+/// The length of the header of version 1.
 const HEADER_1: usize = 20;
 const HAS_THRESHOLDS: u32 = 1;
 
-/// What is in a file.
+/// The content of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stored {
     /// The map.
     pub tam: Tam,
-    /// Its thresholds, if they were stored with it; they cannot be made from the map without its strokes.
+    /// The thresholds, if they were stored. They cannot be computed from the map without its strokes.
     pub thresholds: Option<Thresholds>,
 }
 
-/// A map, and its thresholds if they are to be drawn with, as a file's bytes.
+/// Serialises a map, optionally with thresholds.
 ///
 /// # Errors
-/// What [`Tam::validate`] and [`Thresholds::validate`] refuse, and thresholds of another side than the map's
-/// ([`HatchError::ThresholdSide`]).
+/// Those of [`Tam::validate`] and [`Thresholds::validate`], and [`HatchError::ThresholdSide`] if map and thresholds have
+/// different sides.
 pub fn to_bytes(tam: &Tam, thresholds: Option<&Thresholds>) -> Result<Vec<u8>, HatchError> {
     tam.validate()?;
     if let Some(thresholds) = thresholds {
@@ -71,10 +71,10 @@ pub fn to_bytes(tam: &Tam, thresholds: Option<&Thresholds>) -> Result<Vec<u8>, H
     Ok(bytes)
 }
 
-/// What is in a file's bytes.
+/// Deserialises a file of version 1 or 2.
 ///
 /// # Errors
-/// Any other bytes than [`to_bytes`] gives, or gave in version 1: see the module.
+/// Any violation of the file format, see the module.
 pub fn from_bytes(bytes: &[u8]) -> Result<Stored, HatchError> {
     if !bytes.starts_with(&MAGIC) {
         return Err(HatchError::Magic { found: bytes[..bytes.len().min(8)].to_vec() });
@@ -140,7 +140,7 @@ pub fn from_bytes(bytes: &[u8]) -> Result<Stored, HatchError> {
     Ok(Stored { tam, thresholds })
 }
 
-/// Of a file, for a shape that is valid: the levels have 1 + 4 + … + side² texels.
+/// The length of a file in bytes for a valid shape: the levels have 1 + 4 + … + side² texels.
 fn length(header: usize, tones: usize, side: u32, flags: u32) -> usize {
     let side = side as usize;
     let texels = (4 * side * side - 1) / 3;

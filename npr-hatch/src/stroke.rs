@@ -1,47 +1,48 @@
-//! One stroke, and which texels it covers.
+//! Strokes, and the texels that they cover.
 
 use crate::{HatchError, TamParameters};
 
-/// No stroke is drawn shorter than this many texels; without it the coarsest levels would never become dark.
+/// The minimum drawn length of strokes in texels. Without it the coarsest levels would never become dark.
 const MIN_LENGTH_PX: f32 = 2.0;
 
-/// A stroke on the torus, in units of its side, so that it is the same at every level.
+/// A stroke in a periodic map, in units of the side of the map and therefore independent of the level.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stroke {
-    /// x and y in 2^-32 sides: whole numbers wrap as the torus does, and a shift by texels is exact.
+    /// The centre, x and y in units of 2^-32 of the side. Integer arithmetic wraps like the map, and shifts by whole texels
+    /// are exact.
     pub centre: [u32; 2],
-    /// Where it runs, of unit length.
+    /// The direction, a unit vector.
     pub direction: [f32; 2],
-    /// As a share of the side.
+    /// The length as a fraction of the side.
     pub length: f32,
-    /// How far its middle is from its chord, to the left of where it runs (y down: to the right), by its length.
+    /// The sagitta, as a fraction of the length: the distance of the middle from the chord, positive to the left of the
+    /// direction where y points up.
     pub bow: f32,
-    /// How black it is.
+    /// The ink, 0..=1; 1 is black.
     pub pressure: f32,
 }
 
-/// A stroke as a picture: it runs along x, and all of y is its width.
+/// A picture of a stroke that runs along x and is as wide as the picture is high.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StrokeImage {
     width: u32,
     height: u32,
-    /// `sums[y * (width + 1) + x]`: the ink above and to the left of a texel's corner (Crow 1984). The mean over a
-    /// pixel of any size costs the same.
+    /// The summed-area table (Crow 1984): `sums[y * (width + 1) + x]` is the ink above and to the left of a texel's corner.
     sums: Vec<u64>,
 }
 
 impl StrokeImage {
-    /// The most texels that a picture may have.
+    /// The maximum number of texels.
     pub const MAX_TEXELS: usize = 1 << 26;
 
-    /// From ink, 0 none and 65535 black, row by row.
+    /// A stroke from ink values row by row, 0 no ink and 65535 black.
     pub fn from_ink(width: u32, height: u32, ink: &[u16]) -> Result<Self, HatchError> {
         let texels = ink.len();
         let expected = u64::from(width) * u64::from(height);
         if expected != texels as u64 || texels == 0 || texels > Self::MAX_TEXELS {
             return Err(HatchError::Texels { width, height, texels });
         }
-        // What would round to no ink in eight bits is none.
+        // Values that round to 0 in 8 bits count as no ink.
         if ink.iter().all(|&ink| ink < 129) {
             return Err(HatchError::NoInk { width, height });
         }
@@ -57,14 +58,13 @@ impl StrokeImage {
         Ok(Self { width, height, sums })
     }
 
-    /// Mean ink of the whole, 0..=1.
+    /// The mean ink of the picture, 0..=1.
     fn mean_ink(&self) -> f64 {
         let texels = f64::from(self.width) * f64::from(self.height);
         self.sums.last().map_or(0.0, |&sum| sum as f64 / (65535.0 * texels))
     }
 
-    /// Mean ink, 0..=1, of the box with centre (x, y) and size (w, h), the picture being the unit square and paper
-    /// around it.
+    /// The mean ink, 0..=1, of a box with centre (x, y) and size (w, h). The picture is the unit square, surrounded by paper.
     fn mean(&self, x: f32, y: f32, w: f32, h: f32) -> f32 {
         let (columns, rows) = (f64::from(self.width), f64::from(self.height));
         let end =
@@ -90,12 +90,12 @@ impl StrokeImage {
     }
 }
 
-/// What all strokes of a map have in common.
+/// The properties that all strokes of a map share.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pen<'a> {
     pub width_px: f32,
     is_tapered: bool,
-    /// How fast strokes thin out toward their end.
+    /// The reciprocal of the tapered fraction of a stroke.
     taper_slope: f32,
     pub image: Option<&'a StrokeImage>,
 }
@@ -106,13 +106,13 @@ impl<'a> Pen<'a> {
         Self { width_px, is_tapered: taper > 0.0, taper_slope: 1.0 / taper.max(1e-6), image }
     }
 
-    /// The mean ink of a stroke's box, roughly.
+    /// The approximate mean ink in the bounding box of a stroke, 0..=1.
     pub fn mean_ink(&self) -> f64 {
         self.image.map_or(0.5, StrokeImage::mean_ink)
     }
 
-    /// The ink at `along` (-1..=1) and `across` (texels from the middle), before pressure. `half` is half of the
-    /// stroke's length in texels.
+    /// The ink, 0..=1, before pressure, at `along` (-1..=1 from start to end) and `across` (texels from the centre line).
+    /// `half` is half of the stroke's length in texels.
     fn ink(&self, along: f32, across: f32, half: f32) -> f32 {
         if let Some(image) = self.image {
             let width = self.width_px;
@@ -125,14 +125,14 @@ impl<'a> Pen<'a> {
             1.0
         };
         let half_width = 0.5 * self.width_px * thick;
-        // The part of a texel's width that the stroke covers, and of its length at the ends.
+        // The fraction of the texel that the stroke covers across, times the fraction along at the ends.
         let covered = (across + 0.5).min(half_width) - (across - 0.5).max(-half_width);
         covered.clamp(0.0, 1.0) * (half * (1.0 - along.abs()) + 0.5).clamp(0.0, 1.0)
     }
 }
 
-/// Puts the texels that a stroke covers, each once, into `covered`, with their ink of 1..=255, in the order in which the
-/// stroke is drawn; or, if it may go around the torus, row by row.
+/// Replaces `covered` by the texels that a stroke covers, each once, with their ink, 1..=255, in the order of drawing; or
+/// row by row if the stroke may wrap around and meet itself.
 pub(crate) fn cover(stroke: &Stroke, pen: &Pen, side: u32, covered: &mut Vec<(u32, u8)>) {
     covered.clear();
     let half = (stroke.length * side as f32).max(MIN_LENGTH_PX) * 0.5;
@@ -141,16 +141,16 @@ pub(crate) fn cover(stroke: &Stroke, pen: &Pen, side: u32, covered: &mut Vec<(u3
     let [dx, dy] = stroke.direction;
     let is_steep = dy.abs() > dx.abs();
     let (x, y) = (split(stroke.centre[0], side), split(stroke.centre[1], side));
-    // Texels are walked along the axis to which the stroke is closer; in the other a few lie around its middle.
+    // The outer loop runs along the axis that is closer to the stroke's direction, the inner loop across the stroke.
     let ((major, major_part), (minor, minor_part)) = if is_steep { (y, x) } else { (x, y) };
     let (main, other) = if is_steep { (dy, dx) } else { (dx, dy) };
-    let reach = 0.5 * pen.width_px + 0.71;
-    let window = reach / main.abs() + 0.25 + 2.0 * bow.abs() / half;
-    let extent = half * main.abs() + (reach + bow.abs()) * other.abs() + 1.0;
+    let half_width = 0.5 * pen.width_px + 0.71;
+    let window = half_width / main.abs() + 0.25 + 2.0 * bow.abs() / half;
+    let extent = half * main.abs() + (half_width + bow.abs()) * other.abs() + 1.0;
     let last = extent.ceil() as i32;
     let mask = side as i32 - 1;
     for step in -last..=last {
-        // A stroke is drawn from its start to its end.
+        // From the start of the stroke to its end.
         let i = if main < 0.0 { -step } else { step };
         let a = i as f32 + 0.5 - major_part;
         let along = (a / (main * half)).clamp(-1.0, 1.0);
@@ -173,15 +173,15 @@ pub(crate) fn cover(stroke: &Stroke, pen: &Pen, side: u32, covered: &mut Vec<(u3
             }
         }
     }
-    // Only where a stroke goes around the torus can it meet itself.
-    let around = extent.max(half * other.abs() + bow.abs() + window) * 2.0 + 4.0;
-    if around >= side as f32 {
+    // A stroke can cover a texel twice only if it is longer than the side.
+    let bound = extent.max(half * other.abs() + bow.abs() + window) * 2.0 + 4.0;
+    if bound >= side as f32 {
         covered.sort_unstable_by_key(|&(texel, ink)| (texel, 255 - ink));
         covered.dedup_by_key(|&mut (texel, _)| texel);
     }
 }
 
-/// A place in texels: the whole ones, and the rest.
+/// A coordinate in texels: its integer and fractional parts.
 fn split(at: u32, side: u32) -> (i32, f32) {
     let wide = u64::from(at) * u64::from(side);
     ((wide >> 32) as i32, ((wide as u32) >> 8) as f32 / (1 << 24) as f32)

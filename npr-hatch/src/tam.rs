@@ -3,20 +3,20 @@
 use crate::HatchError;
 use crate::parameters::validate_shape;
 
-/// A tonal art map: for each tone an image with all its mip levels, 255 paper and 0 ink.
+/// A tonal art map: per tone an image with all its mip levels, 255 paper and 0 ink.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tam {
-    /// The mean tones that were asked for, the lightest first.
+    /// The requested mean tones, 0..1, the lightest first.
     pub tones: Vec<f32>,
-    /// Side of the finest level, a power of two.
+    /// Side of the finest level in texels, a power of two.
     pub side: u32,
-    /// Tone after tone, each from the finest level to that of one texel; `side × side` texels row by row.
-    /// [`Tam::image`] finds one.
+    /// The images by tone and then by level, from the finest level to that of one texel; texels row by row. See
+    /// [`Tam::image`].
     pub images: Vec<Vec<u8>>,
 }
 
 impl Tam {
-    /// How many levels each tone has; the last has one texel.
+    /// The number of levels per tone; the last level has one texel.
     pub fn levels(&self) -> usize {
         self.side.trailing_zeros() as usize + 1
     }
@@ -38,8 +38,10 @@ impl Tam {
         sum as f64 / (255.0 * image.len() as f64)
     }
 
-    /// A level of six tones as the two RGB textures that listing 5 reads, texel by texel: the three lighter tones, and
-    /// the three darker ones.
+    /// A level of a map of six tones as two RGB textures (Card & Mitchell 2002, listing 5): the three lighter tones, and the
+    /// three darker tones.
+    ///
+    /// Errors: [`HatchError::PackTones`] if the map does not have six tones.
     pub fn pack_tones(&self, level: usize) -> Result<[Vec<[u8; 3]>; 2], HatchError> {
         if self.tones.len() != crate::HATCH_TONES {
             return Err(HatchError::PackTones { tones: self.tones.len() });
@@ -51,7 +53,7 @@ impl Tam {
         Ok([pack(0), pack(3)])
     }
 
-    /// Which rule is broken, if one is; the first found. What [`crate::draw`] gives breaks none.
+    /// Checks the map and returns the first violation. The result of [`crate::draw`] is valid.
     pub fn validate(&self) -> Result<(), HatchError> {
         validate_shape(&self.tones, self.side)?;
         let levels = self.levels();

@@ -1,26 +1,26 @@
-//! Maps as textures on wgpu, for `LOOKUP_WGSL`.
+//! Uploads maps to wgpu textures, for `LOOKUP_WGSL`.
 
 use crate::{HatchError, Tam, Thresholds};
 use half::f16;
 use wgpu::util::{DeviceExt, TextureDataOrder};
 
-/// What a channel of a map's textures is stored in.
+/// The channel type of a map's textures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum TamChannels {
-    /// `Rgba8Unorm`: the map's own bytes.
+    /// `Rgba8Unorm`: the bytes of the map.
     #[default]
     Bytes,
-    /// `Rgba16Float`, twice the memory: the same numbers, which software rasterisers filter in floating point, while they
-    /// filter bytes in 8 bits and err by up to 2 of 255.
+    /// `Rgba16Float`: the same values in twice the memory. Software rasterisers filter them in floating point, but filter
+    /// 8-bit channels in 8 bits with errors of up to 2/255.
     HalfFloats,
 }
 
-/// A map of six tones as the two textures that listing 5 reads, with all levels.
+/// A map of six tones as two textures with all levels (Card & Mitchell 2002, listing 5).
 #[derive(Clone, Debug)]
 pub struct TamOnDevice {
     /// The three lighter tones, in red, green and blue.
     pub light: wgpu::Texture,
-    /// The three darker ones.
+    /// The three darker tones.
     pub dark: wgpu::Texture,
 }
 
@@ -77,7 +77,7 @@ pub fn upload_thresholds(
     upload(device, queue, "thresholds", map.side, wgpu::TextureFormat::Rg8Unorm, &bytes)
 }
 
-/// What `hatch_texels` reads a map of six tones with: it repeats, and filters texels and levels.
+/// The sampler for `hatch_texels`: repeat addressing and trilinear filtering.
 pub fn hatch_sampler(device: &wgpu::Device) -> wgpu::Sampler {
     device.create_sampler(&wgpu::SamplerDescriptor {
         label: Some("tonal art map"),
@@ -90,7 +90,7 @@ pub fn hatch_sampler(device: &wgpu::Device) -> wgpu::Sampler {
     })
 }
 
-/// What `hatch_ink` reads thresholds with: it takes the nearest texel of the nearest level.
+/// The sampler for `hatch_ink`: nearest filtering of texels and levels.
 pub fn hatch_threshold_sampler(device: &wgpu::Device) -> wgpu::Sampler {
     device.create_sampler(&wgpu::SamplerDescriptor { label: Some("thresholds"), ..Default::default() })
 }

@@ -1,4 +1,4 @@
-//! Texel density against surfaces where it is known.
+//! Texel density on surfaces where it is known.
 
 use std::f32::consts::{PI, TAU};
 
@@ -7,7 +7,7 @@ use npr_hatch::HatchError;
 use npr_hatch::density::{OCTAVES, octaves};
 use proptest::prelude::*;
 
-/// A grid of cells over 0..=1 each way: by parameters, positions and coordinates.
+/// A grid of cells over 0..=1 in both directions. Positions and texture coordinates are functions of the parameters.
 fn grid(cells: u32, at: impl Fn(f32, f32) -> (Vec3, Vec2)) -> (Vec<Vec3>, Vec<Vec2>, Vec<[u32; 3]>, Vec<u32>) {
     let row = cells + 1;
     let share = |k: u32| k as f32 / cells as f32;
@@ -20,16 +20,17 @@ fn grid(cells: u32, at: impl Fn(f32, f32) -> (Vec3, Vec2)) -> (Vec<Vec3>, Vec<Ve
 
 #[test]
 fn an_even_plane_has_one_value() {
-    // 6 by 6, covered twice each way: 3 for a unit of the coordinates, so 12 tiles of 0.25.
+    // A square of 6 by 6 with 2 tiles of the coordinates per side: 3 units of length per unit of the coordinates,
+    // which is 12 tiles of 0.25.
     let (positions, uvs, faces, alone) =
         grid(8, |s, t| (Vec3::new(6.0 * s, 6.0 * t, 1.0), Vec2::new(2.0 * s, 2.0 * t)));
     let found = octaves(&positions, &uvs, &faces, &alone, 0.25).unwrap();
     let expected = 12_f32.log2();
     assert!(found.iter().all(|octave| (octave - expected).abs() < 1e-5), "{found:?}");
-    // Mirrored coordinates count no less.
+    // Mirrored coordinates have the same density.
     let mirrored: Vec<_> = uvs.iter().map(|uv| Vec2::new(-uv.x, uv.y)).collect();
     assert_eq!(octaves(&positions, &mirrored, &faces, &alone, 0.25).unwrap(), found);
-    // By area: four times as long one way is an octave.
+    // The density is by area: a factor of four along one axis is one octave.
     let stretched: Vec<_> = positions.iter().map(|p| Vec3::new(4.0 * p.x, p.y, p.z)).collect();
     let stretched = octaves(&stretched, &uvs, &faces, &alone, 0.25).unwrap();
     assert!(stretched.iter().all(|octave| (octave - expected - 1.0).abs() < 1e-5));
@@ -37,14 +38,14 @@ fn an_even_plane_has_one_value() {
 
 #[test]
 fn where_density_doubles_so_does_the_octave_in_between() {
-    // On the right a unit of coordinates is half as long each way.
+    // On the right half a unit of the coordinates is half as long along both axes.
     let fold = |x: f32| if x > 0.5 { 2.0 * x - 0.5 } else { x };
     let (positions, uvs, faces, alone) = grid(32, |s, t| {
         let height = if s > 0.5 { 2.0 * t } else { t };
         (Vec3::new(s, t, 0.0), Vec2::new(fold(s), height))
     });
     let found = octaves(&positions, &uvs, &faces, &alone, 1.0).unwrap();
-    // Skewed faces in the column beside the middle aside.
+    // Except for the skewed faces in the column next to the middle.
     for (octave, position) in found.iter().zip(&positions) {
         if position.x < 0.35 {
             assert!(octave.abs() < 1e-5, "{position}: {octave}");
@@ -52,13 +53,14 @@ fn where_density_doubles_so_does_the_octave_in_between() {
             assert!((octave + 1.0).abs() < 1e-5, "{position}: {octave}");
         }
     }
-    // On the way from one to the other it falls, in small steps.
+    // In between it decreases in small steps.
     let row = &found[16 * 33..17 * 33];
     assert!(row.windows(2).all(|pair| pair[1] <= pair[0] + 1e-5), "{row:?}");
     assert!(row.windows(2).all(|pair| pair[1] > pair[0] - 0.5), "{row:?}");
 }
 
-/// Of radius r, longitude and latitude over 0..=1: a unit of coordinates is √(2π r · π r · cos latitude).
+/// A sphere of radius r with longitude and latitude over 0..=1: a unit of the coordinates is √(2π r · π r · cos
+/// latitude).
 #[test]
 fn a_sphere_has_the_value_of_its_latitude() {
     let radius = 3.0;
@@ -71,7 +73,8 @@ fn a_sphere_has_the_value_of_its_latitude() {
         let latitude = (uv.y - 0.5) * PI;
         if latitude.abs() < 60_f32.to_radians() {
             let expected = ((2.0 * latitude.cos()).sqrt() * PI * radius / 0.5).log2();
-            // At the seam's ends vertices have more of one row than of the other: within what rows differ by.
+            // Vertices at the ends of the seam have more faces of one row than of the other, so the error is up to
+            // the difference between rows.
             let limit = if uv.x == 0.0 || uv.x == 1.0 { 0.06 } else { 0.02 };
             assert!((octave - expected).abs() < limit, "{uv}: {octave}, {expected}");
         }
@@ -79,7 +82,8 @@ fn a_sphere_has_the_value_of_its_latitude() {
     assert!(found.iter().all(|octave| octave.is_finite()));
 }
 
-/// Vertices with one representative and the same coordinates are one; with others they are on islands of their own.
+/// Vertices with one representative and equal coordinates are merged; vertices with different coordinates belong to
+/// separate islands.
 #[test]
 fn islands() {
     let (positions, uvs, faces, alone) = grid(6, |s, t| (Vec3::new(s * s, t, 0.0) * 3.0, Vec2::new(s, t)));
@@ -93,7 +97,7 @@ fn islands() {
     for (&v, octave) in corners.iter().zip(&found) {
         assert!((octave - welded[v as usize]).abs() < 1e-5);
     }
-    // Each face its own island: its own value, exactly, although all touch.
+    // Each face is an island with exactly its own value, although all faces touch.
     let shifted: Vec<_> = same.iter().zip(0..).map(|(uv, i)| *uv + Vec2::splat((i / 3) as f32 * 2.0)).collect();
     let found = octaves(&of_corners, &shifted, &apart, &first, 0.1).unwrap();
     for (octaves, face) in found.chunks(3).zip(&faces) {
@@ -109,7 +113,7 @@ fn without_area_there_is_no_density() {
     assert!(octaves(&positions, &vec![Vec2::ZERO; uvs.len()], &faces, &alone, 0.5).unwrap().iter().all(|o| *o == 0.0));
     assert!(octaves(&vec![Vec3::X; uvs.len()], &uvs, &faces, &alone, 0.5).unwrap().iter().all(|o| *o == 0.0));
     assert!(octaves(&[], &[], &[], &[], 0.5).unwrap().is_empty());
-    // Squeezed to nothing on the right, what is on the left goes on; a vertex without faces has the median.
+    // Faces on the right are degenerate and adopt the value of the left. A vertex without faces has the median.
     let mut squeezed: Vec<_> = uvs.iter().map(|uv| Vec2::new(uv.x.min(0.5), uv.y)).collect();
     let (mut positions, mut alone) = (positions, alone);
     positions.push(Vec3::NAN);
@@ -119,7 +123,7 @@ fn without_area_there_is_no_density() {
     assert!(found.iter().all(|octave| (octave - 1.0).abs() < 1e-6), "{found:?}");
 }
 
-/// What has no density beside something that has takes on that, not what most of the model has.
+/// Vertices without a density adopt that of their neighbours, not the median of the model.
 #[test]
 fn values_spread() {
     let (mut positions, mut uvs, mut faces, _) = grid(8, |s, t| (Vec3::new(s, t, 0.0), Vec2::new(s.min(0.5), t)));

@@ -1,4 +1,4 @@
-//! Lookups keep the tone: at any level, along any footprint, and where hatchings meet.
+//! Lookups preserve the tone at any level, for any footprint, and where hatchings overlap.
 #![allow(clippy::print_stdout)]
 
 use glam::{DVec2, DVec3, UVec2};
@@ -23,7 +23,7 @@ fn map(side: u32) -> (Drawing, Thresholds) {
     (drawing, thresholds)
 }
 
-/// Places in a tile, one in each cell of a grid, and each somewhere else in its cell.
+/// Jittered positions in a tile, one in each cell of a grid.
 fn places(random: &mut Rand64, across: u32) -> Vec<DVec2> {
     let mut place = |i: u32| (f64::from(i) + random.rand_float()) / f64::from(across);
     (0..across * across).map(|i| DVec2::new(place(i % across), place(i / across))).collect()
@@ -33,8 +33,7 @@ fn mean(places: &[DVec2], value: impl Fn(DVec2) -> f64) -> f64 {
     places.iter().map(|&uv| value(uv)).sum::<f64>() / places.len() as f64
 }
 
-/// One place in each texel, all at the same place in it: of what is filtered linearly, their mean is that of all
-/// places.
+/// One position in each texel, at the same offset. For linear filtering their mean is the mean over all positions.
 fn places_in_texels(in_texel: DVec2) -> Vec<DVec2> {
     let place = |i: u32| DVec2::new(f64::from(i % SIDE), f64::from(i / SIDE));
     (0..SIDE * SIDE).map(|i| (place(i) + in_texel) / f64::from(SIDE)).collect()
@@ -44,7 +43,7 @@ const fn at(level: f64) -> HatchFootprint {
     HatchFootprint { level, spread: DVec2::ZERO }
 }
 
-/// Levels and footprints that pictures have.
+/// Typical levels and footprints.
 fn footprints() -> [HatchFootprint; 5] {
     let spread = |level, x, y| HatchFootprint { level, spread: DVec2::new(x, y) };
     [at(0.0), at(0.4), at(1.7), spread(2.0, 0.02, 0.013), spread(2.6, -0.01, 0.04)]
@@ -81,7 +80,7 @@ fn thresholds_that_are_filtered_first_miss_the_tone() {
     let (_, thresholds) = &*MAP;
     let mut random = Rand64::new(1);
     let places = places(&mut random, 200);
-    // Of level 0, as a texture unit would.
+    // Thresholds of level 0 filtered before the comparison, as a texture unit would.
     let filtered = |uv: DVec2| {
         let taps = hatch_taps(uv, SIDE);
         let texel = |x: u32, y: u32| f64::from(thresholds.levels[0][(y * SIDE + x) as usize]) / 65535.0;
@@ -97,8 +96,8 @@ fn thresholds_that_are_filtered_first_miss_the_tone() {
     assert!(worst > 0.02, "{worst}: then comparing first gains nothing");
 }
 
-/// Strokes of different hatchings lie independently of each other only as far as cut-outs and rotations make them, and
-/// more so the more strokes a map has: one of 128 texels is off by nearly twice as much.
+/// The strokes of different hatchings are independent only approximately, the better the more strokes a map has: with
+/// 128 texels the error is nearly twice as large.
 #[test]
 fn hatchings_that_meet_have_the_tone_together() {
     let (_, thresholds) = &map(256);
@@ -128,15 +127,15 @@ fn hatchings_that_meet_have_the_tone_together() {
     }
 }
 
-/// How texture coordinates change where a pixel's footprint has these axes, in texels of level 0: the first at an
-/// angle, on a screen turned by another.
+/// The derivatives of texture coordinates for a footprint with these axes in texels of level 0, the first at an
+/// angle, on a screen rotated by another angle.
 fn derivatives(axes: [f64; 2], angle: f64, screen: f64, texels: f64) -> (DVec2, DVec2) {
     let (long, short) = (DVec2::from_angle(angle) * axes[0], DVec2::from_angle(angle).perp() * axes[1]);
     let (sin, cos) = screen.sin_cos();
     ((long * cos + short * sin) / texels, (short * cos - long * sin) / texels)
 }
 
-/// s sᵀ / |s|: without the sign.
+/// The tensor s sᵀ / |s|, which does not depend on the sign.
 fn line(s: DVec2) -> DVec3 {
     DVec3::new(s.x * s.x, s.x * s.y, s.y * s.y) / s.length().max(1e-300)
 }
@@ -153,7 +152,7 @@ fn a_square_footprint_has_the_level_of_its_side() {
             }
         }
     }
-    // Magnified, the finest; beyond the last, the last.
+    // The finest level for magnification, and the coarsest beyond the last.
     assert_eq!(hatch_footprint(DVec2::X * 0.001, DVec2::Y * 0.001, 256.0, 8.0), at(0.0));
     assert_eq!(hatch_footprint(DVec2::X * 100.0, DVec2::Y * 100.0, 256.0, 8.0), at(8.0));
 }
@@ -186,7 +185,7 @@ fn a_long_footprint_has_the_level_of_its_area_and_is_spread() {
     }
 }
 
-/// Rotating texture coordinates rotates the spread along, rotating the screen changes nothing.
+/// Rotating texture coordinates rotates the spread; rotating the screen has no effect.
 #[test]
 fn footprints_turn_with_their_coordinates() {
     let mut random = Rand64::new(2);
@@ -205,7 +204,7 @@ fn footprints_turn_with_their_coordinates() {
     }
 }
 
-/// Samples stay within the pixel: where texels are larger than it, there is nothing to spread them over.
+/// Samples stay within the pixel: where texels are larger than the pixel, there is no spread.
 #[test]
 fn a_footprint_within_a_texel_is_not_spread() {
     for long in [0.001, 0.1, 1.0, SQRT_2] {
@@ -214,7 +213,7 @@ fn a_footprint_within_a_texel_is_not_spread() {
             assert_eq!(hatch_footprint(dx, dy, 256.0, 8.0), at(0.0), "{long}, {ratio}");
         }
     }
-    // Whatever there is, the samples' distance from end to end is no more than the longer axis.
+    // The distance between the outermost samples never exceeds the longer axis.
     let mut random = Rand64::new(3);
     for _ in 0..10_000 {
         let long = 10.0_f64.powf(6.0 * random.rand_float() - 2.0);
@@ -229,7 +228,7 @@ fn a_footprint_within_a_texel_is_not_spread() {
 fn footprints_of_anything_are_footprints() {
     let x = DVec2::new(0.1, 0.03);
     for (dx, dy) in [(x, DVec2::ZERO), (DVec2::ZERO, x), (x * 0.6, x * -0.8)] {
-        // A line: its length alone counts.
+        // A degenerate footprint: only its length matters.
         let found = hatch_footprint(dx, dy, 256.0, 8.0);
         assert!((found.level - ((x.length() * 256.0).log2() - 2.0)).abs() < 1e-9, "{found:?}");
         let expected = line(x.normalize() * (4.0 - SQRT_2) * found.level.exp2() / 256.0);
@@ -253,21 +252,21 @@ fn taps_wrap() {
         high: UVec2::from(high),
         share: DVec2::new(x, y),
     };
-    // Centres have their texel alone.
+    // At a texel's centre only that texel has weight.
     assert_eq!(taps(0.125, 0.875, 4), expected([0, 3], [1, 0], 0.0, 0.0));
     assert_eq!(taps(-0.125, -4.875, 4), expected([3, 0], [0, 1], 0.0, 0.0));
-    // Corners have four.
+    // At a texel's corner four texels have equal weight.
     assert_eq!(taps(0.0, 1.0, 4), expected([3, 3], [0, 0], 0.5, 0.5));
     assert_eq!(taps(0.5, -0.5, 4), expected([1, 1], [2, 2], 0.5, 0.5));
     assert_eq!(taps(0.1875, -2.6875, 4), expected([0, 0], [1, 1], 0.25, 0.75));
-    // A level of one texel, and what is no place.
+    // A level of one texel, and coordinates that are not finite.
     assert_eq!(taps(7.3, -0.5, 1).low, UVec2::ZERO);
     assert_eq!(taps(7.3, -0.5, 1).high, UVec2::ZERO);
     let nowhere = taps(f64::NAN, f64::INFINITY, 4);
     assert!(nowhere.low.max_element() < 4 && nowhere.high.max_element() < 4);
     let mut random = Rand64::new(4);
     for _ in 0..1000 {
-        // In 64ths of a texel, so that sums are exact.
+        // In 1/64 texel, so that sums are exact.
         let place = DVec2::new(random.rand_range(0..1024) as f64, random.rand_range(0..1024) as f64) / 1024.0;
         let here = hatch_taps(place, 16);
         assert!(here.share.min_element() >= 0.0 && here.share.max_element() < 1.0);
@@ -275,7 +274,7 @@ fn taps_wrap() {
     }
 }
 
-/// By hand: two by two texels and one, of thresholds that a tone of 0.5 turns to ink or not.
+/// By hand: levels of 2 × 2 and of one texel, with thresholds on both sides of a tone of 0.5.
 #[test]
 fn ink_is_filtered_over_texels_levels_and_samples() {
     let map = Thresholds { side: 2, levels: vec![vec![65535, 0, 0, 65535], vec![65535]] };
@@ -284,7 +283,7 @@ fn ink_is_filtered_over_texels_levels_and_samples() {
     assert_eq!([(0.25, 0.75), (-0.25, 7.75)].map(|(u, v)| ink(u, v, at(0.0))), [0.0, 1.0]);
     assert_eq!([(0.5, 0.25), (0.5, 0.5), (0.375, 0.25)].map(|(u, v)| ink(u, v, at(0.0))), [0.5, 0.5, 0.75]);
     assert_eq!([0.0, 0.25, 1.0].map(|level| ink(0.75, 0.25, at(level))), [0.0, 0.25, 1.0]);
-    // Samples at three and one eighth of a texture on both sides: 0.75 and 0.25 texels.
+    // Samples at 3/8 and 1/8 of the texture on both sides: 0.75 and 0.25 texels.
     let spread = HatchFootprint { level: 0.0, spread: DVec2::X };
     assert_eq!(HATCH_SPREAD.map(|along| ink(0.25 + along, 0.25, at(0.0))), [0.25, 0.75, 0.75, 0.25]);
     assert_eq!(ink(0.25, 0.25, spread), 0.5);
@@ -323,7 +322,7 @@ fn texels_are_filtered_over_texels_levels_and_samples() {
     }
 }
 
-/// With thresholds that lie evenly, as a large map's do.
+/// With evenly distributed thresholds, as in a large map.
 #[test]
 fn a_soft_edge_keeps_the_mean_up_to_white_and_black() {
     let thresholds = 65536;
@@ -338,7 +337,7 @@ fn a_soft_edge_keeps_the_mean_up_to_white_and_black() {
     assert_eq!((hatch_softened(0.4, 0.0), hatch_softened(1.2, 0.0), hatch_softened(-0.1, 0.2)), (0.4, 1.0, -0.2));
 }
 
-/// Whatever the thresholds, those of the ends among them: those of a large map round to 0 and to 65535.
+/// For all thresholds including the extremes 0 and 65535, to which those of a large map round.
 #[test]
 fn white_is_clean_and_black_is_solid() {
     let ends = Thresholds { side: 2, levels: vec![vec![0, 1, 65534, 65535], vec![32768]] };

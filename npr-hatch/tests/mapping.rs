@@ -1,4 +1,4 @@
-//! Shares of hatchings add up and change without steps, and strokes run where they should.
+//! The weights of hatchings sum to 1 and are continuous, and strokes have the requested direction.
 
 use glam::{DVec2, DVec3, Vec3, Vec3Swizzles as _};
 use npr_hatch::field::LineTensor;
@@ -9,7 +9,7 @@ use npr_hatch::mapping::{
 use oorandom::Rand64;
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
-/// The angle between two turns.
+/// The angle between two directions.
 const TURN: f64 = PI / HATCH_TURNS as f64;
 
 fn direction(random: &mut Rand64) -> DVec3 {
@@ -21,19 +21,19 @@ fn direction(random: &mut Rand64) -> DVec3 {
     }
 }
 
-/// What is seen at an angle in the plane of an axis, without a part along the axis.
+/// A vector at an angle in the plane of an axis, without a component along the axis.
 fn in_plane(axis: u32, angle: f64) -> DVec3 {
     let (sin, cos) = angle.sin_cos();
     let each = [DVec3::new(0.0, sin, cos), DVec3::new(cos, 0.0, sin), DVec3::new(cos, sin, 0.0)];
     each[axis as usize]
 }
 
-/// d dᵀ as [`hatch_doubled`] takes it, in f64.
+/// The tensor d dᵀ as arguments of [`hatch_doubled`], in f64.
 fn doubled(d: DVec3, axis: u32) -> DVec2 {
     hatch_doubled(d * d, DVec3::new(d.x * d.y, d.x * d.z, d.y * d.z), axis)
 }
 
-/// Of each of the turns.
+/// The weight of each direction.
 fn shares(step: HatchStep) -> [f64; HATCH_TURNS as usize] {
     assert!((0..HATCH_TURNS as i32).contains(&step.first) && (0.0..=1.0).contains(&step.share), "{step:?}");
     let mut shares = [0.0; HATCH_TURNS as usize];
@@ -58,7 +58,7 @@ fn plane_weights_are_shares() {
     assert!((even - 1.0 / 3.0).abs().max_element() < 1e-12);
     let pair = hatch_plane_weights(DVec3::new(FRAC_1_SQRT_2, 0.0, -FRAC_1_SQRT_2));
     assert!((pair - DVec3::new(0.5, 0.0, 0.5)).abs().max_element() < 1e-12);
-    // By hand: 0.8 - 0.4 and 0.6 - 0.4, cubed, are 8 to 1.
+    // By hand: the cubes of 0.8 - 0.4 and 0.6 - 0.4 have the ratio 8 to 1.
     let uneven = hatch_plane_weights(DVec3::new(0.8, 0.6, 0.0));
     assert!((uneven - DVec3::new(8.0, 1.0, 0.0) / 9.0).abs().max_element() < 1e-12);
 }
@@ -66,8 +66,8 @@ fn plane_weights_are_shares() {
 #[test]
 fn plane_weights_are_continuous() {
     let mut random = Rand64::new(2);
-    // With m the largest part above 0.4, at least 0.577 - 0.4, a cube changes by at most 3 m² a unit, so a share of a
-    // sum of at least m³ by no more than 12 / m.
+    // With m the largest excess over 0.4, at least 0.577 - 0.4, the derivative of a cube is at most 3 m², so that of
+    // its fraction of a sum of at least m³ is at most 12 / m.
     let steepest = 12.0 / (1.0 / 3.0_f64.sqrt() - 0.4);
     let step = 1e-4;
     for _ in 0..100 {
@@ -132,7 +132,7 @@ fn a_tensor_has_the_doubled_angle_of_what_is_seen() {
             let expected = DVec2::new(x * x - y * y, 2.0 * x * y);
             assert!((doubled(d, axis) - expected).abs().max_element() < 1e-12);
             assert_eq!(doubled(d, axis), doubled(-d, axis));
-            // What the field hands on has the same order of elements, in f32.
+            // The tensor of a field has the same order of elements, in f32.
             let LineTensor { diagonal, others } = LineTensor::from_direction(d.as_vec3());
             let handed = hatch_doubled(Vec3::from(diagonal).as_dvec3(), Vec3::from(others).as_dvec3(), axis);
             assert!((handed - expected).abs().max_element() < 1e-6);
@@ -142,8 +142,8 @@ fn a_tensor_has_the_doubled_angle_of_what_is_seen() {
 
 #[test]
 fn turned_strokes_run_along_the_direction() {
-    // A hatching is faded in and out over the middle quarter of a turn: it is seen up to five eighths of one off, and
-    // counts for half or more up to half of one.
+    // A hatching is faded over the middle quarter of a step: it is visible up to 5/8 of a step from its direction,
+    // and has a weight of 1/2 or more up to 1/2 of a step.
     let (mut most_off, mut most_off_of_half) = (0.0_f64, 0.0_f64);
     for axis in 0..3 {
         for number in 0..7200 {
@@ -161,7 +161,7 @@ fn turned_strokes_run_along_the_direction() {
     }
     assert!(most_off <= 0.625 * TURN + 1e-9, "{} of a turn", most_off / TURN);
     assert!(most_off_of_half <= 0.5 * TURN + 1e-9, "{} of a turn", most_off_of_half / TURN);
-    // And the limits are reached, to a step.
+    // Both bounds are tight up to one step of the angle.
     assert!(most_off > 0.615 * TURN && most_off_of_half > 0.49 * TURN, "{most_off} {most_off_of_half}");
 }
 
@@ -176,7 +176,7 @@ fn exact_directions_have_one_turn() {
     for none in [DVec2::ZERO, -DVec2::ZERO] {
         assert_eq!(hatch_turn(none), HatchStep { first: 0, share: 0.0 });
     }
-    // Both zeros beside a half turn.
+    // Both signs of zero at a half turn.
     assert_eq!(shares(hatch_turn(DVec2::new(-1.0, 0.0)))[6], 1.0);
     assert_eq!(shares(hatch_turn(DVec2::new(-1.0, -0.0)))[6], 1.0);
 }
@@ -184,7 +184,7 @@ fn exact_directions_have_one_turn() {
 #[test]
 fn shares_of_turns_are_continuous_and_one_together() {
     let step = 1e-4;
-    // A share goes from 0 to 1 in a quarter of a turn.
+    // The weight goes from 0 to 1 over a quarter of a step.
     let steepest = 4.0 / TURN;
     let count = (2.0 * PI / step) as u32 + 1;
     let at = |number: u32| shares(hatch_turn(doubled(in_plane(2, f64::from(number) * step), 2) * 0.3));
@@ -216,7 +216,7 @@ fn an_octave_changes_in_the_middle_quarter() {
     for (octave, first, share) in expected {
         assert_eq!(hatch_octave(octave), HatchStep { first, share }, "{octave}");
     }
-    // Which hatching counts for how much, 1 the next and 0 the first, is one broken line.
+    // The weight of the second hatching is a piecewise linear function from 0 to 1.
     let place = |number: i32| {
         let HatchStep { first, share } = hatch_octave(f64::from(number) * 1e-3);
         f64::from(first) + share
@@ -245,7 +245,8 @@ fn turning_is_a_rotation_back() {
 
 #[test]
 fn hatchings_are_moved_apart() {
-    // As many as there are, twelve turns of three planes. A grid of as many has them a sixth apart.
+    // The number of all hatchings: twelve directions of three planes. A square grid of as many points has a distance
+    // of 1/6.
     let places: Vec<DVec2> = (0..36).map(hatch_moved).collect();
     let mut nearest = f64::INFINITY;
     for (i, a) in places.iter().enumerate() {
@@ -257,7 +258,7 @@ fn hatchings_are_moved_apart() {
     }
     assert!(nearest > 0.5 / 6.0, "{nearest}");
     assert_eq!(hatch_moved(0), DVec2::ZERO);
-    // Backwards too, for maps that are magnified: the other way round the square.
+    // Also for negative octaves, which occur in magnified maps.
     for number in 1..36 {
         assert!((hatch_moved(-number) + hatch_moved(number) - 1.0).abs().max_element() < 1e-12);
     }
@@ -281,7 +282,7 @@ fn the_product_of_shares_is_the_tone() {
         assert_eq!((hatch_share(tone, 0.0), hatch_share(tone, 1.0)), (1.0, tone), "all paper, and as asked for");
     }
     assert_eq!(hatch_share(1.0, 0.3), 1.0);
-    // Black is as good as black in several, too.
+    // Black remains black when it is distributed over several hatchings.
     assert!(hatch_share(0.0, 0.5).powi(2) <= 1e-6);
     assert!(hatch_share(0.2, 0.3) > hatch_share(0.2, 0.4));
 }

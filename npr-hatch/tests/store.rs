@@ -1,4 +1,4 @@
-//! Files: there and back, and what is refused.
+//! The file format: round trips, and rejected files.
 
 use npr_hatch::*;
 use proptest::prelude::*;
@@ -22,7 +22,7 @@ fn files() -> [Vec<u8>; 2] {
     [None, Some(&thresholds())].map(|thresholds| store::to_bytes(&tam(), thresholds).unwrap())
 }
 
-/// FNV-1a, from its definition.
+/// FNV-1a from its definition.
 fn fnv_1a(bytes: &[u8]) -> u64 {
     let mut sum: u64 = 14_695_981_039_346_656_037;
     for &byte in bytes {
@@ -31,7 +31,7 @@ fn fnv_1a(bytes: &[u8]) -> u64 {
     sum
 }
 
-/// The file with a checksum that is right for what it holds.
+/// The file with a correct checksum for its content.
 fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
     let end = bytes.len().saturating_sub(8);
     let sum = fnv_1a(&bytes[..end]).to_le_bytes();
@@ -40,7 +40,7 @@ fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
     bytes
 }
 
-/// The file of version 1, without flags and thresholds, that the file of a map is otherwise.
+/// The equivalent file of version 1, without flags and thresholds.
 fn version_1(tam: &Tam) -> Vec<u8> {
     let mut bytes = store::to_bytes(tam, None).unwrap();
     bytes.drain(20..24);
@@ -74,7 +74,7 @@ fn bytes_are_where_the_table_says() {
     }
 }
 
-/// The checksums are those of two maps' files when there was no other version.
+/// The checksums of two files that were written by version 1.
 #[test]
 fn files_of_version_1_are_read() {
     let placement = Placement::BestOf { candidates: 8 };
@@ -95,7 +95,7 @@ fn truncated_and_long_files_are_errors() {
         for length in 0..bytes.len() {
             let error = store::from_bytes(&bytes[..length]).unwrap_err();
             assert!(matches!(error, HatchError::Magic { .. } | HatchError::Length { .. }), "{length}: {error}");
-            // The checksum lies over the header of the shortest.
+            // In the shortest file the checksum overlaps the header.
             let error = store::from_bytes(&sealed(bytes[..length].to_vec())).unwrap_err();
             assert!(length < 44 || matches!(error, HatchError::Length { .. }), "{length}: {error}");
         }
@@ -129,7 +129,7 @@ fn hostile_files_are_errors() {
         }
         assert!(matches!(with(20, &[1 - bytes[20]]), HatchError::Length { .. }));
         assert!(matches!(with(24, &f32::NAN.to_le_bytes()), HatchError::Tone { index: 0, .. }));
-        // Version 2 as version 1.
+        // A file of version 2 that is marked as version 1.
         assert!(matches!(with(8, &[1]), HatchError::Tone { .. }));
         for (at, &byte) in bytes.iter().enumerate() {
             for bit in 0..8 {
@@ -184,14 +184,14 @@ fn thresholds_that_are_no_order_are_neither_stored_nor_read() {
         let thresholds = Thresholds { side, ..thresholds() };
         assert!(matches!(thresholds.validate(), Err(HatchError::Side { side: found }) if found == side));
     }
-    // In a file whose checksum is right.
+    // In a file with a correct checksum.
     let [_, bytes] = files();
     for at in (36 + 3 * TEXELS..bytes.len() - 8).step_by(7) {
         let mut bytes = bytes.clone();
         bytes[at] ^= 16;
         assert!(matches!(store::from_bytes(&sealed(bytes)), Err(HatchError::ThresholdCount { .. })), "{at}");
     }
-    // Two that change places are another order, which is allowed.
+    // Two exchanged thresholds are another order, which is valid.
     let mut swapped = thresholds();
     swapped.levels[0].swap(1, 200);
     swapped.validate().unwrap();
@@ -199,13 +199,13 @@ fn thresholds_that_are_no_order_are_neither_stored_nor_read() {
 
 #[test]
 fn thresholds_of_any_level_are_an_order() {
-    // 1024² has more texels than there are thresholds.
+    // 1024² texels exceed the number of different thresholds.
     for side in [8, 64, 1024] {
         let parameters = TamParameters { side, tones: vec![0.9], cross_from: None, ..TamParameters::default() };
         let thresholds = Thresholds::new(&draw(&parameters, None).unwrap(), &parameters, None);
         assert_eq!(thresholds.levels.len() as u32, side.ilog2() + 1);
         thresholds.validate().unwrap();
-        // Counted here in another way, by sorting.
+        // Counted in another way, by sorting.
         let mut level = thresholds.levels[0].clone();
         level.sort_unstable();
         let count = level.len() as f64;
@@ -225,8 +225,8 @@ proptest! {
         let _ = store::from_bytes(&sealed(bytes));
     }
 
-    /// With a checksum that is right, so that what lies behind it is reached. A file that is read is the only one of
-    /// what is in it.
+    /// With a correct checksum, so that the checks behind it are reached. A file that is accepted is the only
+    /// encoding of its content.
     #[test]
     fn changed_files_are_refused_or_as_good(
         changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..5),
@@ -269,7 +269,7 @@ mod pictures {
         std::fs::remove_dir_all(folder).unwrap();
     }
 
-    /// A stroke that fades toward its sides.
+    /// A stroke that fades towards its sides.
     fn brush() -> DynamicImage {
         let dark = |y: u32| 255 - (255.0 * (1.0 - ((f64::from(y) + 0.5) / 8.0 - 1.0).powi(2))) as u8;
         DynamicImage::ImageLuma8(GrayImage::from_fn(40, 16, |_, y| Luma([dark(y)])))
@@ -298,7 +298,7 @@ mod pictures {
         for (tone, level) in (0..6).flat_map(|tone| [0, 1].map(|level| (tone, level))) {
             assert!((tam.mean(tone, level) - f64::from(tam.tones[tone])).abs() < 0.005, "{tone}, {level}");
         }
-        // A picture of plain ink is a stroke that does not taper.
+        // A fully inked picture is a stroke without taper.
         let plain = StrokeImage::from_ink(3, 5, &[65535; 15]).unwrap();
         let parameters = TamParameters { taper: 0.0, bow: 0.0, ..parameters };
         let (a, b) = (draw(&parameters, Some(&plain)).unwrap(), draw(&parameters, None).unwrap());

@@ -1,4 +1,4 @@
-//! What a drawn map must be: its tones, nested both ways, without seams, even, and the same each time.
+//! Properties of drawn maps: mean tones, nesting in tones and levels, periodicity, evenness, and determinism.
 
 use npr_hatch::*;
 
@@ -6,7 +6,7 @@ fn small() -> TamParameters {
     TamParameters { side: 128, ..TamParameters::default() }
 }
 
-/// The default map, one without crosswise strokes, and others that differ in much.
+/// The default map, one without crosswise strokes, and others with very different parameters.
 fn variants() -> Vec<TamParameters> {
     let default = TamParameters::default();
     vec![
@@ -34,7 +34,7 @@ fn means_are_what_was_asked_for() {
             for level in 0..tam.levels() {
                 let side = f64::from(tam.level_side(level));
                 let error = (tam.mean(tone, level) - f64::from(asked)).abs();
-                // Half a percent; of the small ones a stroke's worth, which is at least two texels long.
+                // Half a percent; in small levels the ink of one stroke, which is at least two texels long.
                 let stroke_px = (f64::from(parameters.length[1]) * side).max(2.0) * f64::from(parameters.width_px);
                 let limit = if side >= 64.0 { 0.005 } else { (stroke_px / (side * side)).min(1.0) };
                 assert!(error <= limit, "{parameters:?}: tone {tone} at {side}: off by {error}");
@@ -92,7 +92,7 @@ fn tones_are_nested_texel_by_texel() {
 
 #[test]
 fn strokes_are_nested_in_tones_and_in_mips() {
-    // Small levels, in which a stroke is much, are where it is hard.
+    // Small levels, in which a single stroke changes the tone considerably, are the difficult ones.
     let seeds = (0..100).flat_map(|seed| [1.0, 2.5, 8.0].map(|width_px| (seed, width_px)));
     let small = seeds.map(|(seed, width_px)| TamParameters { seed, width_px, side: 32, ..TamParameters::default() });
     for parameters in variants().into_iter().chain(small) {
@@ -126,7 +126,8 @@ fn crosswise_strokes_begin_with_their_tone() {
     assert!(none.layers[1].is_empty());
 }
 
-/// The mean difference between neighbouring rows or columns, by which of them is the first; the last meets the first.
+/// The mean difference between neighbouring rows or columns by the index of the first; the last is a neighbour of the
+/// first.
 fn differences(image: &[u8], side: usize, is_rows: bool) -> Vec<f64> {
     let at = |i: usize, j: usize| f64::from(if is_rows { image[i * side + j] } else { image[j * side + i] });
     let between = |i: usize| (0..side).map(|j| (at(i, j) - at((i + 1) % side, j)).abs()).sum::<f64>() / side as f64;
@@ -135,7 +136,7 @@ fn differences(image: &[u8], side: usize, is_rows: bool) -> Vec<f64> {
 
 #[test]
 fn opposite_borders_match() {
-    // One seam may be a steep place by chance, as any row may; the mean over many maps may not.
+    // A single seam may have a large difference by chance, like any row; the mean over many maps may not.
     for is_rows in [false, true] {
         let (mut seam, mut inside, mut above) = (0.0, 0.0, 0);
         let seeds = 24;
@@ -152,7 +153,7 @@ fn opposite_borders_match() {
     }
 }
 
-/// An image moved by half of its side, both ways.
+/// An image shifted by half of its side along both axes.
 fn rolled(image: &[u8], side: usize) -> Vec<u8> {
     let half = side / 2;
     (0..side * side).map(|i| image[(i / side + half) % side * side + (i % side + half) % side]).collect()
@@ -193,7 +194,7 @@ fn the_seed_decides() {
     }
 }
 
-/// The last eight bytes of the file are its checksum: the same on every machine.
+/// The last eight bytes of the file are its checksum, which is equal on every machine.
 #[test]
 fn the_default_map_is_this_one() {
     let checksum = |parameters: &TamParameters| {
@@ -208,8 +209,8 @@ fn the_default_map_is_this_one() {
 const DEFAULT_CHECKSUM: u64 = 17328142516393012740;
 const BEST_OF_CHECKSUM: u64 = 7705733553257044573;
 
-/// Of the first strokes that run along x: the mean distance of each centre's nearest neighbour, in units of 1 / √n,
-/// where x counts an eighth, as strokes are long.
+/// The mean distance to the nearest neighbour of the centres of the first strokes along x, in units of 1 / √n.
+/// Distances along x are divided by 8, since strokes are long.
 fn nearest(strokes: &[Stroke]) -> f64 {
     let share = |at: u32| f64::from(at) / 4_294_967_296.0;
     let apart = |a: u32, b: u32| {
@@ -227,7 +228,7 @@ fn nearest(strokes: &[Stroke]) -> f64 {
     strokes.iter().enumerate().map(least).sum::<f64>() / count * count.sqrt()
 }
 
-/// Root mean square of the tones of 16 × 16 blocks around the image's.
+/// The root mean square deviation of the tones of 16 × 16 blocks from the tone of the image.
 fn unevenness(tam: &Tam, tone: usize) -> f64 {
     let (side, image) = (tam.side as usize, tam.image(tone, 0));
     let size = side / 16;
@@ -239,7 +240,7 @@ fn unevenness(tam: &Tam, tone: usize) -> f64 {
     (sums.iter().map(|sum| (sum - mean).powi(2)).sum::<f64>() / 256.0).sqrt()
 }
 
-/// By placement, over some seeds: the mean distance of nearest neighbours, and the unevenness, of each tone.
+/// For a placement, the means over some seeds of the nearest-neighbour distance and of the unevenness of each tone.
 fn evenness(placement: Placement) -> [(f64, f64); 6] {
     let mut all = [(0.0, 0.0); 6];
     let seeds = 4;
@@ -257,24 +258,24 @@ fn evenness(placement: Placement) -> [(f64, f64); 6] {
 
 #[test]
 fn strokes_are_even() {
-    // One candidate is no choice.
+    // A single candidate is a random placement.
     let random = evenness(Placement::BestOf { candidates: 1 });
     let best = evenness(Placement::BestOf { candidates: 16 });
     let sequence = evenness(Placement::Sequence);
     for tone in 0..6 {
-        // Points at random have 1/2 (Clark & Evans 1954), a square lattice 1.
+        // Random points have 1/2 (Clark & Evans 1954), a square lattice 1.
         assert!((random[tone].0 - 0.5).abs() < 0.05, "{random:?}");
         assert!(sequence[tone].0 > 1.15 * random[tone].0, "tone {tone}: {sequence:?}");
         assert!(best[tone].0 > 1.1 * random[tone].0, "tone {tone}: {best:?}");
         assert!(sequence[tone].1 < 0.8 * random[tone].1, "tone {tone}: {sequence:?}");
         assert!(best[tone].1 < 0.8 * random[tone].1, "tone {tone}: {best:?}");
     }
-    // The fast one is as even as the slow one.
+    // The sequence is as even as the selection among candidates.
     let mean = |all: [(f64, f64); 6]| all.iter().map(|&(_, uneven)| uneven).sum::<f64>() / 6.0;
     assert!(mean(sequence) < 1.05 * mean(best), "{sequence:?}, {best:?}");
 }
 
-/// The mean run of ink across strokes, in texels, halves of gray counting as half: the width.
+/// The mean length of runs of ink across strokes in texels, with gray counted in proportion: the width.
 fn mean_width(tam: &Tam, level: usize) -> f64 {
     let (side, image) = (tam.level_side(level) as usize, tam.image(0, level));
     let ink = |x: usize, y: usize| f64::from(255 - image[y % side * side + x]) / 255.0;
@@ -297,7 +298,7 @@ fn strokes_are_as_wide_in_all_mips() {
     .tam;
     for level in 0..3 {
         let width = mean_width(&tam, level);
-        // Thinner at the ends than the 1.5 in the middle.
+        // The ends are thinner than the 1.5 texels in the middle.
         assert!(width > 1.15 && width < 1.5, "level {level}: {width}");
     }
 }
@@ -359,8 +360,11 @@ fn bad_parameters_are_errors() {
             assert!(error(parameters).contains("must be within"));
         }
     }
-    assert_eq!(error(TamParameters { length: [0.5, 0.4], ..default() }), "length goes from 0.5 to 0.4, which is less");
-    assert!(error(TamParameters { cross_from: Some(6), ..default() }).contains("with tone 6 of 6"));
+    assert_eq!(
+        error(TamParameters { length: [0.5, 0.4], ..default() }),
+        "length is the range from 0.5 to 0.4: the end must not be below the start"
+    );
+    assert!(error(TamParameters { cross_from: Some(6), ..default() }).contains("tone 6, but there are 6 tones"));
     for candidates in [0, 5000] {
         let placement = Placement::BestOf { candidates };
         assert!(error(TamParameters { placement, ..default() }).contains(&format!("{candidates} candidates")));
@@ -393,7 +397,7 @@ fn thresholds_have_every_tone() {
             assert!(error.abs() <= 0.5 / (side * side) + 1e-4, "{error} at {side}, tone {tone}");
         }
     }
-    // At a tone of the map its strokes are what is ink.
+    // At a tone of the map the ink is that of its strokes.
     for tone in 0..6 {
         let asked = f64::from(drawing.tam.tones[tone]);
         let pairs = thresholds.levels[0].iter().zip(drawing.tam.image(tone, 0));
@@ -405,10 +409,10 @@ fn thresholds_have_every_tone() {
     assert_eq!(thresholds.to_u8(7), [127]);
 }
 
-/// A black stroke and a faint one on 8 × 8 texels: all that is known of the order follows from the two.
+/// A black and a faint stroke on 8 × 8 texels, which determine the order completely.
 #[test]
 fn what_no_stroke_inks_follows_the_inked_darkest_neighbourhood_first_around_the_borders() {
-    // Along x, 4 texels long and 1 wide, with no taper: they cover whole texels.
+    // Along x, 4 texels long and 1 texel wide, without taper: they cover whole texels.
     let stroke = |x: u32, row: u32, pressure| Stroke {
         centre: [x << 29, (2 * row + 1) << 28],
         direction: [1.0, 0.0],
@@ -416,9 +420,10 @@ fn what_no_stroke_inks_follows_the_inked_darkest_neighbourhood_first_around_the_
         bow: 0.0,
         pressure,
     };
-    // 255 in columns 0..4 of row 0; 64 in columns 6, 7, 0 and 1 of row 5, which is less than half and so not ink.
+    // 255 in columns 0..4 of row 0; 64 in columns 6, 7, 0 and 1 of row 5, which is less than half and therefore not
+    // ink.
     let layers = [vec![stroke(2, 0, 1.0), stroke(0, 5, 0.25)], vec![]];
-    // The black one is drawn last, after the faint one so often that its rank is larger than any darkness.
+    // The black stroke is drawn last, after so many repetitions of the faint one that its rank exceeds any darkness.
     let mut marks = vec![vec![Mark { layer: 0, index: 1 }; 3000], vec![], vec![], vec![]];
     marks[0].push(Mark { layer: 0, index: 0 });
     let parameters = TamParameters { side: 8, width_px: 1.0, taper: 0.0, ..TamParameters::default() };
@@ -427,8 +432,8 @@ fn what_no_stroke_inks_follows_the_inked_darkest_neighbourhood_first_around_the_
     let thresholds = Thresholds::new(&drawing, &parameters, None);
     thresholds.validate().unwrap();
 
-    // Ink of the 3 × 3 texels around each, and twice that of its own, both borders being neighbours. Equally dark ones are
-    // in the order of rows.
+    // The ink of the 3 × 3 texels around each texel plus twice its own ink, with wrapping at the borders. Equal sums
+    // are ordered by row and column.
     #[rustfmt::skip]
     let darkness = [
         9999, 9998, 9997, 9996,  255,    0,    0,  255,
@@ -445,6 +450,6 @@ fn what_no_stroke_inks_follows_the_inked_darkest_neighbourhood_first_around_the_
     let mut order: Vec<usize> = (0..64).collect();
     order.sort_by_key(|&texel| std::cmp::Reverse(thresholds.levels[0][texel]));
     assert_eq!(order, expected);
-    // Where nothing is drawn all texels are alike.
+    // Without ink all texels are equal.
     assert!(thresholds.levels[1..].iter().all(|level| level.is_sorted_by(|a, b| a > b)));
 }

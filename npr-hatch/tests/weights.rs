@@ -1,4 +1,4 @@
-//! The weights against the listing's own arithmetic, their sums, the blend and the transfer curve.
+//! The weights compared with the instructions of listing 4, their sums, the blend and the transfer curve.
 
 use approx::assert_abs_diff_eq;
 use glam::DVec3;
@@ -39,7 +39,7 @@ fn slt(a: Register, b: Register) -> Register {
     each(a, b, |a, b| if a < b { 1.0 } else { 0.0 })
 }
 
-/// The fold of listing 4 that both sets of weights go through, from `max` to the last `mul`.
+/// The common part of listing 4 for both sets of weights, from `max` to the last `mul`.
 fn fold(mut r: Register, c: impl Fn(f64) -> Register) -> Register {
     r = max(r, c(0.0));
     let mut r7 = sge(c(2.0), r);
@@ -53,7 +53,7 @@ fn fold(mut r: Register, c: impl Fn(f64) -> Register) -> Register {
     mul(r, r7)
 }
 
-/// Listing 4 from its light factor on, instruction by instruction.
+/// Listing 4 from the light factor on, instruction by instruction.
 fn listing_4(light_factor: f64) -> HatchWeights {
     let c = |value: f64| [value; 4];
     let r3 = c(light_factor);
@@ -71,7 +71,7 @@ fn listing_4(light_factor: f64) -> HatchWeights {
     HatchWeights { light: DVec3::new(r5[0], r5[1], r5[2]), dark: DVec3::new(r6[0], r6[1], r6[2]) }
 }
 
-/// Light factors from -10 to 10 in steps that are exact, all whole numbers among them, and their neighbours.
+/// Light factors from -10 to 10 in exactly representable steps, with all integers and their neighbours.
 fn factors() -> impl Iterator<Item = f64> {
     let whole = (-10..=10).map(f64::from);
     (-2560..=2560).map(|i| f64::from(i) / 256.0).chain(whole.flat_map(|x| [x.next_down(), x.next_up()]))
@@ -150,7 +150,7 @@ fn linear_inverts_the_transfer() {
     assert_eq!((hatch_linear(light, dark, -1.0), hatch_linear(light, dark, 2.0)), (1.0, 7.0));
 }
 
-/// A patch of a surface hatched by the map has the tone that the light asks for.
+/// A patch of a surface hatched with the map has the tone of its lighting.
 #[test]
 fn a_hatched_patch_has_its_tone() {
     let tam = draw(&TamParameters { side: 128, ..TamParameters::default() }, None).unwrap().tam;
@@ -185,7 +185,7 @@ fn shadows_have_the_darkest_tone() {
     }
 }
 
-/// Six tones that fall, between white and black.
+/// Six descending tones between white and black.
 fn tones() -> impl Strategy<Value = (DVec3, DVec3)> {
     prop::array::uniform6(0.001..1.0f64).prop_map(|mut tones| {
         tones.sort_by(|a, b| b.total_cmp(a));
@@ -194,7 +194,8 @@ fn tones() -> impl Strategy<Value = (DVec3, DVec3)> {
 }
 
 proptest! {
-    /// At any light factor: no weight below 0 or above 1, at most two of them, neighbours, and a sum of 1 but above 6.
+    /// At any light factor all weights are within 0..=1, at most two adjacent ones are not zero, and up to 6 they sum
+    /// to 1.
     #[test]
     fn weights_of_any_factor_are_shares(factor in prop_oneof![-2.0..9.0f64, any::<f64>()]) {
         prop_assume!(!factor.is_nan());
@@ -206,7 +207,7 @@ proptest! {
         prop_assert!(there.len() <= 2 && there.windows(2).all(|pair| pair[1] == pair[0] + 1), "{weights:?}");
     }
 
-    /// A blend lies between the darkest of its texels and paper, and gets no darker where the light gets brighter.
+    /// A blend is between the darkest of its texels and paper, and does not get darker as the light gets brighter.
     #[test]
     fn blends_of_any_tones_stay_between_them(
         (light, dark) in tones(),
@@ -225,19 +226,20 @@ proptest! {
         prop_assert!(color.is_finite() && color.min_element() >= 0.0 && color.max_element() <= 1.0, "{color}");
     }
 
-    /// The factor that gives a tone is found for any tones, and gives it, or the nearest there is.
+    /// The inverse of the transfer curve exists for any tones and gives the requested tone or the nearest possible
+    /// one.
     #[test]
     fn any_tone_is_reached((light, dark) in tones(), tone in 0.0..1.0f64) {
         let factor = hatch_linear(light, dark, tone);
         prop_assert!((1.0..=7.0).contains(&factor), "{factor}");
         let tones = [1.0, light.x, light.y, light.z, dark.x, dark.y, dark.z];
-        // Two tones that are one have no factor between them.
+        // Two equal tones have no factor between them.
         prop_assume!(tones.windows(2).all(|pair| pair[0] - pair[1] > 1e-6));
         let found = hatch_transfer(light, dark, factor);
         prop_assert!((found - tone.max(dark.z)).abs() < 1e-9, "{found} in place of {tone}");
     }
 
-    /// The texels that six tones may have, and weights of any sum: a blend is a tone, whatever it is given.
+    /// For any texels of six tones and weights of any sum, a blend is within 0..=1.
     #[test]
     fn a_blend_is_a_tone(texels in prop::array::uniform6(0.0..=1.0f64), weights in prop::array::uniform6(0.0..=4.0f64)) {
         let three = |of: &[f64]| DVec3::from_slice(of);

@@ -1,7 +1,11 @@
-//! The WGSL is valid, and has the functions of the Rust side.
+//! The WGSL is valid, and its signatures are those of the Rust functions.
+
+#[path = "../../npr-toon/tests/signatures/mod.rs"]
+mod signatures;
 
 use naga::Module;
 use npr_hatch::{LOOKUP_WGSL, WGSL};
+use signatures::{Exceptions, Pair, differences};
 use std::collections::BTreeSet;
 
 fn validated(source: &str) -> Module {
@@ -12,28 +16,62 @@ fn validated(source: &str) -> Module {
     module
 }
 
-/// What begins with `hatch_` and is public in Rust.
-fn rust_functions() -> BTreeSet<&'static str> {
-    let sources = [
-        include_str!("../src/weights.rs"),
-        include_str!("../src/threshold.rs"),
-        include_str!("../src/lookup.rs"),
-        include_str!("../src/mapping.rs"),
-    ];
-    let after = sources.into_iter().flat_map(|source| source.split("pub fn ").skip(1));
-    after.map(|text| text.split('(').next().unwrap()).filter(|name| name.starts_with("hatch_")).collect()
-}
-
-fn function_names(module: &Module) -> BTreeSet<&str> {
-    module.functions.iter().map(|(_, function)| function.name.as_deref().unwrap()).collect()
-}
-
 fn type_names(module: &Module) -> BTreeSet<&str> {
     module.types.iter().filter_map(|(_, kind)| kind.name.as_deref()).collect()
 }
 
-/// The Rust functions that read maps, whose twins are in [`LOOKUP_WGSL`].
-const LOOKUPS: [&str; 2] = ["hatch_ink", "hatch_texels"];
+macro_rules! pairs {
+    ($($stem:literal),*) => {
+        [$(Pair {
+            wgsl: include_str!(concat!("../src/", $stem, ".wgsl")),
+            rust: include_str!(concat!("../src/", $stem, ".rs")),
+        }),*]
+    };
+}
+
+const EXCEPTIONS: Exceptions = Exceptions {
+    wgsl_only: &[
+        ("hatch_texels_at", "one sample of hatch_texels"),
+        ("hatch_ink_at", "one sample of hatch_ink"),
+        ("hatch_ink_of_level", "one level of hatch_ink"),
+        ("hatch_ink_texel", "one texel of hatch_ink"),
+    ],
+    renamed: &[],
+    types: &[],
+    split: &[
+        (
+            "hatch_texels",
+            "tam",
+            &[("light", "texture"), ("dark", "texture"), ("trilinear", "sampler")],
+            "a map of six tones is two textures",
+        ),
+        ("hatch_ink", "map", &[("map", "texture"), ("nearest", "sampler")], "WGSL reads textures through a sampler"),
+    ],
+    types_of: &[("hatch_texels", "tuple of 2", "HatchTexels", "WGSL has no tuples")],
+};
+
+/// The differences between the WGSL files, with one text replaced, and the Rust files.
+fn differences_with(old: &str, new: &str) -> Vec<String> {
+    let source = [WGSL, LOOKUP_WGSL].concat();
+    let changed = source.replace(old, new);
+    assert!(old == new || changed != source, "{old} is not there");
+    let pairs = pairs!["weights", "threshold", "footprint", "mapping", "lookup"];
+    differences(&validated(&changed), &pairs, &EXCEPTIONS)
+}
+
+#[test]
+fn functions_have_the_signatures_of_the_rust_ones() {
+    assert_eq!(differences_with("", ""), [""; 0]);
+}
+
+#[test]
+fn a_different_signature_is_found() {
+    let swapped =
+        differences_with("fn hatch_shadowed(tone: f32, darkest: f32", "fn hatch_shadowed(darkest: f32, tone: f32");
+    assert!(matches!(&swapped[..], [line] if line.starts_with("hatch_shadowed: ")), "{swapped:?}");
+    let missing = differences_with("hatch_flat", "hatch_level_flat");
+    assert!(matches!(&missing[..], [line] if line.starts_with("hatch_level_flat: ")), "{missing:?}");
+}
 
 /// No bindings, entry points or overrides, and no constants: WGSL has no namespaces.
 fn assert_library(module: &Module) {
@@ -45,11 +83,10 @@ fn assert_library(module: &Module) {
 fn is_a_library() {
     let module = validated(WGSL);
     assert_library(&module);
-    let mut rust = rust_functions();
-    for lookup in LOOKUPS {
-        assert!(rust.remove(lookup), "{lookup}");
+    for (_, function) in module.functions.iter() {
+        let name = function.name.as_deref().unwrap();
+        assert!(name.starts_with("hatch_"), "{name}");
     }
-    assert_eq!(function_names(&module), rust);
     let types = ["HatchFootprint", "HatchStep", "HatchTaps", "HatchWeights"];
     assert_eq!(type_names(&module), BTreeSet::from(types));
 }
@@ -59,11 +96,6 @@ fn lookups_are_a_library_behind_it() {
     let source = [WGSL, LOOKUP_WGSL].concat();
     let module = validated(&source);
     assert_library(&module);
-    let (here, rust) = (function_names(&module), rust_functions());
-    assert!(here.is_superset(&rust), "{:?}", rust.difference(&here));
-    for part in here.difference(&rust) {
-        assert!(LOOKUPS.iter().any(|whole| part.starts_with(&format!("{whole}_"))), "{part} is part of no function");
-    }
     let types = ["HatchFootprint", "HatchStep", "HatchTaps", "HatchTexels", "HatchWeights"];
     assert_eq!(type_names(&module), BTreeSet::from(types));
 }

@@ -21,20 +21,20 @@ fn main() -> io::Result<()> {
     out.flush()
 }
 
-/// The colour at a point of the picture, pixels from its upper left.
+/// The colour at a position in pixels from the upper left corner of the picture.
 fn pixel(at: DVec2) -> DVec3 {
     if plane(at).length() > 1.0 {
         return DVec3::splat(0.95);
     }
     let (n_dot_l, n_dot_h) = light(at);
-    // A GPU has the derivatives of its neighbours; here they are differences over a pixel.
+    // Differences over one pixel stand in for the derivatives of a GPU.
     let (right, below) = (light(at + DVec2::X), light(at + DVec2::Y));
     let nl_width = toon_width(right.0 - n_dot_l, below.0 - n_dot_l);
     let nh_width = toon_width(right.1 - n_dot_h, below.1 - n_dot_h);
     toon_shade(&Bands::default(), DVec3::new(0.93, 0.45, 0.25), n_dot_l, nl_width, n_dot_h, nh_width)
 }
 
-/// N·L and N·H on the sphere, seen from far along +Z.
+/// N·L and N·H on the sphere, seen along -Z by an orthographic camera.
 fn light(at: DVec2) -> (f64, f64) {
     let p = plane(at);
     let normal = p.extend((1.0 - p.length_squared()).max(0.0).sqrt());
@@ -42,7 +42,7 @@ fn light(at: DVec2) -> (f64, f64) {
     (toon_n_dot_l(normal, to_light), toon_n_dot_h(normal, to_light, DVec3::Z))
 }
 
-/// From pixels to the plane in which the sphere's outline is the unit circle.
+/// Maps pixels to the plane in which the outline of the sphere is the unit circle.
 fn plane(at: DVec2) -> DVec2 {
     let centre = f64::from(SIZE) / 2.0;
     (at - centre) * DVec2::new(1.0, -1.0) / (0.9 * centre)

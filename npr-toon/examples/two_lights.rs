@@ -1,7 +1,7 @@
 //! A sphere under two lights, as a PPM picture: `cargo run -p npr-toon --example two_lights -- sphere.ppm`.
 //!
-//! Above, a warm light from the upper left and a dim cool one from the lower right, through a 2D ramp with a shade
-//! for bright lights in its corner; below, the ramp itself, dark at its upper left.
+//! The upper part shows a warm light from the upper left and a dim cool light from the lower right, through a 2D ramp with
+//! a corner tone for strong light. The lower part shows the ramp, dark at its upper left.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     })?)
 }
 
-/// Three bands for each light, and a shade for what is bright.
+/// Three bands per light, and a corner tone for strong light.
 fn ramps() -> Result<Ramp2d, ToonError> {
     let bands = Bands {
         thresholds: vec![0.12, 0.5],
@@ -44,12 +44,12 @@ fn ramps() -> Result<Ramp2d, ToonError> {
     Ok(Ramp2d { corner: Some(corner), ..Ramp2d::from_bands(&bands)? })
 }
 
-/// The colour at a point of the picture, pixels from its upper left.
+/// The colour at a position in pixels from the upper left corner of the picture.
 fn sphere(painter: &Painter, ramps: &Ramp2d, at: DVec2) -> DVec3 {
     if plane(at).length() > 1.0 {
         return DVec3::splat(0.95);
     }
-    // A GPU has the derivatives of its neighbours; here they are differences over a pixel.
+    // Differences over one pixel stand in for the derivatives of a GPU.
     let uv = light(painter, at);
     let (right, below) = (light(painter, at + DVec2::X) - uv, light(painter, at + DVec2::Y) - uv);
     let widths = DVec2::new(toon_border_width(right.x, below.x), toon_border_width(right.y, below.y));
@@ -57,14 +57,14 @@ fn sphere(painter: &Painter, ramps: &Ramp2d, at: DVec2) -> DVec3 {
     toon_paint(painter, toon_ramp_2d(ramps, uv, widths), material).truncate()
 }
 
-/// Both lights' reach on the sphere, seen from far along +Z.
+/// The diffuse terms of both lights on the sphere, seen along -Z by an orthographic camera.
 fn light(painter: &Painter, at: DVec2) -> DVec2 {
     let p = plane(at);
     let normal = p.extend((1.0 - p.length_squared()).max(0.0).sqrt());
     toon_painter_uv(painter, normal, normal)
 }
 
-/// From pixels to the plane in which the sphere's outline is the unit circle.
+/// Maps pixels to the plane in which the outline of the sphere is the unit circle.
 fn plane(at: DVec2) -> DVec2 {
     let centre = f64::from(SIZE) / 2.0;
     (at - centre) * DVec2::new(1.0, -1.0) / (0.9 * centre)

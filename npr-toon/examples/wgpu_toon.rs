@@ -4,10 +4,10 @@ use npr_toon::{Bands, TOON_BANDS_OVERRIDE, ToonUniform, WGSL};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu::*;
 
-/// The picture's side; rows of 2048 bytes, a multiple of 256, are copied without padding.
+/// Width and height in pixels. Rows of 2048 bytes, a multiple of 256, need no padding in buffer copies.
 const SIZE: u32 = 512;
 const FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
-/// A sphere that is seen from far along +Z; its outline is a circle of 230 pixels.
+/// A sphere with a radius of 230 pixels, seen along -Z by an orthographic camera.
 const SHADER: &str = "
     @group(0) @binding(0) var<uniform> u_bands: ToonBands;
     @vertex fn vs(@builtin(vertex_index) i: u32) -> @builtin(position) vec4<f32> {
@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let instance = Instance::new(InstanceDescriptor::new_without_display_handle_from_env());
     let adapter = pollster::block_on(instance.request_adapter(&Default::default()))?;
     let (device, queue) = pollster::block_on(adapter.request_device(&Default::default()))?;
-    // The library, and what uses it; the bands; and how many there are, so that the loop over them is unrolled.
+    // The library is prepended to the shader. The override is the number of bands, so that the loop over them is unrolled.
     let source = ShaderSource::Wgsl(format!("{WGSL}{SHADER}").into());
     let module = &device.create_shader_module(ShaderModuleDescriptor { label: None, source });
     let bands = Bands::default();

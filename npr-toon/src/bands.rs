@@ -1,48 +1,52 @@
-//! What a surface's light is cut into.
+//! The style of banded shading: thresholds, tones and a highlight.
 
 use glam::Vec3;
 
 use crate::ToonError;
 use crate::error::is_color;
 
-/// Bands of diffuse light, and perhaps a highlight.
+/// Bands of diffuse light with an optional highlight.
 ///
-/// Check a value that was not made by a constructor with [`Bands::validate`]. The functions of this crate do
-/// not panic on bad ones, but what they return then means nothing.
+/// Values that do not come from a constructor should be checked with [`Bands::validate`]. The functions of this crate do
+/// not panic on invalid values, but their results are then unspecified.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(default, rename_all = "kebab-case", deny_unknown_fields))]
 pub struct Bands {
-    /// N·L where one band ends and the next, brighter one begins: strictly ascending, one fewer than tones. A value
-    /// equal to the threshold belongs to the band above it.
+    /// The values of N·L at which the next brighter band begins: strictly ascending, one fewer than tones. A value equal to
+    /// a threshold belongs to the brighter band.
     pub thresholds: Vec<f32>,
-    /// The bands from dark to light, display-referred RGB, factors on the surface's colour. At least one.
+    /// The tones of the bands from dark to light: display-referred RGB factors on the surface's colour. At least one.
     pub tones: Vec<Vec3>,
-    /// What lies over the bands where N·H is large.
+    /// The highlight, which covers the bands where N·H is large.
     pub highlight: Option<Highlight>,
-    /// Whether borders are antialiased; without it [`crate::toon_shade`] takes no notice of its widths.
+    /// Whether borders are antialiased. If not, [`crate::toon_shade`] ignores its width arguments.
     pub antialias: bool,
 }
 
-/// A spot of one colour that replaces the band's.
+/// A highlight of one flat colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case", deny_unknown_fields))]
 pub struct Highlight {
     /// The least N·H that belongs to the highlight.
     pub threshold: f32,
-    /// Display-referred RGB; it replaces the band's colour, and is not multiplied with the surface's.
+    /// Display-referred RGB. It replaces the band's colour and is not multiplied by the surface's colour.
     pub color: Vec3,
-    /// How opaque the highlight is: 0 leaves the band, 1 replaces it.
+    /// The opacity of the highlight, 0..=1.
     pub strength: f32,
-    /// Whether there is a highlight only at N·L >= 0. At grazing angles N·H can be large on a surface that is
-    /// turned away from the light; the chapter does not exclude it.
+    /// Whether the highlight is limited to N·L >= 0. At grazing angles N·H can be large on surfaces that face away from
+    /// the light; Card & Mitchell do not exclude that case.
     pub lit_only: bool,
 }
 
 impl Bands {
-    /// Two colours with a hard transition where N·L crosses zero (Lake 2000), antialiased.
+    /// Two tones with an antialiased border at N·L = 0 (Lake et al. 2000, section 3).
     pub fn hard_shading() -> Self {
         Self { thresholds: vec![0.0], tones: vec![Vec3::splat(0.5), Vec3::ONE], highlight: None, antialias: true }
     }
 
-    /// The three diffuse bands of Card & Mitchell's listing 3, with the constants and the aliased borders printed.
+    /// Three diffuse bands with the constants and the aliased borders of Card & Mitchell 2002, listing 3.
     pub fn listing_3() -> Self {
         Self {
             thresholds: vec![0.1, 0.8],
@@ -52,10 +56,10 @@ impl Bands {
         }
     }
 
-    /// Ambient, diffuse and specular as Card & Mitchell's text has them: one threshold on N·L, one on N·H, and the
-    /// specular colour replaces the other two wherever N·H is above its own.
+    /// An ambient and a diffuse tone separated by a threshold on N·L, and a specular colour above a threshold on N·H, as the
+    /// text of Card & Mitchell 2002 describes cartoon shading.
     ///
-    /// The text gives no numbers: the thresholds and tones are those of listing 3.
+    /// The text states no numbers, so thresholds and tones are those of listing 3.
     pub fn chapter_text() -> Self {
         Self {
             thresholds: vec![0.1],
@@ -70,7 +74,7 @@ impl Bands {
         }
     }
 
-    /// Which rule is broken, if one is; the first found.
+    /// Checks all fields and returns the first violation.
     pub fn validate(&self) -> Result<(), ToonError> {
         if self.tones.is_empty() {
             return Err(ToonError::NoTones);
@@ -107,7 +111,7 @@ impl Bands {
 }
 
 impl Default for Bands {
-    /// Three bands with a cool shadow, and a small highlight on the lit side; antialiased.
+    /// Three antialiased bands with a bluish shadow tone, and a small highlight on the lit side.
     fn default() -> Self {
         Self {
             thresholds: vec![0.05, 0.55],

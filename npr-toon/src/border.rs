@@ -1,23 +1,23 @@
-//! How wide a border between two tones is, on surfaces whose light does not change evenly.
+//! The width of the antialiased border between two tones, limited where screen-space derivatives are unreliable.
 //!
-//! A border is antialiased over the change of N·L across one pixel ([`crate::toon_width`]), so it is a pixel wide at
-//! any distance. That change comes from derivatives, and there are two places where these do not say what happens in
-//! the pixel:
+//! A border is antialiased over the change of N·L across one pixel ([`crate::toon_width`]), so it is one pixel wide at
+//! any distance. The change is estimated from derivatives, which are unreliable in two cases:
 //!
-//! - *Silhouettes.* Where a surface turns away from the eye N·L changes without bound across a pixel, and of the pixel
-//!   only a part is surface. A border as wide as the whole of N·L mixes all tones into one: gray specks along the
-//!   outline that come and go as the model moves. The same happens at creases, where a derivative is taken across
-//!   pixels of which one lies outside of its triangle, and everywhere on models of a few pixels.
-//! - *Flat faces.* Where N·L does not change, a border has no width, and a face whose N·L is at a threshold to within
-//!   a rounding breaks into specks of both tones.
+//! - *Silhouettes.* Where a surface turns away from the eye, N·L changes without bound across a pixel that the surface
+//!   covers only in part. A border as wide as the whole range of N·L mixes all tones, which gives gray specks along the
+//!   outline that flicker as the model moves. The same happens at creases, where a derivative is taken between pixels of
+//!   which one lies outside its triangle, and on models that cover only a few pixels.
+//! - *Flat faces.* Where N·L is constant the border has no width, and on a face whose N·L equals a threshold up to
+//!   rounding, pixels of both tones alternate.
 //!
-//! [`toon_border_width`] therefore stays within [`MIN_BORDER`] and [`MAX_BORDER`]. On a sphere of radius r pixels N·L
-//! changes by about 1/r, so borders are a pixel wide from a radius of 2 pixels to one of 16,384; on what is smaller
-//! they are narrower, on what is flatter wider.
+//! [`toon_border_width`] therefore limits the width to [`MIN_BORDER`]..=[`MAX_BORDER`]. On a sphere with a radius of r
+//! pixels N·L changes by about 1/r per pixel, so borders are one pixel wide for radii from 2 to 16,384 pixels, narrower on
+//! smaller spheres and wider on larger ones.
 //!
-//! The largest width is measured: three gray tones (the thresholds of [`crate::Bands::default`]) on spheres that move
-//! by 1/16 pixel a frame, against the mean over 24 × 24 samples of the part of the pixel that is sphere. What the
-//! picture changes from frame to frame more or less than it should, in 1/1000 of white, root mean square (largest):
+//! The upper limit is a measured optimum. The table lists the error of the frame-to-frame change of a pixel, in 1/1000 of
+//! white, as root mean square (maximum), by the limit on the width: three gray tones (the thresholds of
+//! [`crate::Bands::default`]) on spheres that move by 1/16 pixel per frame, compared with the mean of 24 × 24 samples over
+//! the covered part of the pixel.
 //!
 //! | radius, px | no limit | 1 | 0.5 | 0.25 | 0.125 |
 //! | --- | --- | --- | --- | --- | --- |
@@ -26,19 +26,19 @@
 //! | 20 | 2.8 (140) | 2.4 (80) | 1.9 (60) | 1.4 (40) | 1.6 (80) |
 //! | 200 | 0.6 (170) | 0.5 (130) | 0.5 (110) | 0.5 (100) | 0.4 (60) |
 //!
-//! 0.5 is the smallest limit that is at no radius notably worse than a larger one.
+//! 0.5 is the smallest limit that is at no radius notably worse than a larger limit.
 
 use crate::toon_width;
 
-/// The narrowest border, in N·L: 2^-14. A rounding of f32 then moves a tone by less than 1/255.
+/// The minimum width of a border in units of N·L: 2^-14. An f32 rounding error of N·L then changes a tone by less than
+/// 1/255.
 pub const MIN_BORDER: f64 = 1.0 / 16384.0;
 
-/// The widest border, in N·L.
+/// The maximum width of a border in units of N·L.
 pub const MAX_BORDER: f64 = 0.5;
 
-/// How wide a border is, in units of N·L (or N·H), from the derivatives along x and y, per pixel:
-/// [`crate::toon_width`] within [`MIN_BORDER`]..=[`MAX_BORDER`]. Derivatives that are infinite or NaN count as
-/// [`MAX_BORDER`] and [`MIN_BORDER`].
+/// The width of a border in units of N·L (or N·H), from the derivatives along x and y per pixel: [`crate::toon_width`]
+/// clamped to [`MIN_BORDER`]..=[`MAX_BORDER`]. Infinite derivatives give [`MAX_BORDER`], NaN gives [`MIN_BORDER`].
 ///
 /// ```
 /// use npr_toon::border::{MAX_BORDER, MIN_BORDER, toon_border_width};

@@ -1,4 +1,4 @@
-//! Banded light: cartoon shading with any number of N·L bands and an N·H highlight, with ramps, and with two lights.
+//! Cartoon shading: any number of bands of N·L with an N·H highlight, colour ramps, and two-light painting.
 //!
 //! ```
 //! use glam::DVec3;
@@ -12,17 +12,16 @@
 //! # Ok::<(), npr_toon::ToonError>(())
 //! ```
 //!
-//! The same things under the same names stand here twice: as Rust functions in f64, the reference, and in
-//! [`WGSL`], a library without bindings or entry points to put in front of a shader. [`ToonUniform`] is what
-//! carries [`Bands`] from one to the other. Functions that stand in both begin with `toon_`; [`row::toon_row`],
-//! [`table::toon_table`] and [`normal::toon_n_dot_l_across`], which read texels and vertices, stand in Rust only.
-//! The example `wgpu_toon` is such a shader, with all of wgpu that it takes.
+//! Every function exists twice under one name with the prefix `toon_`: in Rust in f64 as the reference, and in [`WGSL`], a
+//! library without bindings or entry points to prepend to a shader. [`ToonUniform`] transfers [`Bands`] to the shader.
+//! [`row::toon_row`], [`table::toon_table`] and [`normal::toon_n_dot_l_across`], which read texels and vertices, exist in
+//! Rust only. The example `wgpu_toon` is a complete wgpu program that uses the library.
 //!
-//! - [`Bands`], [`toon_shade`]: steps of N·L and a highlight, here at the crate's root.
-//! - [`ramp`], [`row`]: any colours by light, computed from stops or read from an image.
-//! - [`table`], [`painter`]: two lights, each an axis of a 2D ramp, under one colour.
-//! - [`half_lambert`]: light that reaches around; [`source`]: lights, and several of them as one.
-//! - [`border`]: how wide a border is where derivatives are of no use; [`normal`]: what interpolated normals cost.
+//! - [`Bands`], [`toon_shade`]: bands of N·L and a highlight, at the crate's root.
+//! - [`ramp`], [`row`]: colour ramps over the diffuse term, computed from stops or read from an image.
+//! - [`table`], [`painter`]: two lights, one per axis of a 2D ramp, with one common light colour.
+//! - [`half_lambert`]: half-Lambert lighting; [`source`]: lights, and the aggregate of several lights.
+//! - [`border`]: limits on the width of antialiased borders; [`normal`]: errors of interpolated normals.
 //!
 //! # Sources
 //!
@@ -30,29 +29,30 @@
 //!   Animation*, NPAR 2000. Two colours, the border where N·L crosses zero, antialiased by a 1D texture
 //!   ([`Bands::hard_shading`]).
 //! - D. Card, J. L. Mitchell: *Non-Photorealistic Rendering with Pixel and Vertex Shaders*, in *Direct3D ShaderX*,
-//!   2002, listings 2 (vertex shader) and 3 (pixel shader). The bands are computed, no texture is read. The
-//!   light of *Half-Life* is told in its section "Gooch Lighting".
+//!   2002, listings 2 (vertex shader) and 3 (pixel shader). The bands are computed, no texture is read. Its section
+//!   "Gooch Lighting" describes the lighting of *Half-Life*.
 //! - *The Evolution of a Cartoon Renderer*, GDNet: the painter, listings 1 and 2, figures 1 and 2.
 //!
-//! What was wrong in print: the last instruction but one of listing 2, which normalises the half vector, has lost its
-//! opcode (`mul`). The text describes one threshold on N·L and one on N·H; listing 3 has two on N·L and never
-//! reads the half vector. Both are here, as [`Bands::chapter_text`] and [`Bands::listing_3`].
+//! Errors in print: the second to last instruction of Card & Mitchell's listing 2, which normalises the half vector, lacks
+//! its opcode (`mul`). Their text describes one threshold on N·L and one on N·H; their listing 3 has two on N·L and never
+//! reads the half vector. Both variants are provided: [`Bands::chapter_text`] and [`Bands::listing_3`].
 //!
 //! # Colours
 //!
-//! All colours are display-referred (sRGB-encoded, 0..=1), as artists pick them and as the listings compute them. A
-//! band's tone *multiplies* the surface's colour; on a white surface it is the colour that one sees.
+//! All colours are display-referred (sRGB-encoded, 0..=1), as in the listings. A band's tone *multiplies* the surface's
+//! colour.
 //!
 //! # Borders
 //!
-//! A hard band is a sum of steps, and a pixel's colour the mean of the bands that it covers. Where N·L changes
-//! linearly across the pixel by `width`, the share of the pixel above a threshold t is `clamp((N·L - t) / width +
-//! 1/2, 0, 1)`, and band i covers what is above its lower border less what is above its upper one. These shares are
-//! never negative and sum to 1, however many borders fall into one pixel, and where they are 0 or 1 the tone comes
-//! out bit for bit. In a shader the width is [`border::toon_border_width`] of N·L's derivatives. (Mixing border by
-//! border, `mix(c, tone, share)`, agrees for one border in a pixel, but counts a band thinner than a pixel wrongly.)
-//! What is left is that a pixel is a square and its gradient seldom runs along a side. Over all directions that is 7% of a
-//! hard border's error, root mean square; the exact share of a square takes three times the operations, for each border.
+//! The colour of a pixel is the mean over the bands that it covers. Where N·L changes linearly across the pixel by
+//! `width`, the fraction of the pixel above a threshold t is `clamp((N·L - t) / width + 1/2, 0, 1)`, and the fraction
+//! covered by a band is the fraction above its lower threshold minus the fraction above its upper threshold. These
+//! fractions are never negative and sum to 1, however many borders fall into one pixel, and where they are 0 or 1 the
+//! tone is reproduced exactly. In a shader the width is [`border::toon_border_width`] of the derivatives of N·L.
+//! Blending border by border, `mix(c, tone, fraction)`, agrees for one border per pixel but misweights bands thinner than
+//! a pixel. The remaining error comes from treating the pixel as one-dimensional along the gradient: over all directions
+//! it is 7 % of the error of a hard border (root mean square). The exact area of a square would take three times the
+//! operations per border.
 #![warn(missing_docs)]
 
 mod bands;
@@ -68,7 +68,7 @@ pub mod source;
 pub mod table;
 mod uniform;
 
-/// The crate of the vectors and matrices in this API.
+/// The vector and matrix types in this API.
 pub use glam;
 
 pub use bands::{Bands, Highlight};
@@ -82,15 +82,15 @@ pub use uniform::{MAX_BANDS, ToonUniform};
 /// The functions of this crate in WGSL: no bindings, no entry points, every name begins with `toon_` or `Toon`.
 ///
 /// Set the override [`TOON_BANDS_OVERRIDE`] to the number of bands in use (in wgpu,
-/// `PipelineCompilationOptions::constants`), and [`ramp::TOON_STOPS_OVERRIDE`] to that of stops. Unset, the result is
-/// the same and slower.
+/// `PipelineCompilationOptions::constants`), and [`ramp::TOON_STOPS_OVERRIDE`] to the number of stops. If unset, the result
+/// is the same but slower to compute.
 ///
-/// `toon_band` and `toon_shade` take [`ToonUniform`] by value, as WGSL cannot pass a uniform by reference. Since the
-/// loop over the bands has a length that is known when the pipeline is made, compilers unroll it and read only the
-/// fields they need; with a length from the uniform a software rasteriser copies the whole struct for every pixel,
-/// and took ten times as long.
+/// `toon_band` and `toon_shade` take [`ToonUniform`] by value, since WGSL functions cannot take a uniform by reference.
+/// The length of the loop over the bands is known when the pipeline is created, so compilers unroll it and read only the
+/// required fields. With a length from the uniform, a software rasteriser copied the whole struct for each pixel and took
+/// ten times as long.
 pub const WGSL: &str = concat!(
-    include_str!("toon.wgsl"),
+    include_str!("light.wgsl"),
     include_str!("border.wgsl"),
     include_str!("half_lambert.wgsl"),
     include_str!("source.wgsl"),
@@ -100,8 +100,8 @@ pub const WGSL: &str = concat!(
     include_str!("painter.wgsl"),
 );
 
-/// The name of the override in [`WGSL`] that says how many bands its functions look at: 1..=[`MAX_BANDS`], at least
-/// as many as [`ToonUniform::count`], by default all.
+/// The name of the override in [`WGSL`] for the number of bands that its functions read: 1..=[`MAX_BANDS`] and at least
+/// [`ToonUniform::count`]. The default is [`MAX_BANDS`].
 pub const TOON_BANDS_OVERRIDE: &str = "toon_bands";
 
 /// Compiles the example of the README.

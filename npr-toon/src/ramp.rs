@@ -1,12 +1,11 @@
-//! 1D ramps: light in, colour out.
+//! 1D colour ramps over a diffuse term.
 //!
-//! A ramp is looked up with N·L, with what [`crate::half_lambert`] makes of it, or with anything else that says how
-//! much light there is; its stops' positions are in the same unit. [`crate::Bands`] are a hard ramp
-//! ([`Ramp::from_bands`]); as an image there is [`crate::row`].
+//! A ramp is evaluated at N·L, at the result of [`crate::half_lambert`], or at any other scalar; the positions of its stops
+//! are in the same unit. [`crate::Bands`] are a hard ramp ([`Ramp::from_bands`]). [`crate::row`] reads ramps from images.
 //!
-//! Lake 2000 and the simplest painter of the cartoon renderer read such a ramp from a 1D texture, whose filter
-//! antialiases the steps (over a part of a texel, wide or narrow as the surface lies). Computed from stops a hard step
-//! is antialiased over one pixel, everywhere.
+//! Lake et al. 2000 and the simplest painter of *The Evolution of a Cartoon Renderer* read such a ramp from a 1D texture.
+//! Texture filtering then antialiases a step over a fraction of a texel, whose width in pixels depends on the surface.
+//! Ramps that are computed from stops are antialiased over one pixel.
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
@@ -15,59 +14,66 @@ use crate::error::is_color;
 use crate::light::saturate;
 use crate::{Bands, ToonError, toon_coverage};
 
-/// How many stops a [`RampUniform`] holds.
+/// The maximum number of stops of a [`RampUniform`].
 pub const MAX_STOPS: usize = 8;
 
-/// The name of the override in [`crate::WGSL`] that says how many stops `toon_ramp` looks at: 1..=[`MAX_STOPS`], at
-/// least as many as any ramp has, by default all. Like [`crate::TOON_BANDS_OVERRIDE`] it makes a shader faster, and
-/// changes nothing else.
+/// The name of the override in [`crate::WGSL`] for the number of stops that `toon_ramp` reads: 1..=[`MAX_STOPS`] and at
+/// least the number of stops of any ramp. The default is [`MAX_STOPS`]. A smaller value only makes the shader faster, like
+/// [`crate::TOON_BANDS_OVERRIDE`].
 pub const TOON_STOPS_OVERRIDE: &str = "toon_stops";
 
-/// Finite, so that the shader meets no infinity; beyond the reach of any border's ramp.
-const UNREACHED: f32 = 1e4;
+/// The position of unused stops in the uniform: finite, and above any value that a ramp is evaluated at.
+const UNUSED_POSITION: f32 = 1e4;
 
-/// A colour at a place.
+/// A colour at a position of a ramp.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case", deny_unknown_fields))]
 pub struct RampStop {
-    /// Where, in the unit that the ramp is looked up with.
+    /// The position, in the unit of the ramp's argument.
     pub at: f32,
-    /// Display-referred RGB, a factor on the surface's colour.
+    /// A display-referred RGB factor on the surface's colour.
     pub color: Vec3,
 }
 
-/// What is between two stops.
+/// The interpolation between two stops.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum RampBlend {
-    /// The first one's colour, up to the second.
+    /// The colour of the lower stop, up to the next stop.
     #[default]
     Hard,
-    /// From the one to the other, linear in display space.
+    /// Linear interpolation in display-referred values.
     Smooth,
 }
 
-/// Colours by light. Below the first stop is the first colour, above the last the last.
+/// A colour ramp. Below the first stop it has the colour of the first stop, above the last stop that of the last.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case", deny_unknown_fields))]
 pub struct Ramp {
-    /// Strictly ascending; at least one. A value equal to a stop's position has its colour.
+    /// The stops in strictly ascending order, at least one. A value equal to a stop's position has that stop's colour.
     pub stops: Vec<RampStop>,
-    /// What is between them.
+    /// The interpolation between stops.
+    #[cfg_attr(feature = "serde", serde(default))]
     pub blend: RampBlend,
 }
 
 impl Ramp {
-    /// The bands as a hard ramp over N·L, without their highlight. Its first stop is at -1, or 1 below the first
-    /// threshold if that is lower.
+    /// The bands as a hard ramp over N·L, without the highlight. The first stop is at -1, or at 1 below the first threshold
+    /// if the first threshold is negative.
     pub fn from_bands(bands: &Bands) -> Result<Self, ToonError> {
         bands.validate()?;
         let first = bands.thresholds.first().map_or(-1.0, |&threshold| (threshold - 1.0).min(-1.0));
-        let places = std::iter::once(first).chain(bands.thresholds.iter().copied());
-        let stops = places.zip(&bands.tones).map(|(at, &color)| RampStop { at, color }).collect();
+        let positions = std::iter::once(first).chain(bands.thresholds.iter().copied());
+        let stops = positions.zip(&bands.tones).map(|(at, &color)| RampStop { at, color }).collect();
         let ramp = Self { stops, blend: RampBlend::Hard };
         ramp.validate()?;
         Ok(ramp)
     }
 
-    /// Which rule is broken, if one is; the first found.
+    /// Checks all fields and returns the first violation.
     pub fn validate(&self) -> Result<(), ToonError> {
         if self.stops.is_empty() {
             return Err(ToonError::NoStops);
@@ -89,9 +95,9 @@ impl Ramp {
 
 /// The ramp's colour at `x`.
 ///
-/// A hard ramp gives the mean over a pixel across which `x` changes linearly by `width`, as [`crate::toon_band_smooth`]
-/// does; width 0 is the colour at the pixel's centre. A smooth ramp has no borders, and takes no notice of `width`.
-/// Not a number counts as dark.
+/// For a hard ramp, the mean over a pixel across which `x` changes linearly by `width`, as for
+/// [`crate::toon_band_smooth`]; width 0 gives the colour at the pixel's centre. A smooth ramp has no borders and ignores
+/// `width`. NaN gives the colour of the first stop.
 ///
 /// ```
 /// use glam::{DVec3, Vec3};
@@ -107,7 +113,7 @@ impl Ramp {
 /// ```
 pub fn toon_ramp(ramp: &Ramp, x: f64, width: f64) -> DVec3 {
     let mut color = DVec3::ZERO;
-    // How much of the colour is this stop's or a later one's; all of it at the first.
+    // The total weight of this stop and all later stops; 1 for the first.
     let mut share = 1.0;
     for (i, stop) in ramp.stops.iter().enumerate() {
         let above = match (ramp.stops.get(i + 1), ramp.blend) {
@@ -127,10 +133,9 @@ pub fn toon_ramp(ramp: &Ramp, x: f64, width: f64) -> DVec3 {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct RampUniform {
-    /// The stops' colours and positions. Those that are not in use repeat the last colour, at 10,000, which nothing
-    /// reaches.
+    /// The colours and positions of the stops. Unused entries repeat the last colour at position 10,000.
     pub stops: [[f32; 4]; MAX_STOPS],
-    /// 1: [`RampBlend::Smooth`].
+    /// 1 for [`RampBlend::Smooth`], else 0.
     pub is_smooth: u32,
     /// Unused, 0.
     pub padding: [u32; 3],
@@ -144,7 +149,7 @@ impl RampUniform {
             return Err(ToonError::TooManyStops { stops: ramp.stops.len(), max: MAX_STOPS });
         }
         let last = ramp.stops[ramp.stops.len() - 1];
-        let mut stops = [last.color.extend(UNREACHED).to_array(); MAX_STOPS];
+        let mut stops = [last.color.extend(UNUSED_POSITION).to_array(); MAX_STOPS];
         for (to, from) in stops.iter_mut().zip(&ramp.stops) {
             *to = from.color.extend(from.at).to_array();
         }

@@ -1,23 +1,23 @@
-// 1D ramps. The twin of `ramp.rs`.
+// 1D ramps. The counterpart of `ramp.rs`.
 
 const TOON_MAX_STOPS: u32 = 8u;
-// How many stops toon_ramp reads; see toon_bands.
+// The number of stops that toon_ramp reads; see toon_bands.
 override toon_stops: u32 = TOON_MAX_STOPS;
 
 struct ToonRamp {
-    // rgb the colour, w the position; those not in use repeat the last colour, far above 1.
+    // rgb the colour, w the position. Unused entries repeat the last colour at position 10,000.
     stops: array<vec4<f32>, TOON_MAX_STOPS>,
-    // 1: from one to the next, 0: steps.
+    // 1: linear interpolation, 0: steps.
     is_smooth: u32,
     padding_a: u32,
     padding_b: u32,
     padding_c: u32,
 }
 
-// The ramp's colour at x; a step is antialiased over a change of x by width.
+// The colour of the ramp at x. width: the change of x across the pixel, over which steps are antialiased.
 fn toon_ramp(ramp: ToonRamp, x: f32, width: f32) -> vec3<f32> {
     var color = vec3<f32>(0.0);
-    // How much of the colour is this stop's or a later one's; all of it at the first.
+    // The total weight of this stop and all later stops; 1 for the first.
     var share = 1.0;
     for (var i = 0u; i + 1u < toon_stops; i++) {
         let here = ramp.stops[i];

@@ -1,51 +1,53 @@
-//! A ramp as a row of an image, and how it is sampled.
+//! A ramp as a row of image texels, and its sampling.
 //!
-//! The coordinate along a row of n texels is t = n (x − from) / (to − from): texel i covers i..i+1, its centre is at
-//! i + 1/2. Clamp addressing: what is left or right of the row is its first or last texel.
+//! The coordinate along a row of n texels is t = n (x − from) / (to − from): texel i covers i..i+1 and its centre is at
+//! i + 1/2. Addressing is clamped: beyond the ends of the row its first or last texel continues.
 //!
 //! - *Nearest*: texel floor(t).
 //! - *Linear*: with s = t − 1/2 the texels floor(s) and floor(s) + 1, mixed by s − floor(s).
 //!
-//! That is what Vulkan, Direct3D and Metal do with a normalised coordinate t/n, so a sampler set to clamp-to-edge gives
-//! the same, but for roundings of its own: it may count the share in steps of 1/256, it may round what it mixes to 8
-//! bits, and a t within a rounding of a texel's border may fall on the other side. (Mesa's software driver is up to 1/255
-//! off in a row and 1.5/255 in a table, between black and white.) [`crate::WGSL`] has no bindings: it says which texels
-//! to load (`toon_row_nearest`, `toon_row_taps`), and `textureLoad` and `mix` do the rest, with the share in f32.
+//! Vulkan, Direct3D and Metal define sampling at the normalised coordinate t/n in the same way, so a sampler with
+//! clamp-to-edge addressing gives the same result up to rounding: it may quantise weights to 1/256, it may round the
+//! result to 8 bits, and a t within rounding of a texel's border may select the neighbour. (Mesa's software driver differs
+//! by up to 1/255 in a row and 1.5/255 in a table between black and white.) [`crate::WGSL`] has no bindings: it computes
+//! which texels to load (`toon_row_nearest`, `toon_row_taps`); the shader calls `textureLoad` and `mix` with f32 weights.
 //!
-//! Texels are display-referred; put them into a `Rgba8Unorm` texture, not `Rgba8UnormSrgb`. Alpha is not read.
+//! Texels are display-referred: use the texture format `Rgba8Unorm`, not `Rgba8UnormSrgb`. Alpha is not read.
 
 use glam::DVec3;
 
 use crate::ToonError;
 use crate::ramp::{Ramp, toon_ramp};
 
-/// How an image is read between its texels' centres.
+/// The interpolation between texel centres.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum TexelFilter {
-    /// Steps.
+    /// The nearest texel.
     #[default]
     Nearest,
-    /// From texel to texel.
+    /// Linear interpolation.
     Linear,
 }
 
-/// A row of texels over a range of light.
+/// A row of texels over a range of the diffuse term.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RampRow {
-    /// From dark to light; at least one.
+    /// RGBA texels from dark to light, at least one.
     pub texels: Vec<[u8; 4]>,
-    /// What the row is looked up with at the left side of its first texel: 0 where N·L is to be clamped, as in the
-    /// cartoon renderer; −1 for all of N·L.
+    /// The argument at the left edge of the first texel: 0 to clamp N·L as in *The Evolution of a Cartoon Renderer*, −1 for
+    /// the full range of N·L.
     pub from: f32,
-    /// And at the right side of its last, 1 for N·L.
+    /// The argument at the right edge of the last texel: 1 for N·L.
     pub to: f32,
-    /// Between the texels' centres.
+    /// The interpolation between texel centres.
     pub filter: TexelFilter,
 }
 
 impl RampRow {
-    /// A row of `count` texels from a ramp, so that none need be painted: the ramp's colour at each texel's centre,
-    /// clamped to 0..=1 and rounded to 8 bits. A hard ramp's steps come to lie between texels.
+    /// Samples a ramp at the centres of `count` texels, clamped to 0..=1 and rounded to 8 bits. The steps of a hard ramp are
+    /// moved to texel borders.
     pub fn from_ramp(ramp: &Ramp, count: u32, from: f32, to: f32, filter: TexelFilter) -> Result<Self, ToonError> {
         ramp.validate()?;
         let step = (f64::from(to) - f64::from(from)) / f64::from(count);
@@ -55,7 +57,7 @@ impl RampRow {
         Ok(row)
     }
 
-    /// Refuses a row without texels, and ends that are not ascending or not a finite number apart.
+    /// Checks that there is a texel and that the ends are ascending with a finite difference.
     pub fn validate(&self) -> Result<(), ToonError> {
         if self.texels.is_empty() {
             return Err(ToonError::Texels { width: 0, height: 1, texels: 0 });
@@ -66,32 +68,32 @@ impl RampRow {
     }
 }
 
-/// Two texels of a row, and what share of the colour is the second's.
+/// Two texels of a row and the weight of the second.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RowTaps {
-    /// Index of the left one.
+pub struct ToonTaps {
+    /// Index of the left texel.
     pub left: u32,
-    /// Index of the right one; at the row's ends the same.
+    /// Index of the right texel; equal to `left` at the last texel.
     pub right: u32,
-    /// 0..=1.
+    /// The weight of the right texel, 0..1.
     pub share: f64,
 }
 
-/// Which of `count` texels is nearest to `x`, if the row reaches from `from` to `to`. Not a number is the first.
-pub fn toon_row_nearest(x: f64, from: f64, to: f64, count: u32) -> u32 {
-    texel((x - from) / (to - from) * f64::from(count), count)
+/// The index of the texel nearest to `x` in a row of `count` texels that covers `start`..`end`. NaN gives 0.
+pub fn toon_row_nearest(x: f64, start: f64, end: f64, count: u32) -> u32 {
+    texel((x - start) / (end - start) * f64::from(count), count)
 }
 
-/// Which of `count` texels linear filtering mixes at `x`, if the row reaches from `from` to `to`. Not a number is the
-/// first.
-pub fn toon_row_taps(x: f64, from: f64, to: f64, count: u32) -> RowTaps {
-    // Beyond the first and last centre there is nothing to mix, and NaN becomes the first.
+/// The texels that linear filtering blends at `x` in a row of `count` texels that covers `start`..`end`. NaN gives the
+/// first texel.
+pub fn toon_row_taps(x: f64, start: f64, end: f64, count: u32) -> ToonTaps {
+    // Clamped to the first and last texel centre; `max` turns NaN into 0.
     let last = f64::from(count.max(1) - 1);
-    let s = ((x - from) / (to - from) * f64::from(count) - 0.5).max(0.0).min(last);
-    RowTaps { left: texel(s, count), right: texel(s + 1.0, count), share: s - s.floor() }
+    let s = ((x - start) / (end - start) * f64::from(count) - 0.5).max(0.0).min(last);
+    ToonTaps { left: texel(s, count), right: texel(s + 1.0, count), share: s - s.floor() }
 }
 
-/// The row's colour at `x`, without its alpha.
+/// The display-referred RGB of the row at `x`.
 ///
 /// ```
 /// use npr_toon::row::{RampRow, TexelFilter, toon_row};
@@ -102,30 +104,30 @@ pub fn toon_row_taps(x: f64, from: f64, to: f64, count: u32) -> RowTaps {
 /// # Ok::<(), npr_toon::ToonError>(())
 /// ```
 pub fn toon_row(row: &RampRow, x: f64) -> DVec3 {
-    let (from, to, count) = (f64::from(row.from), f64::from(row.to), row.texels.len() as u32);
+    let (start, end, count) = (f64::from(row.from), f64::from(row.to), row.texels.len() as u32);
     let color = |i: u32| row.texels.get(i as usize).map_or(DVec3::ZERO, |&texel| from_texel(texel));
     match row.filter {
-        TexelFilter::Nearest => color(toon_row_nearest(x, from, to, count)),
+        TexelFilter::Nearest => color(toon_row_nearest(x, start, end, count)),
         TexelFilter::Linear => {
-            let taps = toon_row_taps(x, from, to, count);
+            let taps = toon_row_taps(x, start, end, count);
             color(taps.left).lerp(color(taps.right), taps.share)
         }
     }
 }
 
-/// The texel that covers `t`; the first and the last go on for ever.
+/// The index of the texel that covers `t`, clamped to the row.
 fn texel(t: f64, count: u32) -> u32 {
-    // `as` saturates, and takes NaN for 0.
+    // `as` saturates, and converts NaN to 0.
     (t.floor() as u32).min(count.max(1) - 1)
 }
 
-/// Display-referred RGB as an opaque texel.
+/// Display-referred RGB, clamped to 0..=1, as an opaque 8-bit texel.
 pub(crate) fn to_texel(color: DVec3) -> [u8; 4] {
     let [r, g, b] = color.to_array().map(|c| (c.clamp(0.0, 1.0) * 255.0).round() as u8);
     [r, g, b, 255]
 }
 
-/// A texel's RGB.
+/// The RGB of a texel, 0..=1.
 pub(crate) fn from_texel(texel: [u8; 4]) -> DVec3 {
     DVec3::new(f64::from(texel[0]), f64::from(texel[1]), f64::from(texel[2])) / 255.0
 }

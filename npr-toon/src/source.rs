@@ -1,64 +1,69 @@
-//! Lights, and several of them taken as one.
+//! Lights, and the aggregate of several lights.
 //!
-//! Brightness and colour are apart, because they act apart: brightness moves borders ([`crate::painter`]), colour does
-//! not. There is no falloff with distance: neither of the papers has one, and a step that fades is none.
+//! Brightness and colour are separate parameters because they have different effects: brightness moves the borders between
+//! tones ([`crate::painter`]), colour does not. There is no falloff with distance, as in both sources.
 
 use glam::{DVec3, Vec3};
 
 use crate::ToonError;
 use crate::error::is_color;
 
-/// Where a light is.
+/// The direction or position of a light.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case", rename_all_fields = "kebab-case", deny_unknown_fields))]
 pub enum LightPlace {
-    /// Far away: its direction is the same everywhere.
+    /// A light at infinite distance.
     Directional {
-        /// From the surface to the light, of any length but zero.
+        /// The direction from the surface to the light, of any non-zero length.
         to_light: Vec3,
     },
-    /// At a point.
+    /// A point light.
     Positional {
-        /// In the space of the surface's points.
+        /// Its position, in the space of the surface points.
         position: Vec3,
     },
 }
 
-/// One light.
+/// A light.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case", deny_unknown_fields))]
 pub struct Light {
-    /// Where it is.
+    /// Its direction or position.
     pub place: LightPlace,
-    /// Display-referred RGB, a factor on what the light falls on.
+    /// A display-referred RGB factor on the colours of lit surfaces.
     pub color: Vec3,
-    /// 1 is full, 0 is off; above 1 it reaches further around.
+    /// The factor on N·L, finite and not negative; 0 switches the light off.
     pub brightness: f32,
 }
 
 impl Light {
-    /// A white light of full brightness from a direction.
+    /// A white directional light of brightness 1.
     pub fn directional(to_light: Vec3) -> Self {
         Self { place: LightPlace::Directional { to_light }, color: Vec3::ONE, brightness: 1.0 }
     }
 
-    /// A white light of full brightness at a point.
+    /// A white point light of brightness 1.
     pub fn positional(position: Vec3) -> Self {
         Self { place: LightPlace::Positional { position }, color: Vec3::ONE, brightness: 1.0 }
     }
 }
 
-/// Refuses directions of no length, and what is negative or not finite, or whose square is not; the first found.
+/// Checks all lights and returns the first violation: a direction that f32 cannot normalise, a position whose squared
+/// length overflows f32, or a negative or non-finite colour or brightness.
 pub fn validate(lights: &[Light]) -> Result<(), ToonError> {
     for (index, light) in lights.iter().enumerate() {
         match light.place {
             LightPlace::Directional { to_light: value } => {
-                // What a shader can normalise, too: see `toon_unit`.
+                // The bounds of `toon_unit` in the shader.
                 let squared = value.length_squared();
                 if squared < 1e-30 || !squared.is_finite() {
                     return Err(ToonError::LightDirection { index, value });
                 }
             }
             LightPlace::Positional { position: value } => {
-                // So far away the shader's light would go out.
+                // The squared distance would overflow in the shader's f32 normalisation.
                 if !value.length_squared().is_finite() {
                     return Err(ToonError::LightPosition { index, value });
                 }
@@ -74,21 +79,21 @@ pub fn validate(lights: &[Light]) -> Result<(), ToonError> {
     Ok(())
 }
 
-/// The unit vector from a point to a light; zero at the light's own position.
-pub fn toon_to_light(place: LightPlace, at: DVec3) -> DVec3 {
-    match place {
+/// The unit vector from `position` to a light; zero at the position of a point light.
+pub fn toon_to_light(light: LightPlace, position: DVec3) -> DVec3 {
+    match light {
         LightPlace::Directional { to_light } => to_light.as_dvec3(),
-        LightPlace::Positional { position } => position.as_dvec3() - at,
+        LightPlace::Positional { position: light } => light.as_dvec3() - position,
     }
     .normalize_or_zero()
 }
 
-/// One colour for all lights: the mean of theirs, each by its brightness. White where none is bright.
+/// The common colour of several lights: the mean of their colours weighted by brightness. White if all are off.
 ///
-/// The cartoon renderer multiplies with one colour, since two colours that change places across a surface "create a
-/// gradient that spoils the stepped shading", but does not say how it combines them. The mean, because: one light, or
-/// several of one colour, keep it; it is no brighter than its lights, as brightness has acted on the
-/// border's place already; it does not depend on the lights' order; and a light that fades out leaves no jump.
+/// *The Evolution of a Cartoon Renderer* multiplies by one colour, since two colours that vary across a surface "create a
+/// gradient that spoils the stepped shading", but does not define the combination. The weighted mean keeps the colour of
+/// a single light and of several lights of equal colour, is no brighter than its lights (brightness has already moved the
+/// borders), does not depend on the order of the lights, and is continuous as a light fades out.
 pub fn combined_color(lights: &[Light]) -> DVec3 {
     let brightness: f64 = lights.iter().map(|light| f64::from(light.brightness)).sum();
     if brightness > 0.0 {
@@ -99,24 +104,24 @@ pub fn combined_color(lights: &[Light]) -> DVec3 {
     }
 }
 
-/// Several lights as one.
+/// One light that replaces several lights.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aggregate {
-    /// Unit vector to the light; zero where the lights cancel out.
+    /// The unit vector to the light; zero where the lights cancel.
     pub to_light: DVec3,
-    /// 0 where they cancel out, the sum of theirs where they come from one direction.
+    /// The length of the sum of the unit vectors to the lights, each times its brightness.
     pub brightness: f64,
-    /// [`combined_color`].
+    /// The [`combined_color`] of the lights.
     pub color: DVec3,
 }
 
-/// The one light that stands for all of them at a point, for instance an object's centre, so that it is one for all
-/// of the object (Half-Life, after Card & Mitchell).
+/// The aggregate of several lights at one position, for instance the centre of an object (*Half-Life*, after Card &
+/// Mitchell 2002, section "Gooch Lighting").
 ///
-/// It is the sum A of the lights' directions, each by its brightness b. For light that is not clamped at zero, such as
-/// [`crate::half_lambert`], nothing is lost by it: Σ b (N·L) = N·A for every normal. How the sum was formed is not said
-/// in the chapter; this is the one for which that holds.
-pub fn aggregate(lights: &[Light], at: DVec3) -> Aggregate {
-    let sum: DVec3 = lights.iter().map(|l| toon_to_light(l.place, at) * f64::from(l.brightness)).sum();
+/// It is the sum A of the unit vectors to the lights, each times its brightness b. For a diffuse term that is not clamped
+/// at zero, such as [`crate::half_lambert`], this is exact: Σ b (N·L) = N·A for every normal. Card & Mitchell do not state
+/// how the sum is formed.
+pub fn aggregate(lights: &[Light], position: DVec3) -> Aggregate {
+    let sum: DVec3 = lights.iter().map(|l| toon_to_light(l.place, position) * f64::from(l.brightness)).sum();
     Aggregate { to_light: sum.normalize_or_zero(), brightness: sum.length(), color: combined_color(lights) }
 }

@@ -1,16 +1,16 @@
-//! 2D ramps: one light across, another down.
+//! 2D ramps: the diffuse term of one light along u, that of another along v.
 //!
-//! *The Evolution of a Cartoon Renderer* looks its shade up in an image, figure 2: dark in the upper left corner
-//! where neither light reaches, and lighter in steps toward the right, where the first is bright, and the bottom, where
-//! the second is. Here it is computed from two 1D ramps ([`Ramp2d`], [`toon_ramp_2d`]); it can be turned into an image
-//! ([`RampTable::from_ramps`]) or come from one that was painted.
+//! *The Evolution of a Cartoon Renderer* looks up the tone in an image (figure 2): dark in the upper left corner, where
+//! both lights are dim, and lighter in steps to the right with the first light and downwards with the second. Here it is
+//! computed from two 1D ramps ([`Ramp2d`], [`toon_ramp_2d`]), which can be converted to an image
+//! ([`RampTable::from_ramps`]); painted images can be used as well.
 //!
-//! How two ramps become one is not said there. Here the *lighter* one shows, component by component:
-//! max(a(u), b(v)). Where one light does not reach, the other's ramp is seen as it is; steps stay steps, at the places
-//! that the two ramps give them; a second light never darkens; and both in the dark is as dark as one of them.
-//! (A sum would make the dark twice as light as it was chosen, and new tones wherever both reach.)
+//! The article does not define how two ramps are combined. Here the result is the componentwise maximum,
+//! max(a(u), b(v)). Where one light is off, the result is the other light's ramp; steps remain steps at the positions of
+//! the two ramps; a second light never darkens; and the darkest tone is that of a single ramp. A sum would double the
+//! darkest tone and create new tones where both lights contribute.
 //!
-//! An extra shade for bright lights lies in the corner away from the dark ([`Corner`]).
+//! A separate tone for strong light can be placed in the corner opposite to the dark one ([`Corner`]).
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3, UVec2, Vec3};
@@ -21,30 +21,34 @@ use crate::ramp::{Ramp, RampBlend, RampUniform, toon_ramp};
 use crate::row::{TexelFilter, from_texel, to_texel, toon_row_nearest, toon_row_taps};
 use crate::{Bands, ToonError, toon_coverage};
 
-/// A 2D ramp as two of one dimension. Their stops lie between 0 and 1, but for the first of a hard one, which may lie
-/// lower: below 0 there is one colour.
+/// A 2D ramp composed of two 1D ramps. Their stops are within 0..=1, except that the first stop of a hard ramp may be
+/// lower, since a hard ramp is constant below its second stop.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case", deny_unknown_fields))]
 pub struct Ramp2d {
-    /// What the first light alone gives.
+    /// The ramp over the diffuse term of the first light.
     pub a: Ramp,
-    /// What the second light alone gives.
+    /// The ramp over the diffuse term of the second light.
     pub b: Ramp,
-    /// The shade of bright lights.
+    /// The tone for strong light.
     pub corner: Option<Corner>,
 }
 
-/// A shade that replaces the ramps' where (u, v) is far from the dark.
+/// A tone that replaces those of the ramps where (u, v) is far from the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case", deny_unknown_fields))]
 pub struct Corner {
-    /// The least length of (u, v), each clamped to 0..=1, that belongs to the corner. Up to 1 one light can own it, if
-    /// it is at least this bright; above 1 it takes both; above √2 there is none.
+    /// The minimum length of (u, v), each clamped to 0..=1, for this tone; above 0. Up to 1 a single light can reach it,
+    /// above 1 both lights are needed, and above √2 the corner is empty.
     pub threshold: f32,
-    /// Display-referred RGB, a factor on the surface's colour as all of the ramp's.
+    /// A display-referred RGB factor on the surface's colour, as the colours of the ramps.
     pub color: Vec3,
 }
 
 impl Ramp2d {
-    /// The same bands for both lights, without their highlight, and no corner.
+    /// The same bands for both lights, without the highlight and without a corner.
     pub fn from_bands(bands: &Bands) -> Result<Self, ToonError> {
         let ramp = Ramp::from_bands(bands)?;
         let ramps = Self { a: ramp.clone(), b: ramp, corner: None };
@@ -52,11 +56,11 @@ impl Ramp2d {
         Ok(ramps)
     }
 
-    /// Which rule is broken, if one is; the first found.
+    /// Checks all fields and returns the first violation.
     pub fn validate(&self) -> Result<(), ToonError> {
         for ramp in [&self.a, &self.b] {
             ramp.validate()?;
-            // One stop alone is everywhere.
+            // A ramp with a single stop is constant wherever the stop is.
             let begins_below = ramp.blend == RampBlend::Smooth && ramp.stops.len() > 1 && ramp.stops[0].at < 0.0;
             for (index, stop) in ramp.stops.iter().enumerate() {
                 let is_outside = if index == 0 { begins_below } else { !(stop.at > 0.0 && stop.at <= 1.0) };
@@ -77,44 +81,43 @@ impl Ramp2d {
     }
 }
 
-/// The shade at `uv`, the reach of the first and of the second light ([`crate::painter::toon_painter_uv`]), of any
-/// value: below 0 is dark, above 1 as bright as it gets.
+/// The colour of a 2D ramp at `uv`, the diffuse terms of the two lights ([`crate::painter::toon_painter_uv`]), which are
+/// clamped to 0..=1.
 ///
-/// `widths` are the changes of u and v across the pixel; each ramp is antialiased by its own, and the corner by the
-/// most that its distance can change. Where one step is in a pixel, its share is exact. Where two cross, be they of
-/// two ramps or a ramp's and the corner's, the lighter of two means is not the mean of the lighter ones, nor a
-/// product of shares the share of both; and the corner's border may be wider than a pixel where u and v change in
-/// different directions.
+/// `widths` are the changes of u and v across the pixel. Each ramp is antialiased over its own width, the corner over an
+/// upper bound of the change of the length of (u, v), which may be wider than a pixel where u and v change in different
+/// directions. Coverage is exact for one step per pixel and approximate where two steps cross.
 pub fn toon_ramp_2d(ramps: &Ramp2d, uv: DVec2, widths: DVec2) -> DVec3 {
-    let shade = toon_ramp(&ramps.a, uv.x, widths.x).max(toon_ramp(&ramps.b, uv.y, widths.y));
-    let Some(corner) = ramps.corner else { return shade };
+    let color = toon_ramp(&ramps.a, uv.x, widths.x).max(toon_ramp(&ramps.b, uv.y, widths.y));
+    let Some(corner) = ramps.corner else { return color };
     let inside = toon_corner(uv, widths, f64::from(corner.threshold));
-    shade * (1.0 - inside) + corner.color.as_dvec3() * inside
+    color * (1.0 - inside) + corner.color.as_dvec3() * inside
 }
 
-/// The share of a pixel, 0..=1, that is in the corner: where |uv|, each clamped to 0..=1, reaches `threshold`. What is
-/// clamped changes no more, and takes no part in the border's width.
+/// The fraction of a pixel, 0..=1, that is in the corner: where the length of `uv`, clamped componentwise to 0..=1, is at
+/// least `threshold`. Components above 1 are constant after clamping and do not contribute to the width of the border.
 pub fn toon_corner(uv: DVec2, widths: DVec2, threshold: f64) -> f64 {
-    let reach = DVec2::new(saturate(uv.x), saturate(uv.y));
-    let length = reach.length();
-    let moving = DVec2::select(uv.cmplt(DVec2::ONE), widths, DVec2::ZERO);
-    let width = if length > 0.0 { reach.dot(moving) / length } else { 0.0 };
+    let clamped = DVec2::new(saturate(uv.x), saturate(uv.y));
+    let length = clamped.length();
+    let widths = DVec2::select(uv.cmplt(DVec2::ONE), widths, DVec2::ZERO);
+    let width = if length > 0.0 { clamped.dot(widths) / length } else { 0.0 };
     toon_coverage(length, threshold, width)
 }
 
-/// A 2D ramp as an image. u goes right and v down, both from 0 to 1; sampling is that of [`crate::row`] on each axis.
+/// A 2D ramp as an image. u increases to the right and v downwards, both from 0 to 1. Each axis is sampled as in
+/// [`crate::row`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct RampTable {
-    /// Columns and rows, neither 0.
+    /// The numbers of columns and rows, at least 1 each.
     pub size: UVec2,
-    /// Row by row, from the top left, which is the dark corner.
+    /// RGBA texels row by row from the top left, which is the dark corner.
     pub texels: Vec<[u8; 4]>,
-    /// Between the texels' centres.
+    /// The interpolation between texel centres.
     pub filter: TexelFilter,
 }
 
 impl RampTable {
-    /// The shades at the texels' centres, clamped to 0..=1 and rounded to 8 bits.
+    /// Samples the ramps at the centres of the texels, clamped to 0..=1 and rounded to 8 bits.
     pub fn from_ramps(ramps: &Ramp2d, size: UVec2, filter: TexelFilter) -> Result<Self, ToonError> {
         ramps.validate()?;
         let centre = |i: u32, count: u32| (f64::from(i) + 0.5) / f64::from(count);
@@ -126,7 +129,7 @@ impl RampTable {
         Ok(table)
     }
 
-    /// Refuses an image without texels, and one with another number of them than its size says.
+    /// Checks that the size is not zero and that the number of texels matches it.
     pub fn validate(&self) -> Result<(), ToonError> {
         let (width, height, texels) = (self.size.x, self.size.y, self.texels.len());
         let area = u64::from(width) * u64::from(height);
@@ -134,7 +137,7 @@ impl RampTable {
     }
 }
 
-/// The image's colour at `uv`, without its alpha.
+/// The display-referred RGB of the image at `uv`.
 pub fn toon_table(table: &RampTable, uv: DVec2) -> DVec3 {
     let color = |x: u32, y: u32| {
         let index = y as usize * table.size.x as usize + x as usize;
@@ -147,16 +150,14 @@ pub fn toon_table(table: &RampTable, uv: DVec2) -> DVec3 {
         TexelFilter::Linear => {
             let across = toon_row_taps(uv.x, 0.0, 1.0, table.size.x);
             let down = toon_row_taps(uv.y, 0.0, 1.0, table.size.y);
-            let corners = [(down.left, across.left), (down.left, across.right)];
-            let below = [(down.right, across.left), (down.right, across.right)];
             let [[upper_left, upper_right], [lower_left, lower_right]] =
-                [corners, below].map(|row| row.map(|(y, x)| color(x, y)));
+                [down.left, down.right].map(|y| [across.left, across.right].map(|x| color(x, y)));
             toon_table_mix(upper_left, upper_right, lower_left, lower_right, across.share, down.share)
         }
     }
 }
 
-/// Four texels by the shares of the right and of the lower ones.
+/// Bilinear interpolation of four texels. `share_u` is the weight of the right texels, `share_v` that of the lower ones.
 pub fn toon_table_mix(
     upper_left: DVec3,
     upper_right: DVec3,
@@ -172,11 +173,11 @@ pub fn toon_table_mix(
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct Ramp2dUniform {
-    /// For the first light.
+    /// The ramp of the first light.
     pub a: RampUniform,
-    /// For the second.
+    /// The ramp of the second light.
     pub b: RampUniform,
-    /// The corner's colour, and its threshold: 10,000, which nothing reaches, where there is none.
+    /// The colour and the threshold of the corner. Without a corner the threshold is 10,000.
     pub corner: [f32; 4],
 }
 

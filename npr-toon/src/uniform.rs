@@ -1,31 +1,31 @@
-//! The bands as the shader reads them.
+//! The uniform buffer layout of [`Bands`].
 
 use bytemuck::{Pod, Zeroable};
 
 use crate::{Bands, ToonError};
 
-/// How many bands a [`ToonUniform`] holds.
+/// The maximum number of bands of a [`ToonUniform`].
 pub const MAX_BANDS: usize = 8;
 
-/// Finite, so that the shader meets no infinity; beyond the reach of any border's ramp.
-const UNREACHED: f32 = 1e4;
+/// The threshold after the last band: finite, and above any N·L plus half the maximum border width.
+const UNUSED_THRESHOLD: f32 = 1e4;
 
-/// `ToonBands` of the WGSL: what to write into the uniform buffer, 160 bytes.
+/// `ToonBands` of the WGSL, 160 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct ToonUniform {
-    /// From dark to light: the tone, and N·L where the next band begins. In the last band in use this is 10,000, which
-    /// no pixel reaches; those that are not in use repeat it.
+    /// The bands from dark to light: the tone, and the N·L at which the next band begins, which is 10,000 in the last band.
+    /// Unused entries repeat the last band.
     pub bands: [[f32; 4]; MAX_BANDS],
-    /// The highlight's colour, and its threshold on N·H.
+    /// The colour of the highlight and its threshold on N·H.
     pub highlight: [f32; 4],
-    /// How many bands there are, 1..=[`MAX_BANDS`].
+    /// The number of bands, 1..=[`MAX_BANDS`].
     pub count: u32,
-    /// The highlight's opacity; 0 where there is none.
+    /// The opacity of the highlight; 0 without a highlight.
     pub highlight_strength: f32,
-    /// 1: no highlight at N·L < 0.
+    /// 1 if there is no highlight at N·L < 0, else 0.
     pub highlight_lit_only: u32,
-    /// 1: borders are antialiased.
+    /// 1 if borders are antialiased, else 0.
     pub antialias: u32,
 }
 
@@ -38,7 +38,7 @@ impl ToonUniform {
         }
         let last = bands.tones[bands.tones.len() - 1];
         let mut uniform = Self {
-            bands: [last.extend(UNREACHED).to_array(); MAX_BANDS],
+            bands: [last.extend(UNUSED_THRESHOLD).to_array(); MAX_BANDS],
             count: bands.tones.len() as u32,
             antialias: u32::from(bands.antialias),
             ..Self::zeroed()

@@ -1,4 +1,4 @@
-//! Hand-computed values, limits and the area that a border covers.
+//! Hand-computed values, limits, and the coverage of antialiased borders.
 
 use approx::assert_abs_diff_eq;
 use glam::{DVec3, Vec3};
@@ -27,12 +27,12 @@ fn listing_3_at_its_thresholds() {
         assert_eq!(toon_band_smooth(&bands, n_dot_l, 0.0), tone, "{n_dot_l}");
         assert_eq!(toon_shade(&bands, DVec3::ONE, n_dot_l, 0.3, 1.0, 0.3), tone, "not antialiased: {n_dot_l}");
     }
-    // A tenth of a pixel above the border: six tenths of the pixel are average.
+    // The centre is 1/10 pixel above the border: 6/10 of the pixel are in the average band.
     assert!(toon_band_smooth(&bands, low + 0.002, 0.02).abs_diff_eq(0.4 * dark + 0.6 * average, 1e-12));
 }
 
 #[test]
-fn hard_shading_turns_at_zero() {
+fn hard_shading_has_its_border_at_zero() {
     let bands = Bands::hard_shading();
     assert_eq!(toon_band_hard(&bands, -f64::MIN_POSITIVE), DVec3::splat(0.5));
     assert_eq!(toon_band_hard(&bands, 0.0), DVec3::ONE);
@@ -46,7 +46,7 @@ fn highlight_replaces_the_band() {
     let (base, specular) = (DVec3::new(1.0, 0.5, 0.25), Vec3::new(0.9, 0.9, 1.0).as_dvec3());
     assert_eq!(toon_shade(&bands, base, 0.5, 0.0, threshold.next_down(), 0.0), base * gray(0.6));
     assert_eq!(toon_shade(&bands, base, 0.5, 0.0, threshold, 0.0), specular);
-    // As the text has it, on the dark side too.
+    // As in the source, also on the unlit side.
     assert_eq!(toon_shade(&bands, base, -0.5, 0.0, 0.9, 0.0), specular);
 
     let highlight = bands.highlight.as_mut().unwrap();
@@ -67,10 +67,10 @@ fn vectors() {
     assert_eq!(toon_n_dot_h(n, l, e), 1.0);
     assert_eq!(toon_n_dot_h_interpolated(n, DVec3::Z), 2.0);
     assert_eq!(toon_width(3.0, -4.0), 5.0);
-    // No direction at all is not NaN.
+    // Zero vectors do not give NaN.
     assert_eq!(toon_n_dot_l(DVec3::ZERO, l), 0.0);
     assert_eq!(toon_n_dot_h(n, l, -l), 0.0);
-    // Opposite but for what f32 makes of unit vectors: the roundings' direction is none.
+    // Opposite up to f32 rounding: the rounding error is not normalised.
     let rounded = DVec3::new(0.0, 0.0, f64::from(1.0_f32.next_down()));
     assert_eq!(toon_half(DVec3::Z, DVec3::NEG_Z + DVec3::X * 5e-7), DVec3::ZERO);
     assert_eq!(toon_half(-rounded * 2.773408, DVec3::Z + DVec3::Y * 6e-8), DVec3::ZERO);
@@ -94,13 +94,13 @@ fn n_dot_h_of_dot_products_is_that_of_the_vectors() {
         // At right angles, and 2 atan(4/3) apart.
         (1.0, 0.0, 0.0, std::f64::consts::FRAC_1_SQRT_2),
         (0.6, 0.6, -0.28, 1.0),
-        // Opposite, and a rounding beyond.
+        // Opposite, and beyond by a rounding error.
         (1.0, -1.0, -1.0, 0.0),
         (1.0, -0.5, -1.0 - 1e-15, 0.0),
     ] {
         assert_abs_diff_eq!(toon_n_dot_h_of(n_dot_l, n_dot_e, l_dot_e), expected, epsilon = 1e-15);
     }
-    // The vectors' own, for unit vectors that are not nearly opposite.
+    // Equal to N·H of the vectors, unless L and E are nearly opposite.
     let unit = |i: i32| {
         let (sin, cos) = (2.4 * f64::from(i)).sin_cos();
         DVec3::new(cos, sin, f64::from(i % 7) / 3.0 - 1.0).normalize()

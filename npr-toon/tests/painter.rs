@@ -1,4 +1,4 @@
-//! The two-light painter, lights, half-Lambert: the listings' numbers by hand, what is refused.
+//! The two-light painter, lights and half-Lambert: hand-computed values of the listings, and validation.
 
 use approx::assert_abs_diff_eq;
 use glam::{DVec2, DVec3, DVec4, Vec3};
@@ -19,16 +19,16 @@ fn lights(of: &[(Vec3, Vec3, f32)]) -> Vec<Light> {
 
 #[test]
 fn brightness_scales_the_coordinates() {
-    // Light A straight on and half bright, light B 60 degrees off and half as bright again as full.
+    // Light A along the normal with brightness 0.5, light B at 60 degrees with brightness 1.5.
     let from_the_side = Vec3::new(3.0_f32.sqrt(), 0.0, 1.0);
     let painter = Painter::new(lights(&[(Vec3::Z * 3.0, Vec3::ONE, 0.5), (from_the_side, Vec3::ONE, 1.5)])).unwrap();
     let uv = toon_painter_uv(&painter, DVec3::ZERO, DVec3::Z * 7.0);
     assert!(uv.abs_diff_eq(DVec2::new(0.5, 0.75), 1e-7), "{uv}");
-    // Turned away it is not clamped: the ramp, as the sampler of the listing, does that.
+    // On back-facing surfaces it is not clamped: the ramp does that, as the sampler in the listing does.
     let uv = toon_painter_uv(&painter, DVec3::ZERO, DVec3::NEG_Z);
     assert!(uv.abs_diff_eq(DVec2::new(-0.5, -0.75), 1e-7), "{uv}");
     assert_eq!(toon_reach(0.8, 0.5), 0.4);
-    // The product is what the listing gets from a scaled light vector.
+    // The product equals that of the listing, which scales the light vector.
     let scaled = toon_n_dot_l_interpolated(DVec3::Z, DVec3::new(0.0, 0.6, 0.8) * 0.5);
     assert_eq!(toon_reach(toon_n_dot_l_interpolated(DVec3::Z, DVec3::new(0.0, 0.6, 0.8)), 0.5), scaled);
 }
@@ -46,7 +46,7 @@ fn one_light_or_none() {
 fn positional_lights() {
     let place = LightPlace::Positional { position: Vec3::new(0.0, 0.0, 5.0) };
     assert!(toon_to_light(place, DVec3::new(0.0, 3.0, 1.0)).abs_diff_eq(DVec3::new(0.0, -0.6, 0.8), 1e-15));
-    // At the light's own position, and for a normal that is none, there is no light and no NaN.
+    // At the position of the light, and for zero or NaN normals, the result is 0.
     let painter = Painter::new(vec![Light::positional(Vec3::new(0.0, 0.0, 5.0))]).unwrap();
     assert_eq!(toon_painter_uv(&painter, DVec3::new(0.0, 0.0, 5.0), DVec3::Z), DVec2::ZERO);
     assert_eq!(toon_painter_uv(&painter, DVec3::ZERO, DVec3::ZERO), DVec2::ZERO);
@@ -68,7 +68,7 @@ fn three_quarters_and_twice_is_one_and_a_half() {
     let gray = DVec3::splat;
     assert_eq!(toon_overbright(gray(0.5), DVec3::ONE, 0.75), gray(0.75));
     assert_eq!(toon_overbright(gray(0.5), gray(0.5), 0.75), gray(0.375));
-    // Clamped, not before 2/3.
+    // Clamped from 2/3 on.
     assert_eq!(toon_overbright(DVec3::new(0.6, 0.7, 1.0), DVec3::ONE, 0.75), DVec3::new(0.6 * 0.75 * 2.0, 1.0, 1.0));
     assert_eq!(toon_overbright(gray(0.3), DVec3::ONE, 0.5), gray(0.3));
     assert_eq!(Painter::LIGHT_SCALE, 0.75);
@@ -109,19 +109,19 @@ fn half_lambert_by_hand() {
         assert_eq!(toon_half_lambert(&half, n_dot_l), plain);
         assert_eq!(toon_half_lambert(&source, n_dot_l), squared);
     }
-    // What is below 0 does not come back by being squared.
+    // Values below 0 are clamped before they are squared.
     let low = HalfLambert { scale: 1.0, bias: 0.0, squared: true };
     assert_eq!(toon_half_lambert(&low, -0.5), 0.0);
     assert_eq!(toon_half_lambert(&half, f64::NAN), 0.0);
     for (scale, bias) in [(0.0, 0.5), (-1.0, 0.5), (f32::NAN, 0.5), (0.5, f32::INFINITY)] {
-        let how = HalfLambert { scale, bias, squared: false };
-        assert!(matches!(how.validate(), Err(ToonError::HalfLambert { .. })), "{scale} {bias}");
+        let parameters = HalfLambert { scale, bias, squared: false };
+        assert!(matches!(parameters.validate(), Err(ToonError::HalfLambert { .. })), "{scale} {bias}");
     }
     assert_eq!(source.validate(), Ok(()));
 }
 
 #[test]
-fn what_is_refused() {
+fn invalid_painters_are_rejected() {
     let painter = |lights| Painter::new(lights).map(|_| ());
     let white = Light::directional(Vec3::Z);
     assert_eq!(painter(vec![white; 3]), Err(ToonError::TooManyLights { lights: 3, max: 2 }));
@@ -129,14 +129,14 @@ fn what_is_refused() {
         painter(vec![white, Light::directional(Vec3::ZERO)]),
         Err(ToonError::LightDirection { index: 1, value: Vec3::ZERO })
     );
-    // Of no length in f32, in one way or the other.
+    // The squared length is not a normal f32.
     for length in [1e-20, 1e20, f32::INFINITY, f32::NAN] {
         let direction = painter(vec![Light::directional(Vec3::X * length)]);
         assert!(matches!(direction, Err(ToonError::LightDirection { index: 0, .. })), "{length}");
     }
     let nowhere = painter(vec![Light::positional(Vec3::new(0.0, f32::NAN, 0.0))]);
     assert!(matches!(nowhere, Err(ToonError::LightPosition { index: 0, .. })));
-    // Where f32 has no square of the distance.
+    // The squared distance overflows f32.
     let far = painter(vec![Light::positional(Vec3::Y * 1e20)]);
     assert!(matches!(far, Err(ToonError::LightPosition { index: 0, .. })));
     assert_eq!(painter(vec![Light::positional(Vec3::Y * 1e18)]), Ok(()));
@@ -173,9 +173,9 @@ fn vector() -> impl Strategy<Value = Vec3> {
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// What the aggregate is for: light that is not clamped adds up to it, whatever the normal.
+    /// The sum of unclamped diffuse terms equals the diffuse term of the aggregate for every normal.
     #[test]
-    fn the_aggregate_loses_nothing(
+    fn the_aggregate_is_exact_for_unclamped_light(
         of in prop::collection::vec((vector(), 0.0_f32..2.0), 1..5), normal in vector(), at in vector(),
     ) {
         let lights: Vec<_> = of.iter().enumerate().map(|(i, &(v, brightness))| {
@@ -190,8 +190,8 @@ proptest! {
 
     #[test]
     fn half_lambert_rises_from_0_to_1(a in -1.0..1.0_f64, more in 0.0..1.0_f64, squared in any::<bool>()) {
-        let how = HalfLambert { squared, ..HalfLambert::default() };
-        let (low, high) = (toon_half_lambert(&how, a), toon_half_lambert(&how, a + more));
+        let parameters = HalfLambert { squared, ..HalfLambert::default() };
+        let (low, high) = (toon_half_lambert(&parameters, a), toon_half_lambert(&parameters, a + more));
         prop_assert!((0.0..=1.0).contains(&low) && (low..=1.0).contains(&high));
     }
 }

@@ -1,4 +1,4 @@
-//! Ramps of one and two dimensions: hand-computed values, what holds for any ramp, what is refused.
+//! 1D and 2D ramps: hand-computed values, properties of any ramp, and validation.
 
 use approx::assert_abs_diff_eq;
 use glam::{DVec2, DVec3, UVec2, Vec3};
@@ -77,7 +77,7 @@ fn one_stop_is_flat_and_not_a_number_is_dark() {
         }
     }
     assert_eq!(toon_row_nearest(f64::NAN, 0.0, 1.0, 4), 0);
-    assert_eq!(toon_row_taps(f64::NAN, 0.0, 1.0, 4), RowTaps { left: 0, right: 1, share: 0.0 });
+    assert_eq!(toon_row_taps(f64::NAN, 0.0, 1.0, 4), ToonTaps { left: 0, right: 1, share: 0.0 });
 }
 
 #[test]
@@ -86,7 +86,7 @@ fn row_is_sampled_as_a_sampler_does() {
     for (x, texel) in [(-5.0, 0), (0.0, 0), (0.2499, 0), (0.25, 1), (0.5, 2), (0.75, 3), (1.0, 3), (5.0, 3)] {
         assert_eq!(toon_row_nearest(x, 0.0, 1.0, 4), texel, "{x}");
     }
-    let taps = |left, right, share| RowTaps { left, right, share };
+    let taps = |left, right, share| ToonTaps { left, right, share };
     for (x, expected) in [
         (-5.0, taps(0, 1, 0.0)),
         (0.125, taps(0, 1, 0.0)),
@@ -100,7 +100,7 @@ fn row_is_sampled_as_a_sampler_does() {
     }
     // The same over -1..1, at N.L = 2x - 1.
     assert_eq!(toon_row_taps(-0.625, -1.0, 1.0, 4), taps(0, 1, 0.25));
-    // One texel is everywhere.
+    // A single texel covers everything.
     assert_eq!(toon_row_taps(0.9, 0.0, 1.0, 1), taps(0, 0, 0.0));
 }
 
@@ -114,8 +114,8 @@ fn row_colours() {
 
 #[test]
 fn row_made_from_bands() {
-    // Ten texels over 0..1 with steps at 0.1 and 0.8: one dark, seven average, two bright (0.9 of f32 is a little
-    // less).
+    // Ten texels over 0..1 with steps at 0.1 and 0.8: one dark, seven average, two bright. (0.9 in f32 is slightly less
+    // than 0.9, so it rounds to 229.)
     let ramp = Ramp::from_bands(&Bands::listing_3()).unwrap();
     let row = RampRow::from_ramp(&ramp, 10, 0.0, 1.0, TexelFilter::Nearest).unwrap();
     let (dark, average, bright) = ([51, 51, 51, 255], [153, 153, 153, 255], [229, 229, 255, 255]);
@@ -135,7 +135,7 @@ fn two() -> Ramp2d {
 }
 
 #[test]
-fn the_lighter_of_two_ramps_shows() {
+fn the_result_is_the_lighter_of_two_ramps() {
     let (ramps, sharp) = (two(), DVec2::ZERO);
     let expected = [
         ((0.0, 0.0), 0.25),
@@ -144,7 +144,7 @@ fn the_lighter_of_two_ramps_shows() {
         ((0.6, 0.0), 0.75),
         ((0.6, 0.3), 0.75),
         ((0.4, 0.3), 0.5),
-        // The corner: one light of 0.9, or 0.7 and 0.6, whose length is 0.92; but not 0.6 and 0.6, 0.85.
+        // The corner: one light at 0.9, or (0.7, 0.6) with length 0.92, but not (0.6, 0.6) with length 0.85.
         ((0.9, -1.0), 1.0),
         ((0.0, 7.0), 1.0),
         ((0.7, 0.6), 1.0),
@@ -154,10 +154,10 @@ fn the_lighter_of_two_ramps_shows() {
     for ((u, v), gray) in expected {
         assert_eq!(toon_ramp_2d(&ramps, DVec2::new(u, v), sharp), DVec3::splat(gray), "{u} {v}");
     }
-    // A tenth of a pixel above the threshold: six tenths of it are corner.
+    // The pixel's centre is 1/10 pixel above the threshold: 6/10 of the pixel are in the corner.
     let soft = toon_ramp_2d(&ramps, DVec2::new(f64::from(0.9_f32) + 0.001, 0.0), DVec2::splat(0.01));
     assert!(soft.abs_diff_eq(DVec3::splat(0.6 + 0.4 * 0.75), 1e-9), "{soft}");
-    // Where both are needed, one does not do, however bright.
+    // Above 1 a single light does not reach the corner.
     let both = Ramp2d { corner: Some(Corner { threshold: 1.2, color: Vec3::ONE }), ..two() };
     assert_eq!(toon_ramp_2d(&both, DVec2::new(9.0, 0.2), sharp), DVec3::splat(0.75));
     assert_eq!(toon_ramp_2d(&both, DVec2::new(9.0, 0.7), sharp), DVec3::ONE);
@@ -165,10 +165,10 @@ fn the_lighter_of_two_ramps_shows() {
 
 #[test]
 fn a_clamped_light_does_not_blur_the_corner() {
-    // u is beyond 1 and steep; the border is where v crosses 0.75, as sqrt(1 + 0.75²) is 1.25.
+    // u is above 1 and has a large width; the border is where v crosses 0.75, as sqrt(1 + 0.75²) is 1.25.
     let corner = |v: f64, widths| toon_corner(DVec2::new(1.2, v), widths, 1.25);
     assert_eq!(corner(0.75, DVec2::new(0.1, 0.0)), 1.0);
-    // Half a pixel above, of which the length changes by 0.75 / 1.25 of v.
+    // The length changes by 0.75 / 1.25 of the change of v.
     let widths = DVec2::new(0.1, 0.01);
     assert_abs_diff_eq!(corner(0.7525, widths), 0.75, epsilon = 1e-3);
     assert_eq!((corner(0.744, widths), corner(0.756, widths)), (0.0, 1.0));
@@ -183,7 +183,7 @@ fn the_image_is_the_2d_ramp_outside_of_0_to_1() {
     for (u, v) in [(-0.7, -0.7), (-0.1, 1.7), (1.4, -0.2), (2.0, 2.0)] {
         let uv = DVec2::new(u, v);
         let apart = toon_ramp_2d(&ramps, uv, DVec2::ZERO) - toon_table(&table, uv);
-        // Half a step of 8 bits, and half a texel of the gradient.
+        // Half a step of 8 bits, plus the change of the gradient over half a texel.
         assert!(apart.abs().max_element() < 0.5 / 255.0 + 0.5 * 0.6 / 64.0 + 1e-6, "{uv}: {apart}");
     }
 }
@@ -191,10 +191,10 @@ fn the_image_is_the_2d_ramp_outside_of_0_to_1() {
 #[test]
 fn table_is_dark_at_its_upper_left() {
     let table = RampTable::from_ramps(&two(), UVec2::new(4, 2), TexelFilter::Nearest).unwrap();
-    // Columns at u = 1/8, 3/8, 5/8, 7/8; rows at v = 1/4, 3/4. (7/8, 1/4), (5/8, 3/4) and (7/8, 3/4) are in the corner:
+    // Columns at u = 1/8, 3/8, 5/8, 7/8; rows at v = 1/4, 3/4. (7/8, 1/4), (5/8, 3/4) and (7/8, 3/4) are in the corner
+    // since their lengths are 0.91, 0.98 and 1.15; that of (3/8, 3/4) is 0.84.
     let gray = |value: u8| [value, value, value, 255];
     let expected = [128, 128, 191, 255, 128, 128, 255, 255].map(gray);
-    // their lengths are 0.91, 0.98 and 1.15; that of (3/8, 3/4) is 0.84.
     assert_eq!(table.texels, expected);
     assert_eq!(toon_table(&table, DVec2::new(-1.0, 2.0)), DVec3::splat(128.0 / 255.0));
     let linear = RampTable { filter: TexelFilter::Linear, ..table };
@@ -213,7 +213,7 @@ fn table_mixes_across_then_down() {
 }
 
 #[test]
-fn what_is_refused() {
+fn invalid_ramps_are_rejected() {
     let hard = |of: &[(f32, f32)]| ramp(RampBlend::Hard, of);
     assert_eq!(hard(&[]).validate(), Err(ToonError::NoStops));
     assert_eq!(
@@ -232,7 +232,7 @@ fn what_is_refused() {
     );
     let broken = Bands { thresholds: vec![0.5, 0.1], ..Bands::listing_3() };
     assert_eq!(Ramp::from_bands(&broken), Err(ToonError::ThresholdOrder { index: 1, value: 0.1, before: 0.5 }));
-    // One below is the same in f32.
+    // 1 below the threshold rounds to the threshold in f32.
     let far = Bands { thresholds: vec![-1e9], ..Bands::hard_shading() };
     assert!(matches!(Ramp::from_bands(&far), Err(ToonError::StopOrder { index: 1, .. })));
 
@@ -242,7 +242,7 @@ fn what_is_refused() {
     assert_eq!(row(0, 0.0, 1.0), Err(ToonError::Texels { width: 0, height: 1, texels: 0 }));
     assert_eq!(row(2, 1.0, 1.0), Err(ToonError::RowEnds { from: 1.0, to: 1.0 }));
     assert!(matches!(row(2, f32::NAN, 1.0), Err(ToonError::RowEnds { .. })));
-    // Too far apart for f32.
+    // The difference overflows f32.
     assert!(matches!(row(2, -3e38, 3e38), Err(ToonError::RowEnds { .. })));
 
     let table = |x, y| RampTable::from_ramps(&two(), UVec2::new(x, y), TexelFilter::Nearest).map(|_| ());
@@ -250,10 +250,10 @@ fn what_is_refused() {
     let short = RampTable { size: UVec2::new(2, 2), texels: vec![[0; 4]; 3], filter: TexelFilter::Nearest };
     assert_eq!(short.validate(), Err(ToonError::Texels { width: 2, height: 2, texels: 3 }));
 
-    // A border that no light can be below of.
+    // A border at 0, below which clamped coordinates cannot be.
     assert_eq!(Ramp2d::from_bands(&Bands::hard_shading()), Err(ToonError::StopOutside { index: 1, value: 0.0 }));
     assert!(Ramp2d::from_bands(&Bands::listing_3()).is_ok());
-    // Below 0 the image has no gradient.
+    // Coordinates are clamped at 0, so a gradient cannot begin below.
     let smooth = |of: &[(f32, f32)]| Ramp2d { b: ramp(RampBlend::Smooth, of), ..two() }.validate();
     assert_eq!(smooth(&[(-0.5, 0.0), (1.0, 1.0)]), Err(ToonError::StopOutside { index: 0, value: -0.5 }));
     assert_eq!((smooth(&[(0.0, 0.0), (1.0, 1.0)]), smooth(&[(-0.5, 0.0)])), (Ok(()), Ok(())));
@@ -263,11 +263,11 @@ fn what_is_refused() {
     assert!(matches!(corner(1.0, f32::NAN).validate(), Err(ToonError::CornerColor { .. })));
     assert_eq!(
         ToonError::StopOrder { index: 1, value: 0.5, before: 0.75 }.to_string(),
-        "stop 1 is at 0.5, not above the 0.75 before it"
+        "stop 1 is at 0.5, not above the preceding 0.75"
     );
 }
 
-/// A valid ramp with grays in 0..=1, ascending if asked for.
+/// A valid ramp of grays in 0..=1, optionally in ascending order.
 fn any_ramp(ascending: bool) -> impl Strategy<Value = Ramp> {
     let stop = (0.01_f32..0.5, 0.0_f32..=1.0);
     (prop::collection::vec(stop, 1..=MAX_STOPS), any::<bool>(), -1.0_f32..0.0).prop_map(
@@ -277,12 +277,12 @@ fn any_ramp(ascending: bool) -> impl Strategy<Value = Ramp> {
                 grays.sort_by(f32::total_cmp);
             }
             let mut at = first;
-            let places = steps.iter().map(|step| {
+            let positions = steps.iter().map(|step| {
                 let here = at;
                 at += step.0;
                 here
             });
-            let of: Vec<_> = places.zip(grays).collect();
+            let of: Vec<_> = positions.zip(grays).collect();
             ramp(if smooth { RampBlend::Smooth } else { RampBlend::Hard }, &of)
         },
     )
@@ -307,7 +307,7 @@ proptest! {
         let (uv, widths) = (DVec2::new(x, 0.3), DVec2::splat(width));
         let brighter = toon_ramp_2d(&other, uv + DVec2::new(0.0, more), widths).x;
         prop_assert!(brighter >= toon_ramp_2d(&other, uv, widths).x - 1e-12);
-        // The second light never darkens what the first gives.
+        // The second light never darkens the result of the first.
         prop_assert!(brighter >= toon_ramp(&ramp, x, width).x);
     }
 
@@ -341,7 +341,7 @@ proptest! {
     fn a_fine_image_is_the_ramp(ramp in any_ramp(false), x in -0.99..0.99_f64) {
         prop_assume!(ramp.blend == RampBlend::Smooth);
         let row = RampRow::from_ramp(&ramp, 4096, -1.0, 1.0, TexelFilter::Linear).unwrap();
-        // Half a step of 8 bits, and where a stop lies between two centres what it bends by.
+        // Half a step of 8 bits, plus the interpolation error where a stop lies between two texel centres.
         prop_assert!((toon_row(&row, x) - toon_ramp(&ramp, x, 0.0)).x.abs() < 0.5 / 255.0 + 0.025);
     }
 }

@@ -1,4 +1,6 @@
-//! The WGSL is valid, and the uniforms lie in memory as naga lays them out.
+//! The WGSL is valid, its signatures are those of the Rust functions, and the uniforms have the layout that naga computes.
+
+mod signatures;
 
 use std::mem::{offset_of, size_of};
 
@@ -9,6 +11,7 @@ use npr_toon::painter::PainterUniform;
 use npr_toon::ramp::{MAX_STOPS, Ramp, RampBlend, RampUniform, TOON_STOPS_OVERRIDE};
 use npr_toon::table::{Corner, Ramp2d, Ramp2dUniform};
 use npr_toon::{Bands, MAX_BANDS, MIN_SUM, MIN_WIDTH, TOON_BANDS_OVERRIDE, ToonError, ToonUniform, WGSL};
+use signatures::{Exceptions, Pair, differences};
 
 fn validated(source: &str) -> Module {
     let module = naga::front::wgsl::parse_str(source).unwrap_or_else(|e| panic!("{}", e.emit_to_string(source)));
@@ -23,7 +26,7 @@ fn is_a_library() {
     let module = validated(WGSL);
     assert!(module.entry_points.is_empty());
     assert!(module.global_variables.is_empty());
-    // Its overrides have defaults.
+    // Every override must have a default value.
     let overrides: Vec<_> =
         module.overrides.iter().map(|(_, o)| (o.name.as_deref().unwrap(), o.init.is_some())).collect();
     assert_eq!(overrides, [(TOON_BANDS_OVERRIDE, true), (TOON_STOPS_OVERRIDE, true)]);
@@ -42,26 +45,70 @@ fn is_a_library() {
     }
 }
 
-/// Every function of the WGSL stands in the Rust files, but for helpers of the WGSL that have no Rust form.
-#[test]
-fn functions_have_the_names_of_the_rust_ones() {
-    let mut rust = String::new();
-    for entry in std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/src")).unwrap() {
-        let path = entry.unwrap().path();
-        if path.extension().is_some_and(|extension| extension == "rs") {
-            rust += &std::fs::read_to_string(path).unwrap();
-        }
-    }
-    // toon_band is toon_band_smooth, width 0 is toon_band_hard.
-    let helpers = ["toon_unit", "toon_step", "toon_band", "toon_pixel_width", "toon_pixel_border_width"];
-    for (_, function) in validated(WGSL).functions.iter() {
-        let name = function.name.as_deref().unwrap();
-        let known = rust.contains(&format!("fn {name}("));
-        assert!(known != helpers.contains(&name), "{name}");
-    }
+macro_rules! pairs {
+    ($($stem:literal),*) => {
+        [$(Pair {
+            wgsl: include_str!(concat!("../src/", $stem, ".wgsl")),
+            rust: include_str!(concat!("../src/", $stem, ".rs")),
+        }),*]
+    };
 }
 
-/// Where the members of a struct of the WGSL lie, but for its padding, and its size.
+const EXCEPTIONS: Exceptions = Exceptions {
+    wgsl_only: &[
+        ("toon_unit", "Rust calls DVec3::normalize_or_zero"),
+        ("toon_step", "a single border for shaders without bands"),
+        ("toon_pixel_width", "takes derivatives, which Rust does not have"),
+        ("toon_pixel_border_width", "takes derivatives, which Rust does not have"),
+    ],
+    renamed: &[("toon_band", "toon_band_smooth", "Rust has a function of its own for width 0, toon_band_hard")],
+    types: &[
+        ("Bands", "ToonBands", "the uniform of the style"),
+        ("Ramp", "ToonRamp", "the uniform of the style"),
+        ("Ramp2d", "ToonRamp2d", "the uniform of the style"),
+        ("Painter", "ToonPainter", "the uniform of the style"),
+        ("LightPlace", "vec4<f32>", "a direction with w 0, or a position with w 1"),
+    ],
+    split: &[
+        (
+            "toon_half_lambert",
+            "parameters",
+            &[("scale", "f32"), ("bias", "f32"), ("squared", "u32")],
+            "the fields of HalfLambert, which has no uniform",
+        ),
+        (
+            "toon_highlight",
+            "bands",
+            &[("threshold", "f32"), ("strength", "f32"), ("lit_only", "u32")],
+            "the fields of Highlight that matter, so that shaders without ToonBands can call it",
+        ),
+    ],
+    types_of: &[("toon_table_mix", "DVec3", "vec4<f32>", "textureLoad returns four components, and alpha is not read")],
+};
+
+/// The differences between the WGSL files, with one text replaced, and the Rust files.
+fn differences_with(old: &str, new: &str) -> Vec<String> {
+    let pairs = pairs!["light", "border", "half_lambert", "source", "ramp", "row", "table", "painter"];
+    let changed = WGSL.replace(old, new);
+    assert!(old == new || changed != WGSL, "{old} is not there");
+    differences(&validated(&changed), &pairs, &EXCEPTIONS)
+}
+
+#[test]
+fn functions_have_the_signatures_of_the_rust_ones() {
+    assert_eq!(differences_with("", ""), [""; 0]);
+}
+
+#[test]
+fn a_different_signature_is_found() {
+    let swapped =
+        differences_with("fn toon_width(along_x: f32, along_y: f32)", "fn toon_width(along_y: f32, along_x: f32)");
+    assert!(matches!(&swapped[..], [line] if line.starts_with("toon_width: ")), "{swapped:?}");
+    let missing = differences_with("toon_overbright", "toon_over_bright");
+    assert!(matches!(&missing[..], [line] if line.starts_with("toon_over_bright: ")), "{missing:?}");
+}
+
+/// The members of a WGSL struct with their byte offsets, without padding, and its size in bytes.
 fn layout(name: &str) -> (Vec<(String, usize)>, usize) {
     let module = validated(WGSL);
     let (_, found) = module.types.iter().find(|(_, t)| t.name.as_deref() == Some(name)).unwrap();
@@ -92,7 +139,7 @@ fn uniforms_have_the_layout_of_the_shader() {
     assert_eq!((sizes, size_of::<PainterUniform>()), ([160, 144, 304], 64));
 }
 
-/// The limits and counts of the WGSL are those of the Rust files.
+/// The constants of the WGSL are equal to those of the Rust files.
 #[test]
 fn constants_are_the_same() {
     for constant in [
@@ -177,7 +224,7 @@ fn packs_ramps() {
     let uniform = Ramp2dUniform::new(&ramps).unwrap();
     assert_eq!(uniform.a.stops[0], [0.2, 0.2, 0.2, -1.0]);
     assert_eq!(uniform.a.stops[2], [0.9, 0.9, 1.0, 0.8]);
-    // Those not in use repeat the last colour.
+    // Unused entries repeat the last colour.
     assert_eq!(uniform.b.stops[7], [0.9, 0.9, 1.0, 1e4]);
     assert_eq!((uniform.a.is_smooth, uniform.corner), (0, [1.0, 0.0, 0.0, 0.9]));
     let smooth = Ramp { blend: RampBlend::Smooth, ..ramps.a.clone() };
@@ -189,7 +236,7 @@ fn packs_ramps() {
 fn packs_bands() {
     let uniform = ToonUniform::new(&Bands::chapter_text()).unwrap();
     assert_eq!(uniform.bands[0], [0.2, 0.2, 0.2, 0.1]);
-    // Those not in use repeat the last tone.
+    // Unused entries repeat the last tone.
     assert_eq!((uniform.bands[1], uniform.bands[7]), ([0.6, 0.6, 0.6, 1e4], [0.6, 0.6, 0.6, 1e4]));
     assert_eq!(uniform.highlight, [0.9, 0.9, 1.0, 0.8]);
     assert_eq!((uniform.count, uniform.highlight_strength), (2, 1.0));

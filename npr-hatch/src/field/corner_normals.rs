@@ -1,16 +1,16 @@
-//! The normals that curvature is measured by: those given, or, where these say nothing, means of face normals.
+//! The normals for the curvature fit: the given normals, or means of face normals where these are missing or flat.
 
 use glam::{DVec3, Vec3};
 
 use super::surface::{Face, Surface};
 
-/// A face whose corner normals are this near to each other, squared, is a facet.
+/// A face is a facet if the squared distances between its corner normals are below this.
 const FLAT: f64 = 1e-6;
-/// The cosine of 50°: facets that meet at less are one round surface. (The sides of an octagonal prism are, at 45°;
-/// those of a hexagonal one are not.)
-const ROUND: f64 = 0.642_787_609_686_539_3;
-/// Around a node with more faces than this all count, whatever the angle: comparing each with each would take too long.
-const MOST_COMPARED: usize = 64;
+/// The cosine of 50°. Facets that meet at a smaller angle are treated as one smooth surface, such as the sides of an
+/// octagonal prism (45°), but not those of a hexagonal prism (60°).
+const SMOOTH_COS: f64 = 0.642_787_609_686_539_3;
+/// At nodes with more faces all faces are used regardless of the angle, to bound the quadratic number of comparisons.
+const MAX_COMPARED: usize = 64;
 
 /// Per face of the surface three unit normals.
 pub(super) fn corner_normals(
@@ -21,7 +21,7 @@ pub(super) fn corner_normals(
 ) -> Vec<[DVec3; 3]> {
     let mut corners: Vec<[DVec3; 3]> =
         surface.faces.iter().map(|face| faces[face.given as usize].map(|v| unit(normals[v as usize]))).collect();
-    // Where a part has only facets, its normals are the faces' and tell of no curvature.
+    // In a component of facets only, the normals are those of the faces and contain no curvature.
     let mut faceted = vec![true; surface.size.len()];
     for (face, corners) in surface.faces.iter().zip(&corners) {
         let flat = corners.iter().all(|n| n.distance_squared(corners[0]) < FLAT);
@@ -44,18 +44,18 @@ pub(super) fn corner_normals(
     corners
 }
 
-/// Zero where there is none.
+/// A unit vector; zero if the input is zero or not finite.
 pub(super) fn unit(normal: Vec3) -> DVec3 {
     let unit = normal.as_dvec3().normalize_or_zero();
     if unit.is_finite() { unit } else { DVec3::ZERO }
 }
 
-/// The faces around each node: their normals, and how much each counts at that corner.
+/// The faces around each node: their normals, and their weights at that corner.
 struct Around {
-    /// Per node where its faces begin, and the end.
+    /// Per node the start of its range in `faces`, followed by the end of the last range.
     offsets: Vec<u32>,
     faces: Vec<(DVec3, f64)>,
-    /// Per node the sum over all.
+    /// Per node the weighted sum of all normals.
     sums: Vec<DVec3>,
 }
 
@@ -76,7 +76,7 @@ impl Around {
             let size = surface.size_at(face);
             for (k, node) in face.nodes.into_iter().enumerate() {
                 let [to, fro] = [1, 2].map(|step| ((corners[(k + step) % 3] - corners[k]) / size).length_squared());
-                // Max 1999: the normals of a sphere, exactly, from any triangles in it.
+                // The weights of Max 1999, which are exact for triangles inscribed in a sphere.
                 let weight = face.area / (size * size) / (to * fro);
                 let weight = if weight.is_finite() { weight } else { 0.0 };
                 list[next[node as usize] as usize] = (face.normal, weight);
@@ -87,14 +87,14 @@ impl Around {
         Self { offsets, faces: list, sums }
     }
 
-    /// Around a node, of the faces that make one round surface with that of this normal.
+    /// The mean normal of the faces at a node that form a smooth surface with the face of this normal.
     fn mean(&self, node: u32, normal: DVec3) -> DVec3 {
         let node = node as usize;
         let faces = &self.faces[self.offsets[node] as usize..self.offsets[node + 1] as usize];
-        let sum = if faces.len() > MOST_COMPARED {
+        let sum = if faces.len() > MAX_COMPARED {
             self.sums[node]
         } else {
-            faces.iter().filter(|(n, _)| n.dot(normal) > ROUND).map(|&(n, weight)| n * weight).sum()
+            faces.iter().filter(|(n, _)| n.dot(normal) > SMOOTH_COS).map(|&(n, weight)| n * weight).sum()
         };
         sum.normalize_or(normal)
     }

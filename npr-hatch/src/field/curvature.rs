@@ -8,13 +8,13 @@ use super::{
     tangent::{Tangent, carry},
 };
 
-/// A face that is narrower than this, height by longest edge, has no curvature of its own.
-const NARROWEST: f64 = 1e-6;
+/// The minimum ratio of height to longest edge of faces that are used.
+const MIN_ASPECT: f64 = 1e-6;
 
-/// Per node its curvature, times its part's size: the mean of both principal curvatures as the scalar, half of their
-/// difference as the weight of the line along the larger one.
+/// Per node its curvature times the size of its component: the mean curvature as the scalar, and half the difference of the
+/// principal curvatures as the weight of the line along the larger.
 ///
-/// `corners` holds the face corners' positions and their unit normals.
+/// `corners` are the positions and the unit normals at the corners of each face.
 pub(super) fn curvature(
     surface: &Surface,
     tangents: &[Tangent],
@@ -30,7 +30,7 @@ pub(super) fn curvature(
         let (u, normal) = (u.as_vec3(), face.normal.as_vec3());
         for node in face.nodes {
             let tangent = &tangents[node as usize];
-            // A face wound the other way round is seen from behind: mirrored.
+            // The second fundamental form of a face with opposite winding is mirrored.
             let side = if tangent.normal.dot(normal) < 0.0 { -1.0 } else { 1.0 };
             let Some(turn) = tangent.line(carry(u, normal * side, tangent.normal)).try_normalize() else { continue };
             let value = Value { scalar: mean, line: Vec2::new(along, across * side).rotate(turn) };
@@ -44,13 +44,13 @@ pub(super) fn curvature(
     sums.into_iter().map(|(sum, total)| if total > 0.0 { sum.scaled(1.0 / total) } else { Value::default() }).collect()
 }
 
-/// The second fundamental form in a face, (uu, uv, vv), and the direction u, along its longest edge: what best takes
-/// each edge to the difference of the normals at its ends.
+/// The direction u of the longest edge of a face, and its second fundamental form (uu, uv, vv): the least-squares solution
+/// that maps each edge to the difference of the normals at its ends.
 fn second_form(face: &Face, positions: &[DVec3; 3], normals: &[DVec3; 3]) -> Option<(DVec3, DVec3)> {
     let edges = [0, 1, 2].map(|k| (positions[(k + 1) % 3] - positions[k], normals[(k + 1) % 3] - normals[k]));
     let (longest, _) = edges.into_iter().max_by(|(a, _), (b, _)| a.length_squared().total_cmp(&b.length_squared()))?;
     let length = longest.length();
-    if 2.0 * face.area < NARROWEST * length * length {
+    if 2.0 * face.area < MIN_ASPECT * length * length {
         return None;
     }
     let u = longest / length;

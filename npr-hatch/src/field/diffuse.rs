@@ -1,19 +1,19 @@
-//! Diffusion over the nodes, each holding on to what it knows: a screened Laplace equation, solved from coarse to fine.
+//! Diffusion over the nodes: a screened Laplace equation, solved from coarse to fine.
 //!
-//! Where a node knows u0 with confidence c, and lengths are in units of the part's size,
+//! For known values u0 of confidence c, and lengths in units of the size of the component:
 //!
 //! > (c + floor) u - length² Δu = c u0
 //!
-//! With c = 1 this averages over about `length`. The Laplacian has cotangent weights (Pinkall and Polthier 1993; kept
-//! positive), so that the solution hardly depends on how the surface is cut. Sweeps alone would carry only as many
-//! edges far as there are sweeps: so the equation is first solved on clusters of nodes, clusters of these, and so on,
-//! and each solution is where the finer one begins.
+//! With c = 1 this averages over about `length`. The Laplacian has cotangent weights (Pinkall and Polthier 1993), clamped to
+//! positive values, so that the solution hardly depends on the tessellation. Relaxation sweeps propagate values by one edge
+//! each. The equation is therefore solved on a hierarchy of clusters of nodes, each solution being the initial value of the
+//! next finer level.
 
 use glam::{DVec3, Vec2, Vec3};
 
 use super::{surface::Surface, tangent::Tangent};
 
-/// What is diffused: a scalar, and a line with its weight in the node's tangent plane.
+/// The diffused quantity: a scalar, and a weighted line in the tangent plane of the node.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Value {
     pub scalar: f32,
@@ -38,44 +38,44 @@ impl Value {
     }
 }
 
-/// How often the equation is solved, each time for what the last time left.
+/// The number of solutions; each after the first is for the residual of the preceding ones.
 const ROUNDS: u32 = 3;
-/// Sweeps on each level in each round, every other one backwards.
+/// Gauss-Seidel sweeps per level and round, alternately forwards and backwards.
 const SWEEPS: u32 = 6;
-/// By what a sweep goes beyond what Gauss and Seidel say. With these three, a field of which the fallback takes a part
-/// is within 0.7° (mean) of that on a mesh of 16 times the faces; in one round of 20 sweeps it was within 3°.
+/// The factor of successive over-relaxation. With these three constants a field with a share of the fallback differs by
+/// 0.7° on average from that on a mesh of 16 times the faces; one round of 20 sweeps differs by 3°.
 const OVER: f32 = 1.4;
-/// No coarser level is made of fewer nodes than this.
+/// A level is coarsened if it has at least twice this number of nodes.
 const COARSEST: usize = 32;
-/// Cotangents, halved, are kept within this, so that needles neither cut nodes off nor tie them together.
+/// The range of half the cotangent weights, so that needle-shaped faces neither isolate nor fuse nodes.
 const WEIGHTS: [f64; 2] = [0.02, 10.0];
 
-/// An edge, seen from one end.
+/// A directed edge.
 struct Link {
     to: u32,
     weight: f32,
-    /// Takes lines over from the other end.
+    /// The factor that transports lines from the node `to`.
     turn: Vec2,
 }
 
 pub(super) struct Level {
     pub tangents: Vec<Tangent>,
-    /// Shares of the part's area.
+    /// The area of each node as a fraction of the area of its component.
     mass: Vec<f32>,
-    /// Per node where its links begin, and the end.
+    /// Per node the start of its range in `links`, followed by the end of the last range.
     offsets: Vec<u32>,
     links: Vec<Link>,
-    /// Per node its cluster in the next level, and what takes lines there; empty on the last one.
+    /// Per node its cluster in the next level, and the factor that transports lines there; empty on the coarsest level.
     up: Vec<(u32, Vec2)>,
 }
 
-/// The nodes with their links, and clusters of them, each level several times smaller than the one before.
+/// The nodes with their links, and levels of clusters, each several times smaller than the preceding one.
 pub(super) struct Hierarchy {
     pub levels: Vec<Level>,
 }
 
 impl Hierarchy {
-    /// `positions`: of each face's corners.
+    /// `positions` returns the positions of the corners of a face.
     pub fn new(surface: &Surface, tangents: Vec<Tangent>, positions: impl Fn(u32) -> [DVec3; 3]) -> Self {
         let mut mass = vec![0.0; tangents.len()];
         let mut pairs = Vec::with_capacity(surface.faces.len() * 6);
@@ -97,7 +97,7 @@ impl Hierarchy {
         Self { levels }
     }
 
-    /// `known`: per node the confidence, 0..=1, and what is known.
+    /// `known`: per node the confidence, 0..=1, and the known value.
     pub fn diffuse(&self, known: &[(f32, Value)], length: f32, floor: f32) -> Vec<Value> {
         let scale = length * length;
         let finest = &self.levels[0];
@@ -127,7 +127,8 @@ impl Hierarchy {
         values
     }
 
-    /// From coarse to fine. `holds`: per level and node what holds it; `given`: per node the equation's right side.
+    /// Solves from coarse to fine. `holds`: per level and node the factor (c + floor) times its mass; `given`: per node the
+    /// right-hand side.
     fn solve(&self, holds: &[Vec<f32>], given: Vec<Value>, scale: f32) -> Vec<Value> {
         let mut right = vec![given];
         for level in &self.levels[..self.levels.len() - 1] {
@@ -164,7 +165,7 @@ impl Hierarchy {
 }
 
 impl Level {
-    /// `pairs`: from, to and weight, both ways; several of the same are added up.
+    /// `pairs`: from, to and weight, in both directions; the weights of equal pairs are added.
     fn new(tangents: Vec<Tangent>, mass: Vec<f32>, pairs: &[(u32, u32, f32)]) -> Self {
         let mut ends = vec![0_usize; tangents.len() + 1];
         for &(from, ..) in pairs {
@@ -199,12 +200,12 @@ impl Level {
         &self.links[self.offsets[node] as usize..self.offsets[node + 1] as usize]
     }
 
-    /// How many there are of [`Level::up`].
+    /// The number of clusters in the next level.
     fn clusters(&self) -> usize {
         self.up.iter().map(|(up, _)| *up as usize + 1).max().unwrap_or(0)
     }
 
-    /// What a node is held by in all, and that times what it is drawn to.
+    /// The diagonal element of a node's equation, and its right-hand side with the neighbours' terms.
     fn pull(&self, node: usize, values: &[Value], hold: f32, right: Value, scale: f32) -> (f32, Value) {
         self.links(node).iter().fold((hold, right), |(hold, sum), link| {
             let weight = link.weight * scale;
@@ -212,22 +213,23 @@ impl Level {
         })
     }
 
-    /// Clusters nodes with their neighbours. `None` where there is little left to put together.
+    /// Clusters nodes with their neighbours. `None` if the number of nodes would hardly decrease.
     fn coarsen(&mut self) -> Option<Self> {
         const NONE: u32 = u32::MAX;
         let nodes = self.tangents.len();
         if nodes < 2 * COARSEST {
             return None;
         }
-        let alike = |a: usize, b: usize| self.tangents[a].normal.dot(self.tangents[b].normal) > 0.0;
+        let same_side = |a: usize, b: usize| self.tangents[a].normal.dot(self.tangents[b].normal) > 0.0;
         let mut cluster = vec![NONE; nodes];
         let mut clusters = 0;
-        // First those around nodes of which no neighbour is taken, then the others join what they are tied to most.
+        // First clusters of a node and all its neighbours where none of them is in a cluster; the remaining nodes then join
+        // the cluster of their strongest link.
         for node in 0..nodes {
             let free = |link: &Link| cluster[link.to as usize] == NONE;
             if cluster[node] == NONE && self.links(node).iter().all(free) {
                 cluster[node] = clusters;
-                for link in self.links(node).iter().filter(|link| alike(node, link.to as usize)) {
+                for link in self.links(node).iter().filter(|link| same_side(node, link.to as usize)) {
                     cluster[link.to as usize] = clusters;
                 }
                 clusters += 1;
@@ -235,7 +237,7 @@ impl Level {
         }
         for node in 0..nodes {
             if cluster[node] == NONE {
-                let taken = |link: &&Link| cluster[link.to as usize] != NONE && alike(node, link.to as usize);
+                let taken = |link: &&Link| cluster[link.to as usize] != NONE && same_side(node, link.to as usize);
                 let strongest = self.links(node).iter().filter(taken).max_by(|a, b| a.weight.total_cmp(&b.weight));
                 cluster[node] = match strongest {
                     Some(link) => cluster[link.to as usize],
@@ -257,7 +259,7 @@ impl Level {
             normals[to as usize] += self.tangents[node].normal * self.mass[node];
         }
         for (node, &to) in cluster.iter().enumerate().rev() {
-            // The one with the lowest number stands in where the sum vanishes.
+            // Where the sum vanishes, the normal of the lowest-numbered node is used.
             if normals[to as usize].try_normalize().is_none() {
                 normals[to as usize] = self.tangents[node].normal;
             }
@@ -269,8 +271,8 @@ impl Level {
                 (to, tangents[to as usize].turn(&self.tangents[node]).unwrap_or(Vec2::X))
             })
             .collect();
-        // Edges between clusters are longer than those that they consist of, as the root of the cluster's size, and in
-        // the sum only their number is in it.
+        // The summed weights grow with the number of edges between clusters; their greater length, proportional to the
+        // square root of the cluster size, is accounted for here.
         let scale = shrink.sqrt();
         let pairs: Vec<_> = (0..nodes)
             .flat_map(|node| self.links(node).iter().map(move |link| (node, link)))

@@ -1,29 +1,29 @@
-//! The mesh as the field sees it: one node for each position, faces that have an area, sizes of connected parts.
+//! The mesh of a field: one node per position, faces with non-zero area, and the sizes of connected components.
 
 use glam::{DVec3, Vec3};
 
-/// Where a vertex is in no face that counts.
+/// The node of a vertex that is in none of the used faces.
 pub(super) const NO_NODE: u32 = u32::MAX;
 
-/// A face with three finite corners in three places and an area.
+/// A face with three different finite corners and a non-zero area.
 pub(super) struct Face {
-    /// Into the faces as given.
+    /// Index into the input faces.
     pub given: u32,
     /// The nodes of its corners.
     pub nodes: [u32; 3],
-    /// Unit.
+    /// The unit normal.
     pub normal: DVec3,
     pub area: f64,
 }
 
 pub(super) struct Surface {
     pub faces: Vec<Face>,
-    /// Per vertex, or [`NO_NODE`].
+    /// Per vertex its node, or [`NO_NODE`].
     pub node_of: Vec<u32>,
-    /// Per node the connected part that it belongs to.
+    /// Per node its connected component.
     pub part: Vec<u32>,
-    /// Per connected part the root of its area: what all lengths are measured by. (A box around it would depend on how
-    /// it is turned.)
+    /// Per component the square root of its area, the unit of all lengths. Unlike a bounding box it is invariant to
+    /// rotation.
     pub size: Vec<f64>,
 }
 
@@ -34,16 +34,15 @@ impl Surface {
         let mut nodes = 0;
         let mut kept = Vec::with_capacity(faces.len());
         for (given, face) in faces.iter().enumerate() {
-            let stands_for = face.map(|v| representative[v as usize]);
+            let welded = face.map(|v| representative[v as usize]);
             let [a, b, c] = face.map(|v| positions[v as usize].as_dvec3());
             let twice = (b - a).cross(c - a);
             let area = twice.length() / 2.0;
-            let apart =
-                stands_for[0] != stands_for[1] && stands_for[1] != stands_for[2] && stands_for[2] != stands_for[0];
-            if !(apart && area > 0.0 && area.is_finite()) {
+            let distinct = welded[0] != welded[1] && welded[1] != welded[2] && welded[2] != welded[0];
+            if !(distinct && area > 0.0 && area.is_finite()) {
                 continue;
             }
-            let nodes = stands_for.map(|v| {
+            let nodes = welded.map(|v| {
                 let node = &mut of_representative[v as usize];
                 if *node == NO_NODE {
                     *node = nodes;
@@ -67,7 +66,7 @@ impl Surface {
         self.part.len()
     }
 
-    /// The size of the part that a face belongs to.
+    /// The size of the component that a face belongs to.
     pub fn size_at(&self, face: &Face) -> f64 {
         self.size[self.part[face.nodes[0] as usize] as usize]
     }
@@ -77,7 +76,7 @@ impl Surface {
         for face in &self.faces {
             for node in &face.nodes[1..] {
                 let (a, b) = (root(&mut parent, face.nodes[0]), root(&mut parent, *node));
-                // The lower one leads, so that the numbers below ascend.
+                // The lower root is kept, so that components are numbered in the order of their first nodes.
                 parent[a.max(b) as usize] = a.min(b);
             }
         }
@@ -100,7 +99,7 @@ impl Surface {
     }
 }
 
-/// Union–find, halving paths.
+/// The root of a node in a union-find forest, with path halving.
 fn root(parent: &mut [u32], mut node: u32) -> u32 {
     while parent[node as usize] != node {
         let above = parent[parent[node as usize] as usize];

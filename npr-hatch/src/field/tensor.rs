@@ -1,33 +1,31 @@
-//! Lines as tensors, which may be interpolated.
+//! Lines as tensors, which can be interpolated.
 
 use glam::{DMat3, DVec3, Vec3};
 
-/// d dᵀ of a unit direction d: a line in space, the same for d and -d.
+/// The tensor d dᵀ of a unit vector d: an undirected line, equal for d and -d.
 ///
-/// Sums with weights of several, such as what is interpolated over a triangle, are symmetric tensors without negative
-/// eigenvalues; [`LineTensor::direction`] is then the line that fits them best.
+/// Weighted sums, such as tensors interpolated over a triangle, are symmetric and positive semidefinite;
+/// [`LineTensor::direction`] is their principal direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct LineTensor {
-    /// xx, yy, zz.
+    /// The elements xx, yy, zz.
     pub diagonal: [f32; 3],
-    /// xy, xz, yz.
+    /// The elements xy, xz, yz.
     pub others: [f32; 3],
 }
 
-/// Squarings in [`LineTensor::direction`]: the tensor's 4096th power. Where the two largest eigenvalues are a percent
-/// apart the rest of the second is e^-40.
+/// The number of squarings in [`LineTensor::direction`], which give the 4096th power of the tensor. If the two largest
+/// eigenvalues differ by 1 %, the contribution of the second is e^-40.
 const SQUARINGS: u32 = 12;
 
 impl LineTensor {
-    /// Of a unit direction.
+    /// The tensor of a unit vector.
     pub fn from_direction(d: Vec3) -> Self {
         Self { diagonal: (d * d).to_array(), others: [d.x * d.y, d.x * d.z, d.y * d.z] }
     }
 
-    /// The unit eigenvector of the largest eigenvalue, its sign without meaning: the direction that this is made of.
-    /// Where the largest eigenvalue is a double one, one of its directions; zero where the tensor is zero or not
-    /// finite.
+    /// A unit eigenvector of the largest eigenvalue, of arbitrary sign. Zero if the tensor is zero or not finite.
     ///
     /// ```
     /// use glam::Vec3;
@@ -39,7 +37,7 @@ impl LineTensor {
     pub fn direction(&self) -> Vec3 {
         let ([xx, yy, zz], [xy, xz, yz]) = (self.diagonal.map(f64::from), self.others.map(f64::from));
         let mut power = DMat3::from_cols_array(&[xx, xy, xz, xy, yy, yz, xz, yz, zz]);
-        // Powers turn every column towards the eigenvector.
+        // The columns of high powers converge to the eigenvector.
         for _ in 0..SQUARINGS {
             let largest = power.abs().to_cols_array().into_iter().fold(0.0, f64::max);
             if !(largest > 0.0 && largest.is_finite()) {

@@ -1,6 +1,6 @@
 use super::*;
 
-/// Turned over an edge, a line keeps its angle to it; projected, it would not.
+/// A line that is transported over an edge keeps its angle to the edge. A projected line would not.
 #[test]
 fn a_line_keeps_its_angle_to_the_edge() {
     let from = Tangent::new(Vec3::Y);
@@ -12,7 +12,7 @@ fn a_line_keeps_its_angle_to_the_edge() {
         let expected = Vec3::new(0.6, -angle.sin() * 0.8, angle.cos() * 0.8);
         assert!(found.dot(expected).abs() > 1.0 - 1e-6, "{angle}: {found}, {expected}");
     }
-    // From behind, the plane is the same.
+    // The opposite normal has the same plane.
     let found = at_vertex(Some((&from, value)), Vec3::NEG_Y, Vec3::X);
     assert!(found.dot(known).abs() > 1.0 - 1e-6, "{found}");
 }

@@ -1,4 +1,4 @@
-//! Surfaces whose principal directions are known, cut into triangles evenly or not.
+//! Surfaces with known principal directions, with regular and irregular tessellations.
 
 use glam::{DVec3, Vec3};
 use npr_hatch::field::{FieldOptions, LineTensor, direction_field};
@@ -14,18 +14,18 @@ pub struct Mesh {
     pub parameters: Vec<[f64; 2]>,
 }
 
-/// How a patch of parameters is cut.
+/// The tessellation of a parameter rectangle.
 #[derive(Clone, Copy)]
 pub struct Cut {
     pub cells: [u32; 2],
-    /// Whether the last column is the first one again; likewise rows.
+    /// Whether the last column is identified with the first, and the last row with the first.
     pub closed: [bool; 2],
-    /// How far vertices stray, in cells; also, diagonals go either way.
+    /// The random displacement of vertices in cells; if not zero, diagonals have random directions.
     pub stray: f64,
 }
 
 impl Mesh {
-    /// Of points and normals by parameters in 0..=1.
+    /// A mesh from a function that maps parameters in 0..=1 to points and normals.
     pub fn patch(cut: Cut, at: impl Fn(f64, f64) -> (DVec3, DVec3)) -> Self {
         let [across, along] = cut.cells;
         let counts = [across + u32::from(!cut.closed[0]), along + u32::from(!cut.closed[1])];
@@ -61,8 +61,8 @@ impl Mesh {
         field.unwrap()
     }
 
-    /// The largest and the mean angle, in degrees, between a field and the exact directions; `None` where a vertex does
-    /// not count.
+    /// The maximum and the mean angle in degrees between a field and the exact directions. Vertices with `None` are
+    /// excluded.
     pub fn errors(&self, field: &[LineTensor], exact: impl Fn(usize) -> Option<DVec3>) -> [f64; 2] {
         let angles = field.iter().enumerate().filter_map(|(i, tensor)| Some(degrees(tensor.direction(), exact(i)?)));
         let (largest, sum, count) = angles.fold((0.0, 0.0, 0), |(m, s, n), a| (f64::max(m, a), s + a, n + 1));
@@ -70,7 +70,7 @@ impl Mesh {
         [largest, sum / f64::from(count)]
     }
 
-    /// Every face with three vertices of its own, which keep their normals.
+    /// The mesh with three separate vertices per face, which keep their normals.
     pub fn apart(&self) -> Self {
         let corners: Vec<u32> = self.faces.iter().flatten().copied().collect();
         let mut first = vec![None; self.positions.len()];
@@ -83,7 +83,7 @@ impl Mesh {
         }
     }
 
-    /// Likewise, with the face's normal at all three.
+    /// The mesh with three separate vertices per face, which have the normal of the face.
     pub fn faceted(&self) -> Self {
         let mut mesh = self.apart();
         for face in &mesh.faces {
@@ -93,7 +93,7 @@ impl Mesh {
         mesh
     }
 
-    /// Adds another one, whose vertices stay apart.
+    /// Appends another mesh without merging vertices.
     pub fn append(&mut self, other: &Self) {
         let first = self.positions.len() as u32;
         self.positions.extend(&other.positions);
@@ -111,24 +111,24 @@ impl Mesh {
     }
 }
 
-/// Between two lines.
+/// The angle between two undirected lines in degrees.
 pub fn degrees(a: Vec3, b: DVec3) -> f64 {
     let (a, b) = (a.as_dvec3(), b.normalize());
     f64::atan2(a.cross(b).length(), a.dot(b).abs()).to_degrees()
 }
 
-/// Around z.
+/// The direction around the z axis.
 pub fn around(turns: f64) -> DVec3 {
     let (sin, cos) = (turns * std::f64::consts::TAU).sin_cos();
     DVec3::new(cos, sin, 0.0)
 }
 
-/// Of radius 1 around z from -1 to 1, open.
+/// An open cylinder of radius 1 around z from -1 to 1.
 pub fn cylinder(cells: [u32; 2], stray: f64) -> Mesh {
     Mesh::patch(Cut { cells, closed: [true, false], stray }, |u, v| (around(u) + DVec3::Z * (2.0 * v - 1.0), around(u)))
 }
 
-/// Around z; the first parameter goes around the axis, the second around the tube.
+/// A torus around z; the first parameter is the angle around the axis, the second around the tube.
 pub fn torus(major: f64, minor: f64, cells: [u32; 2], stray: f64) -> Mesh {
     Mesh::patch(Cut { cells, closed: [true, true], stray }, |u, v| {
         let tube = around(v);
@@ -143,7 +143,8 @@ pub fn around_tube([u, v]: [f64; 2]) -> DVec3 {
     around(u) * ahead.x + DVec3::Z * ahead.y
 }
 
-/// Semi-axes along x, y, z; the first parameter is the longitude. Its poles are many vertices at one position.
+/// An ellipsoid with semi-axes along x, y and z; the first parameter is the longitude. Each pole consists of many
+/// vertices at one position.
 pub fn ellipsoid(axes: DVec3, cells: [u32; 2], stray: f64) -> Mesh {
     let mut mesh = Mesh::patch(Cut { cells, closed: [true, false], stray }, |u, v| {
         let latitude = around((v - 0.5) / 2.0);
@@ -160,9 +161,11 @@ pub fn ellipsoid(axes: DVec3, cells: [u32; 2], stray: f64) -> Mesh {
     mesh
 }
 
-/// At a point of an ellipsoid with these semi-axes: both principal curvatures, the larger one first, and its direction.
+/// Both principal curvatures at a point of an ellipsoid with these semi-axes, the larger first, and the direction of
+/// the larger.
 pub fn ellipsoid_curvature(axes: DVec3, point: DVec3) -> ([f64; 2], DVec3) {
-    // The level set of F = sum of (x / a)²: its shape operator is the Hessian over the gradient's length, in the plane.
+    // For the level set F = Σ (x / a)² the shape operator is the Hessian divided by the length of the gradient,
+    // restricted to the tangent plane.
     let hessian = 2.0 / (axes * axes);
     let gradient = hessian * point;
     let (u, v) = gradient.normalize().any_orthonormal_pair();

@@ -3,6 +3,8 @@
 use super::Document;
 use crate::LoadError;
 use crate::load::external::{External, meanings, shortened};
+use base64::{DecodeError, Engine};
+use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use gltf::json::{Index, Root, buffer};
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -181,55 +183,29 @@ pub(super) fn data_uri(uri: &str) -> Option<Result<Vec<u8>, String>> {
     Some(if is_base64 { base64(&data) } else { Ok(data.into_owned()) })
 }
 
-/// Base 64 in the standard alphabet (RFC 4648, 4), with or without the padding at its end.
+/// Decodes base 64 in the standard alphabet (RFC 4648, section 4) with or without padding.
 fn base64(text: &[u8]) -> Result<Vec<u8>, String> {
+    let config = GeneralPurposeConfig::new()
+        .with_decode_padding_mode(DecodePaddingMode::RequireNone)
+        .with_decode_allow_trailing_bits(true);
     let padding = text.iter().rev().take(2).take_while(|c| **c == b'=').count();
-    let digits = &text[..text.len() - padding];
-    if digits.len() % 4 == 1 {
-        return Err("base 64 data cut off".to_owned());
-    }
-    let mut bytes = Vec::with_capacity(digits.len() / 4 * 3 + 2);
-    for (number, group) in digits.chunks(4).enumerate() {
-        let mut bits = 0u32;
-        for (at, &c) in group.iter().enumerate() {
-            let digit = match c {
-                b'A'..=b'Z' => c - b'A',
-                b'a'..=b'z' => c - b'a' + 26,
-                b'0'..=b'9' => c - b'0' + 52,
-                b'+' => 62,
-                b'/' => 63,
-                _ => return Err(format!("character {} of the base 64 data is none of its digits", number * 4 + at)),
-            };
-            bits |= u32::from(digit) << (18 - 6 * at);
-        }
-        bytes.extend_from_slice(&bits.to_be_bytes()[1..group.len()]);
-    }
-    Ok(bytes)
+    let engine = GeneralPurpose::new(&base64::alphabet::STANDARD, config);
+    engine.decode(&text[..text.len() - padding]).map_err(|error| match error {
+        DecodeError::InvalidByte(at, _) => format!("character {at} of the base 64 data is not a base 64 digit"),
+        _ => "base 64 data cut off".to_owned(),
+    })
 }
 
+/// Decodes percent-encoding. Unlike the URL standard it refuses a '%' without two hexadecimal digits.
 fn percent_decoded(text: &str) -> Result<Cow<'_, [u8]>, String> {
-    if !text.contains('%') {
-        return Ok(Cow::Borrowed(text.as_bytes()));
+    let is_valid = |(at, _)| text.get(at + 1..at + 3).is_some_and(|code| code.bytes().all(|c| c.is_ascii_hexdigit()));
+    if !text.match_indices('%').all(is_valid) {
+        return Err("'%' in a URI without two hexadecimal digits".to_owned());
     }
-    let mut bytes = Vec::with_capacity(text.len());
-    let mut rest = text.as_bytes();
-    while let Some((&first, after)) = rest.split_first() {
-        rest = after;
-        if first != b'%' {
-            bytes.push(first);
-            continue;
-        }
-        let digit = |at: usize| after.get(at).and_then(|c| char::from(*c).to_digit(16));
-        let (Some(high), Some(low)) = (digit(0), digit(1)) else {
-            return Err("'%' in a URI without two hexadecimal digits".to_owned());
-        };
-        bytes.push((high * 16 + low) as u8);
-        rest = &after[2..];
-    }
-    Ok(Cow::Owned(bytes))
+    Ok(percent_encoding::percent_decode_str(text).into())
 }
 
-/// The names that a URI may mean: of a file relative to the model's folder, or, from a `file:` URI, absolute.
+/// The possible file names of a URI: relative to the model's folder, or absolute for a `file:` URI.
 pub(super) fn names(uri: &str) -> Result<Vec<PathBuf>, String> {
     let refused = |why: &str| format!("URI \"{}\" {why}", shortened(uri));
     let local = uri.get(..7).filter(|scheme| scheme.eq_ignore_ascii_case("file://")).map(|_| &uri[7..]);
@@ -255,6 +231,9 @@ mod tests {
             ("", &b""[..]),
             ("Zg==", b"f"),
             ("Zg", b"f"),
+            ("Zg=", b"f"),
+            // Bits beyond the last byte are ignored.
+            ("Zh==", b"f"),
             ("Zm8=", b"fo"),
             ("Zm9v", b"foo"),
             ("Zm9vYg==", b"foob"),
@@ -262,7 +241,7 @@ mod tests {
         ] {
             assert_eq!(base64(text.as_bytes()).unwrap(), bytes, "{text}");
         }
-        for text in ["Z", "Zm9vY", "Zm 9", "Zg===", "Z=g=", "Zm9-"] {
+        for text in ["Z", "Zm9vY", "Zm 9", "Zg===", "Z=g=", "Zm9-", "Zm9vZg==Zg=="] {
             assert!(base64(text.as_bytes()).is_err(), "{text}");
         }
     }
@@ -281,7 +260,7 @@ mod tests {
             assert_eq!(names(uri).unwrap()[0], Path::new(name), "{uri}");
         }
         for uri in
-            ["", ".", "..", "C:/a.bin", "http://a/a.bin", "file://host/a.bin", "a%", "a%0", "a%zz", "a%ff", "a%00b"]
+            ["", ".", "..", "C:/a.bin", "http://a/a.bin", "file://host/a.bin", "a%", "a%0", "a%zz", "a%é", "a%%41", "a%ff", "a%00b"]
         {
             assert!(names(uri).is_err(), "{uri}");
         }

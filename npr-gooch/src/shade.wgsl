@@ -1,12 +1,12 @@
-// Cool-to-warm light. No bindings, no entry points; the names and meanings are those of the crate npr-gooch.
-// Colours are display-referred. Vectors may be in any one space; they point away from the surface.
+// Cool-to-warm lighting. The counterpart of `shade.rs`. No bindings, no entry points.
+// Colours are display-referred. Vectors point away from the surface, and all vectors of a call must be in the same space.
 
 struct GoochModel {
     // rgb k_blue, w the share of the object's colour in the cool tone.
     blue: vec4<f32>,
-    // rgb k_yellow, w the share in the warm tone.
+    // rgb k_yellow, w the share of the object's colour in the warm tone.
     yellow: vec4<f32>,
-    // rgb the highlight's colour, w its strength (0: none).
+    // rgb the highlight's colour, w its strength; 0 without a highlight.
     highlight: vec4<f32>,
     exponent: f32,
     padding_a: u32,
@@ -14,8 +14,8 @@ struct GoochModel {
     padding_c: u32,
 }
 
-// Unit length; a zero vector stays zero. f32 has no squares of others: what is shorter than 1e-15 stays too short, and
-// what is longer than 1e19 becomes zero.
+// A unit vector; a zero vector stays zero. The squared length must be a normal f32: vectors shorter than 1e-15 do not
+// reach unit length, vectors longer than 1e19 become zero.
 fn gooch_unit(v: vec3<f32>) -> vec3<f32> {
     return v * inverseSqrt(max(dot(v, v), 1e-30));
 }
@@ -24,7 +24,7 @@ fn gooch_n_dot_l(normal: vec3<f32>, to_light: vec3<f32>) -> f32 {
     return dot(gooch_unit(normal), gooch_unit(to_light));
 }
 
-// How warm, 0..1.
+// The weight of the warm tone, 0..1.
 fn gooch_weight(n_dot_l: f32) -> f32 {
     return saturate((1.0 + n_dot_l) * 0.5);
 }
@@ -37,27 +37,28 @@ fn gooch_warm(model: GoochModel, k_d: vec3<f32>) -> vec3<f32> {
     return saturate(model.yellow.rgb + model.yellow.w * k_d);
 }
 
-// The colour without a highlight. k_d is the object's own, from its material or its texture.
+// The colour without highlight. k_d: the object's colour, from its material or its texture.
 fn gooch_tone(model: GoochModel, k_d: vec3<f32>, n_dot_l: f32) -> vec3<f32> {
     return mix(gooch_cool(model, k_d), gooch_warm(model, k_d), gooch_weight(n_dot_l));
 }
 
-// The cosine between the light's mirrored direction and the direction to the eye, of unit vectors or zeros. It is found
-// from the distance between the two, (|R|^2 + |E|^2 - |R - E|^2) / 2, which where they are close, and the highlight's
-// power steep, is small, and so are its roundings.
+// The cosine between the reflected light direction R and the direction to the eye, of unit or zero vectors, as
+// (|R|^2 + |E|^2 - |R - E|^2) / 2. Near the centre of the highlight |R - E|^2 is small and so is its rounding error.
+// |R| = |L| and |E| are 1 or 0, so rounding their squares removes the error of the normalisation, which a large exponent
+// would amplify: (1 - 1e-7)^1e6 is 0.9.
 fn gooch_r_dot_e_of(n: vec3<f32>, l: vec3<f32>, e: vec3<f32>) -> f32 {
-    let apart = 2.0 * dot(n, l) * n - l - e;
-    return 0.5 * (round(dot(l, l)) + round(dot(e, e)) - dot(apart, apart));
+    let difference = 2.0 * dot(n, l) * n - l - e;
+    return 0.5 * (round(dot(l, l)) + round(dot(e, e)) - dot(difference, difference));
 }
 
-// The same of vectors of any length.
+// The same for vectors of any length.
 fn gooch_r_dot_e(normal: vec3<f32>, to_light: vec3<f32>, to_eye: vec3<f32>) -> f32 {
     return gooch_r_dot_e_of(gooch_unit(normal), gooch_unit(to_light), gooch_unit(to_eye));
 }
 
-// How opaque the highlight is.
+// The opacity of the highlight.
 fn gooch_highlight(model: GoochModel, n_dot_l: f32, r_dot_e: f32) -> f32 {
-    // The power of 0 is left to no compiler.
+    // pow(0, x) differs between compilers, so its base is kept above 0.
     let opacity = model.highlight.w * pow(clamp(r_dot_e, 1e-30, 1.0), model.exponent);
     return select(0.0, opacity, n_dot_l > 0.0 && r_dot_e > 0.0);
 }

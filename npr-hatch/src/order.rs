@@ -1,37 +1,36 @@
-//! The order in which strokes are placed.
+//! The sequence of strokes.
 //!
-//! There is one order of strokes for each direction, and every image draws the beginning of it: how much of it is
-//! all in which images differ. So strokes are nested in tones and in mips whatever the order is, and an order serves if
-//! all its beginnings are even.
+//! There is one sequence of strokes per direction, and every image draws a prefix of it, so that strokes are nested in tones
+//! and in mip levels for any sequence. Every prefix must be distributed evenly.
 
 use oorandom::Rand32;
 
 use crate::stroke::{Pen, Stroke, cover};
 use crate::{Placement, TamParameters};
 
-/// Endless strokes that run one way.
+/// The infinite sequence of strokes of one direction.
 pub(crate) struct Order<'a> {
-    /// Those placed so far.
+    /// The strokes placed so far.
     pub strokes: Vec<Stroke>,
     parameters: &'a TamParameters,
     pen: Pen<'a>,
     angle: f64,
     random: Rand32,
-    /// What the sequence's axes are scrambled with.
+    /// The seeds of the scrambling of the sequence's axes.
     scramble: [u64; 2],
-    /// The levels with all strokes in, for finding the best candidate; their sides and their ink.
+    /// The side and the ink of each level with all strokes placed so far, to rate candidates.
     levels: Vec<(u32, Vec<u8>)>,
     covered: Vec<(u32, u8)>,
 }
 
 impl<'a> Order<'a> {
-    /// `layer` 0 runs lengthwise, 1 crosswise.
+    /// `layer` is 0 for lengthwise and 1 for crosswise strokes.
     pub fn new(parameters: &'a TamParameters, pen: Pen<'a>, layer: u64) -> Self {
         let turn = if layer == 0 { 0.0 } else { parameters.cross_deg };
         let seed = mix(parameters.seed ^ mix(layer));
         let levels = match parameters.placement {
             Placement::Sequence => Vec::new(),
-            // Below eight texels every candidate looks the same.
+            // Below a side of 8 texels candidates hardly differ.
             Placement::BestOf { .. } => std::iter::successors(Some(parameters.side), |side| Some(side / 2))
                 .take_while(|&side| side >= 8)
                 .map(|side| (side, vec![0; (side * side) as usize]))
@@ -49,7 +48,7 @@ impl<'a> Order<'a> {
         }
     }
 
-    /// The stroke at `index`, which is placed if it is the next one.
+    /// The stroke at `index`. Strokes up to it are placed if necessary.
     pub fn stroke(&mut self, index: usize) -> Stroke {
         while self.strokes.len() <= index {
             let stroke = match self.parameters.placement {
@@ -65,7 +64,7 @@ impl<'a> Order<'a> {
         self.strokes[index]
     }
 
-    /// A stroke at a place, of a shape drawn at random.
+    /// A stroke of random shape with this centre.
     fn drawn(&mut self, centre: [u32; 2]) -> Stroke {
         let p = self.parameters;
         let mut between = |low: f32, high: f32| low + (high - low) * self.random.rand_float();
@@ -73,7 +72,7 @@ impl<'a> Order<'a> {
         let jitter = between(-p.jitter_deg, p.jitter_deg);
         let bow = between(-p.bow, p.bow);
         let pressure = between(p.pressure[0], p.pressure[1]);
-        // Not the standard library's, which may differ from machine to machine.
+        // The standard library's functions may differ between platforms.
         let (sin, cos) = libm::sincos((self.angle + f64::from(jitter)).to_radians());
         Stroke { centre, direction: [cos as f32, sin as f32], length, bow, pressure }
     }
@@ -109,12 +108,12 @@ impl<'a> Order<'a> {
     }
 }
 
-/// The digits of `i` in base 2, mirrored at the point: van der Corput's sequence.
+/// Van der Corput's sequence: the binary digits of `i` mirrored at the point, in 2^-32.
 fn radical(i: u32) -> u32 {
     i.reverse_bits()
 }
 
-/// The second axis of Sobol's sequence: its direction numbers are the rows of Pascal's triangle modulo 2.
+/// The second axis of the sequence of Sobol', whose direction numbers are the rows of Pascal's triangle modulo 2.
 fn sobol(mut i: u32) -> u32 {
     let (mut x, mut direction) = (0, 1 << 31);
     while i != 0 {
@@ -127,7 +126,8 @@ fn sobol(mut i: u32) -> u32 {
     x
 }
 
-/// Turns over each bit of `x` by chance, one that depends on all bits above it (Owen 1995): what was even remains so.
+/// Nested scrambling (Owen 1995): flips each bit of `x` at random, depending on all higher bits. It preserves the
+/// equidistribution of a sequence.
 fn scramble(x: u32, seed: u64) -> u32 {
     (0..32_u64).fold(x, |out, bit| {
         let above = (u64::from(x) >> (bit + 1)) | (bit << 40);
@@ -135,7 +135,7 @@ fn scramble(x: u32, seed: u64) -> u32 {
     })
 }
 
-/// Steele, Lea & Flood 2014 (SplitMix64), one step: distinct for distinct `x`.
+/// One step of SplitMix64 (Steele, Lea & Flood 2014), a bijection.
 fn mix(x: u64) -> u64 {
     let x = x.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
