@@ -42,7 +42,7 @@ fn color(at: DVec2) -> DVec3 {
         return if p.length() < 1.025 { DVec3::ZERO } else { DVec3::splat(0.95) };
     }
     let normal = p.extend((1.0 - p.length_squared()).sqrt());
-    let tones = if cell.x == 0.0 { Tones::Equation } else { Tones::Listing7 };
+    let tones = if cell.x == 0.0 { Tones::Equation } else { Tones::SwappedShares };
     let model = Gooch { tones, ..Gooch::default() };
     // An orthographic view along -Z. The light is nearly perpendicular to the view, so that the full tone range is visible.
     gooch_shade(&model, OBJECTS[cell.y as usize], normal, DVec3::new(0.7, 0.8, 0.45), DVec3::Z)

@@ -35,8 +35,8 @@
 //! - Gooch et al. 1998 print I = (1 + l·n)/2 k_cool + (1 − (1 + l·n)/2) k_warm. With l pointing to the light, as defined
 //!   there, the lit side would be cool. Their text and figures, and the equation of Card & Mitchell, make it warm, as here.
 //! - Listing 7 pairs α with k_yellow and β with k_blue, the reverse of both equations, and its comments call the yellow
-//!   term cool and the blue term warm. Its lit side is yellow. It is provided as [`Gooch::listing_7`] and
-//!   [`Tones::Listing7`].
+//!   term cool and the blue term warm. Its lit side is yellow. It is provided as [`Gooch::swapped_shares`] and
+//!   [`Tones::SwappedShares`].
 //! - Listing 7's example of k_d, {0.0, 0.0, 0.4}, is equal to k_blue in the preceding line and may be a misprint. It is
 //!   provided as [`EXAMPLE_K_D`].
 //! - No listing contains the highlight that the text describes.
@@ -66,7 +66,7 @@ pub use glam;
 pub use error::GoochError;
 pub use model::{EXAMPLE_K_D, Gooch, Highlight, Tones};
 pub use shade::{
-    gooch_aggregate, gooch_cool, gooch_highlight, gooch_n_dot_l, gooch_over, gooch_r_dot_e, gooch_r_dot_e_of,
+    gooch_aggregate, gooch_cool, gooch_highlight, gooch_n_dot_l, gooch_over, gooch_r_dot_e, gooch_r_dot_e_unit,
     gooch_shade, gooch_tone, gooch_warm, gooch_weight,
 };
 pub use uniform::GoochUniform;

@@ -38,7 +38,7 @@ pub enum Tones {
     #[default]
     Equation,
     /// k_cool = k_blue + β k_d and k_warm = k_yellow + α k_d: Card & Mitchell 2002, listing 7, which swaps α and β.
-    Listing7,
+    SwappedShares,
 }
 
 /// A highlight that is blended over the tones. Unlike an added highlight it reaches exactly its own colour and does not
@@ -71,15 +71,15 @@ impl Gooch {
 
     /// Card & Mitchell 2002, listing 7, which swaps α and β, with the numbers of its comments: α 0.4, β 0.5, k_yellow
     /// (0.5, 0.5, 0), k_blue (0, 0, 0.4), no highlight. Its example of k_d is [`EXAMPLE_K_D`].
-    pub fn listing_7() -> Self {
-        Self { tones: Tones::Listing7, highlight: None, ..Self::from_numbers(0.4, 0.5, 0.4, 0.5) }
+    pub fn swapped_shares() -> Self {
+        Self { tones: Tones::SwappedShares, highlight: None, ..Self::from_numbers(0.4, 0.5, 0.4, 0.5) }
     }
 
     /// The shares of the object's colour in the cool and in the warm tone.
     pub fn shares(&self) -> [f32; 2] {
         match self.tones {
             Tones::Equation => [self.alpha, self.beta],
-            Tones::Listing7 => [self.beta, self.alpha],
+            Tones::SwappedShares => [self.beta, self.alpha],
         }
     }
 

@@ -37,11 +37,11 @@ pub fn gooch_tone(model: &Gooch, k_d: DVec3, n_dot_l: f64) -> DVec3 {
 /// R·E: the cosine between the reflected light direction R = 2 (N·L) N − L and the direction to the eye. The vectors are
 /// normalised first. It is meaningful only where N·L is above 0.
 pub fn gooch_r_dot_e(normal: DVec3, to_light: DVec3, to_eye: DVec3) -> f64 {
-    gooch_r_dot_e_of(normal.normalize_or_zero(), to_light.normalize_or_zero(), to_eye.normalize_or_zero())
+    gooch_r_dot_e_unit(normal.normalize_or_zero(), to_light.normalize_or_zero(), to_eye.normalize_or_zero())
 }
 
 /// [`gooch_r_dot_e`] of the unit vectors N, L and E.
-pub fn gooch_r_dot_e_of(n: DVec3, l: DVec3, e: DVec3) -> f64 {
+pub fn gooch_r_dot_e_unit(n: DVec3, l: DVec3, e: DVec3) -> f64 {
     2.0 * n.dot(l) * n.dot(e) - l.dot(e)
 }
 

@@ -46,14 +46,14 @@ fn gooch_tone(model: GoochModel, k_d: vec3<f32>, n_dot_l: f32) -> vec3<f32> {
 // (|R|^2 + |E|^2 - |R - E|^2) / 2. Near the centre of the highlight |R - E|^2 is small and so is its rounding error.
 // |R| = |L| and |E| are 1 or 0, so rounding their squares removes the error of the normalisation, which a large exponent
 // would amplify: (1 - 1e-7)^1e6 is 0.9.
-fn gooch_r_dot_e_of(n: vec3<f32>, l: vec3<f32>, e: vec3<f32>) -> f32 {
+fn gooch_r_dot_e_unit(n: vec3<f32>, l: vec3<f32>, e: vec3<f32>) -> f32 {
     let difference = 2.0 * dot(n, l) * n - l - e;
     return 0.5 * (round(dot(l, l)) + round(dot(e, e)) - dot(difference, difference));
 }
 
 // The same for vectors of any length.
 fn gooch_r_dot_e(normal: vec3<f32>, to_light: vec3<f32>, to_eye: vec3<f32>) -> f32 {
-    return gooch_r_dot_e_of(gooch_unit(normal), gooch_unit(to_light), gooch_unit(to_eye));
+    return gooch_r_dot_e_unit(gooch_unit(normal), gooch_unit(to_light), gooch_unit(to_eye));
 }
 
 // The opacity of the highlight.

@@ -8,7 +8,7 @@ use crate::{Gooch, GoochError};
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct GoochUniform {
-    /// k_blue, and the share of the object's colour in the cool tone: α, or β for [`crate::Tones::Listing7`].
+    /// k_blue, and the share of the object's colour in the cool tone: α, or β for [`crate::Tones::SwappedShares`].
     pub blue: [f32; 4],
     /// k_yellow, and the share of the object's colour in the warm tone.
     pub yellow: [f32; 4],

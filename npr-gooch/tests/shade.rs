@@ -26,7 +26,7 @@ fn the_equation_by_hand() {
 fn listing_7_by_hand() {
     // The lit side is c2 + c0 c4 = (0.5, 0.5, 0) + 0.4 (0, 0, 0.4), the other c3 + c1 c4 = (0, 0, 0.4) + 0.5 (0, 0,
     // 0.4).
-    let (printed, k_d) = (Gooch::listing_7(), EXAMPLE_K_D.as_dvec3());
+    let (printed, k_d) = (Gooch::swapped_shares(), EXAMPLE_K_D.as_dvec3());
     assert_near(gooch_tone(&printed, k_d, 1.0), [0.5, 0.5, 0.16]);
     assert_near(gooch_tone(&printed, k_d, -1.0), [0.0, 0.0, 0.6]);
     assert_near(gooch_tone(&printed, k_d, 0.5), [0.375, 0.375, 0.27]);
@@ -42,7 +42,7 @@ fn listing_7_by_hand() {
 #[test]
 fn the_lit_side_is_warm() {
     // With the equation as printed in Gooch et al. 1998 it would be blue.
-    for model in [Gooch::default(), Gooch::listing_7()] {
+    for model in [Gooch::default(), Gooch::swapped_shares()] {
         let gray = DVec3::splat(0.5);
         let (lit, unlit) = (gooch_tone(&model, gray, 1.0), gooch_tone(&model, gray, -1.0));
         assert!(lit.x > lit.z && unlit.z > unlit.x);
@@ -83,7 +83,7 @@ fn highlight_is_phongs() {
     }
     let tone = DVec3::new(0.2, 0.4, 0.6);
     assert_near(gooch_over(&model, tone, 0.5), [0.6, 0.7, 0.8]);
-    assert_eq!(gooch_over(&Gooch::listing_7(), tone, 0.5), tone);
+    assert_eq!(gooch_over(&Gooch::swapped_shares(), tone, 0.5), tone);
 }
 
 #[test]
@@ -112,7 +112,7 @@ fn no_direction_is_halfway_and_not_nan() {
 
 #[test]
 fn invalid_models_are_rejected() {
-    for model in [Gooch::default(), Gooch::listing_7()] {
+    for model in [Gooch::default(), Gooch::swapped_shares()] {
         assert_eq!(model.validate(), Ok(()));
     }
     let broken = |change: &dyn Fn(&mut Gooch)| {
@@ -160,7 +160,7 @@ proptest! {
         (b, y, alpha, beta) in (0.0_f32..2.0, 0.0_f32..2.0, 0.0_f32..2.0, 0.0_f32..2.0), printed in any::<bool>(),
         k_d in color(), (normal, to_light, to_eye) in (vector(), vector(), vector()),
     ) {
-        let tones = if printed { Tones::Listing7 } else { Tones::Equation };
+        let tones = if printed { Tones::SwappedShares } else { Tones::Equation };
         let model = Gooch { tones, ..Gooch::from_numbers(b, y, alpha, beta) };
         let color = gooch_shade(&model, k_d, normal, to_light, to_eye);
         prop_assert!(color.min_element() >= 0.0 && color.max_element() <= 1.0 + 1e-12, "{}", color);

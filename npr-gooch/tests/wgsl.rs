@@ -103,7 +103,7 @@ fn packs_the_model() {
     assert_eq!((uniform.blue, uniform.yellow), ([0.0, 0.0, 0.55, 0.25], [0.3, 0.3, 0.0, 0.5]));
     assert_eq!((uniform.highlight, uniform.exponent), ([1.0; 4], 32.0));
     // Listing 7 has beta in the cool tone and alpha in the warm tone.
-    let uniform = GoochUniform::new(&Gooch::listing_7()).unwrap();
+    let uniform = GoochUniform::new(&Gooch::swapped_shares()).unwrap();
     assert_eq!((uniform.blue, uniform.yellow), ([0.0, 0.0, 0.4, 0.5], [0.5, 0.5, 0.0, 0.4]));
     assert_eq!(uniform.highlight[3], 0.0);
 }

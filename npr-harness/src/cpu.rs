@@ -42,8 +42,6 @@ pub(crate) struct FrameContext<'a> {
     strokes: Option<Strokes<'a>>,
     /// In px of the grid that is sampled.
     boundary_inset_px: f64,
-    /// The plane of which a point's distance is its eye depth.
-    eye_depth: DVec4,
 }
 
 /// Renders a frame.
@@ -143,7 +141,6 @@ impl<'a> FrameContext<'a> {
             shift_px: options.shift_px * f64::from(*samples),
             strokes: plan.hatch().map(|hatch| Strokes::new(hatch, *samples)),
             boundary_inset_px: options.boundary_inset_px * f64::from(*samples),
-            eye_depth: plan.view.eye_depth_plane(),
         }
     }
 

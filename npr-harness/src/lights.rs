@@ -3,7 +3,7 @@
 use crate::camera::Camera;
 use crate::scene::{FARTHEST, Scene};
 use glam::{DVec4, Vec3};
-use npr_toon::source::{Light, LightPlace, aggregate};
+use npr_toon::source::{Light, LightKind, aggregate};
 
 /// What a light's direction or position is measured in.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -29,7 +29,7 @@ impl StyleLight {
     /// White, over the viewer's left shoulder, so that any model is well lit from any side.
     pub const KEY: Self = Self {
         light: Light {
-            place: LightPlace::Directional { to_light: Vec3::new(-0.5, 0.7, 0.6) },
+            place: LightKind::Directional { to_light: Vec3::new(-0.5, 0.7, 0.6) },
             color: Vec3::ONE,
             brightness: 1.0,
         },
@@ -52,7 +52,7 @@ pub fn lights_in_world(lights: &[StyleLight], most: usize, scene: &Scene, camera
     }
     let one = aggregate(&lights, scene.middle());
     vec![Light {
-        place: LightPlace::Directional { to_light: one.to_light.as_vec3() },
+        place: LightKind::Directional { to_light: one.to_light.as_vec3() },
         color: one.color.as_vec3(),
         brightness: one.brightness as f32,
     }]
@@ -62,8 +62,8 @@ pub fn lights_in_world(lights: &[StyleLight], most: usize, scene: &Scene, camera
 /// the scene's positions.
 pub fn casting_light(lights: &[StyleLight], scene: &Scene, camera: &Camera) -> DVec4 {
     lights.first().map_or(DVec4::ZERO, |light| match in_world(light, scene, camera).place {
-        LightPlace::Directional { to_light } => to_light.as_dvec3().normalize_or_zero().extend(0.0),
-        LightPlace::Positional { position } => position.as_dvec3().extend(1.0),
+        LightKind::Directional { to_light } => to_light.as_dvec3().normalize_or_zero().extend(0.0),
+        LightKind::Positional { position } => position.as_dvec3().extend(1.0),
     })
 }
 
@@ -74,16 +74,16 @@ fn in_world(StyleLight { light, frame }: &StyleLight, scene: &Scene, camera: &Ca
         LightFrame::World => v.as_dvec3(),
     };
     let place = match light.place {
-        LightPlace::Directional { to_light } => {
-            LightPlace::Directional { to_light: turned(to_light).normalize_or_zero().as_vec3() }
+        LightKind::Directional { to_light } => {
+            LightKind::Directional { to_light: turned(to_light).normalize_or_zero().as_vec3() }
         }
-        LightPlace::Positional { position } => {
+        LightKind::Positional { position } => {
             let position = match frame {
                 LightFrame::View => scene.middle() + turned(position) * scene.radius(),
                 LightFrame::World => scene.place_here(position.as_dvec3()),
             };
             // A light that is farther away shines as from there, and its position is an f32 on a device.
-            LightPlace::Positional { position: position.clamp_length_max(FARTHEST).as_vec3() }
+            LightKind::Positional { position: position.clamp_length_max(FARTHEST).as_vec3() }
         }
     };
     Light { place, ..*light }

@@ -14,16 +14,16 @@ use crate::lights::{casting_light, lights_in_world};
 use crate::picture_limits::check_picture;
 use crate::printed_fins::PrintedFinPlan;
 use crate::scene::Scene;
-use crate::shade::Shade;
+use crate::shade::{Shade, ShadeView};
 use crate::shadow::{ShadowLines, ShadowPlan, ShadowTechnique};
 use crate::style::Style;
 use crate::view::View;
-use glam::{DVec3, Vec3};
+use glam::{DVec3, DVec4, Vec3};
 use npr_imagespace::artist::LineKind as InnerLines;
 use npr_mesh::AlphaMode;
 use npr_outline::LineKind;
 use npr_toon::normal::NormalUse;
-use npr_toon::source::{Light, LightPlace, combined_color};
+use npr_toon::source::{Light, LightKind, combined_color};
 use std::fmt;
 
 /// A pass, or a method, and why it is taken or left out.
@@ -46,6 +46,8 @@ pub struct PaintPlan {
     pub lights: Vec<Light>,
     /// The colour of all of them.
     pub light_color: DVec3,
+    /// What the shade knows of scene and view.
+    pub view: ShadeView,
     /// Whether light takes more than normals at pixels and directions that are the same everywhere: positions, or light
     /// that is computed at vertices.
     pub interpolates_light: bool,
@@ -385,7 +387,7 @@ impl PaintPlan {
             _ => None,
         };
         let lights = lights_in_world(&style.lights, model.lights(), scene, camera);
-        let is_near = |light: &Light| matches!(light.place, LightPlace::Positional { .. });
+        let is_near = |light: &Light| matches!(light.place, LightKind::Positional { .. });
         let interpolates_light = !model.is_normals()
             && (hatch.is_some()
                 || style.normals != NormalUse::PerPixel
@@ -395,11 +397,18 @@ impl PaintPlan {
             shade: style.shade.clone(),
             normals: style.normals,
             light_color: combined_color(&lights),
+            view: ShadeView { eye_depth: eye_depth_plane(camera), depth_range: scene.depth_range(camera) },
             lights,
             interpolates_light,
             hatch,
         })
     }
+}
+
+/// The plane (n, d) of which n · p + d is the eye depth of a point p.
+fn eye_depth_plane(camera: &Camera) -> DVec4 {
+    let back = camera.axes()[2];
+    (-back).extend(back.dot(camera.eye))
 }
 
 /// Whether the eye, or the near plane, is within the model's box: then the back of a face can be seen.

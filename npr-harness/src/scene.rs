@@ -1,5 +1,6 @@
 //! What a picture shows: a model, ready for both executors, and its light.
 
+use crate::camera::Camera;
 use crate::color::encode_rgb;
 use crate::derived::Derived;
 use crate::error::HarnessError;
@@ -180,6 +181,19 @@ impl Scene {
     /// Of the model's box, found when it is first asked for; `None` without faces.
     pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
         *self.bounds.get_or_init(|| self.model.bounds())
+    }
+
+    /// The range of eye depth in which the scene lies, before the camera.
+    pub(crate) fn depth_range(&self, camera: &Camera) -> (f64, f64) {
+        let back = camera.axes()[2];
+        let (low, high) = self.bounds().map_or((DVec3::ZERO, DVec3::ZERO), |(l, h)| (l.as_dvec3(), h.as_dvec3()));
+        let depth = |corner: DVec3| (camera.eye - corner).dot(back);
+        let nearest = depth(DVec3::select(back.cmpgt(DVec3::ZERO), high, low));
+        let farthest = depth(DVec3::select(back.cmpgt(DVec3::ZERO), low, high));
+        // A thousandth to spare, so that nothing of the scene is clamped to the range's ends.
+        let spare = 1e-3 * (farthest - nearest);
+        let near = (nearest - spare).max(camera.near * 0.999);
+        (near, (farthest + spare).max(near * 1.001))
     }
 
     /// The middle of the bounding box.

@@ -18,12 +18,11 @@ use crate::error::HarnessError;
 use crate::hatch::HatchShade;
 use crate::hatch::schema::HatchTable;
 use crate::schema::StyleFile;
-use crate::view::View;
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, DVec4};
 use lambert::Lambert;
 use npr_gooch::Gooch;
 use npr_toon::Bands;
-use npr_toon::painter::{Painter, toon_reach};
+use npr_toon::painter::{Painter, toon_diffuse};
 use npr_toon::source::Light;
 use painter::PainterShade;
 use ramp::RampShade;
@@ -114,14 +113,21 @@ impl Shade {
     }
 }
 
+/// What shades know of a scene in a view besides its lights.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ShadeView {
+    /// The plane (n, d) of which n · p + d is the eye depth of a point p.
+    pub eye_depth: DVec4,
+    /// The eye depths between which the scene lies.
+    pub depth_range: (f64, f64),
+}
+
 /// A point of a surface under the lights. World space; vectors of any length, the normal on the viewer's side.
 #[derive(Clone, Copy)]
 pub(crate) struct LitPoint {
     pub(crate) normal: DVec3,
     pub(crate) at: DVec3,
     pub(crate) to_eye: DVec3,
-    /// Along the line of sight.
-    pub(crate) eye_depth: f64,
 }
 
 /// A sample of a surface as a shade colours it.
@@ -182,16 +188,16 @@ pub(crate) trait ShadeModel {
 
     /// The diffuse term.
     fn diffuse(&self, n_dot_l: f64, brightness: f64) -> f64 {
-        toon_reach(n_dot_l, brightness)
+        toon_diffuse(n_dot_l, brightness)
     }
 
     /// The second number at a point. `to_light`: to the first light, of unit length.
-    fn second(&self, _point: &LitPoint, _to_light: DVec3, _lights: &[Light]) -> f64 {
+    fn second(&self, _point: &LitPoint, _to_light: DVec3, _lights: &[Light], _view: &ShadeView) -> f64 {
         0.0
     }
 
     /// The vector at a vertex that is interpolated for [`Self::second_interpolated`].
-    fn second_vector(&self, _point: &LitPoint, _lights: &[Light]) -> DVec3 {
+    fn second_vector(&self, _point: &LitPoint, _lights: &[Light], _view: &ShadeView) -> DVec3 {
         DVec3::ZERO
     }
 
@@ -214,7 +220,7 @@ pub(crate) trait ShadeModel {
     }
 
     /// Its shader, and what that needs for a view.
-    fn on_device(&self, view: &View) -> Result<ShadeOnDevice, HarnessError>;
+    fn on_device(&self, view: &ShadeView) -> Result<ShadeOnDevice, HarnessError>;
 }
 
 /// A WGSL boolean as the value of an override.

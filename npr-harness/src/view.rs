@@ -1,7 +1,7 @@
 //! Where a picture is taken from, and how finely.
 
 use crate::camera::{Camera, Projection};
-use glam::{DVec2, DVec3, DVec4};
+use glam::DVec2;
 
 /// A camera, the size of the picture, and the samples of its pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,12 +35,6 @@ impl View {
     /// Whether all rays are parallel.
     pub fn is_parallel(&self) -> bool {
         matches!(self.camera.projection, Projection::Orthographic { .. })
-    }
-
-    /// The plane (n, d) of which n · p + d is the eye depth of a point p.
-    pub fn eye_depth_plane(&self) -> DVec4 {
-        let back: DVec3 = self.camera.axes()[2];
-        (-back).extend(back.dot(self.camera.eye))
     }
 }
 

@@ -7,10 +7,8 @@
 use naga::back::glsl;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{ShaderStage, TypeInner};
-use npr_harness::gallery::still_life_camera;
 use npr_harness::gpu::surface_wgsl;
 use npr_harness::style::{Style, styles};
-use npr_harness::view::View;
 
 const LINE: &str = include_str!("../../npr-outline/src/line.wgsl");
 const LINE_INK: &str = include_str!("../../npr-outline/src/line_ink.wgsl");
@@ -106,8 +104,7 @@ fn every_shader_translates() {
         ("step", ink(STEP)),
         ("fused filter", ink(&[FUSED_TAPS, FUSED].concat())),
     ];
-    let view = View::new(still_life_camera(), (16, 16));
-    let surface = |style: Style| (style.name, surface_wgsl(&style.shade, &view).expect("good numbers"));
+    let surface = |style: Style| (style.name, surface_wgsl(&style.shade).expect("good numbers"));
     let named = shaders.iter().map(|(name, source): &(&str, String)| (name.to_string(), source.clone()));
     let all: Vec<(String, String)> = named.chain(styles().into_iter().map(surface)).collect();
     let (mut translated, mut failed) = (0, Vec::new());

@@ -33,7 +33,7 @@ use npr_toon::half_lambert::HalfLambert;
 use npr_toon::normal::NormalUse;
 use npr_toon::ramp::{Ramp, RampBlend, RampStop};
 use npr_toon::row::{RampRow, TexelFilter};
-use npr_toon::source::{Light, LightPlace};
+use npr_toon::source::{Light, LightKind};
 use npr_toon::table::{Corner, Ramp2d, RampTable};
 
 const SIZE: (u32, u32) = (200, 120);
@@ -160,7 +160,7 @@ fn cases() -> Vec<(&'static str, Shade, Vec<StyleLight>)> {
         ("table, linear", painter(Ramp2dSource::Image(table(TexelFilter::Linear)), false), vec![lamp, there]),
         ("painter, one light", painter(hard(), false), vec![dim]),
         ("Gooch", Shade::Gooch(Gooch::default()), vec![key]),
-        ("Gooch, a lamp", Shade::Gooch(Gooch { tones: Tones::Listing7, ..Gooch::default() }), vec![lamp]),
+        ("Gooch, a lamp", Shade::Gooch(Gooch { tones: Tones::SwappedShares, ..Gooch::default() }), vec![lamp]),
     ]
 }
 
@@ -264,14 +264,14 @@ fn lights_are_where_their_frame_says() {
         lights_in_world(&lights, 1, &scene, &camera)[0].place
     };
     // The eye is at +X: right is -Z, and back is +X. The box's half diagonal is the root of 3.
-    let direction = |to_light: Vec3| LightPlace::Directional { to_light };
+    let direction = |to_light: Vec3| LightKind::Directional { to_light };
     assert_eq!(place(Light::directional(Vec3::Z * 3.0), LightFrame::View), direction(Vec3::X));
     assert_eq!(place(Light::directional(Vec3::X), LightFrame::View), direction(Vec3::NEG_Z));
     assert_eq!(place(Light::directional(Vec3::X * 2.0), LightFrame::World), direction(Vec3::X));
-    let LightPlace::Positional { position } = place(Light::positional(Vec3::Z), LightFrame::View) else { panic!() };
+    let LightKind::Positional { position } = place(Light::positional(Vec3::Z), LightFrame::View) else { panic!() };
     assert!(position.abs_diff_eq(Vec3::new(1.0 + 3f32.sqrt(), 2.0, 3.0), 1e-6), "{position}");
     let at = Vec3::new(4.0, 5.0, 6.0);
-    assert_eq!(place(Light::positional(at), LightFrame::World), LightPlace::Positional { position: at });
+    assert_eq!(place(Light::positional(at), LightFrame::World), LightKind::Positional { position: at });
     // Two that cancel out leave no direction, and no error.
     let both = [Vec3::X, Vec3::NEG_X].map(|v| StyleLight { light: Light::directional(v), frame: LightFrame::World });
     let toon = of(Shade::Toon(Bands::default()), both.to_vec(), NormalUse::PerPixel, Lines::NONE);

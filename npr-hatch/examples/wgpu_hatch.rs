@@ -31,12 +31,12 @@ const SHADER: &str = "
         for (var axis = 0u; axis < 3u; axis++) {
             let footprint =
                 hatch_footprint(hatch_plane(at_dx, axis), hatch_plane(at_dy, axis), texels, last_level);
-            let share_of_tone = hatch_share(tone, shares[axis]);
-            let weights = hatch_weights(hatch_linear(LIGHT_TONES, DARK_TONES, share_of_tone));
+            let share_of_tone = hatch_share_tone(tone, shares[axis]);
+            let weights = hatch_weights(hatch_level_of_tone(LIGHT_TONES, DARK_TONES, share_of_tone));
             let found = hatch_texels(light, dark, trilinear, hatch_plane(at, axis), footprint);
             let strokes = hatch_blend(found.light, found.dark, weights);
             let flat_tone = hatch_blend(LIGHT_TONES, DARK_TONES, weights);
-            let left = mix(strokes, flat_tone, hatch_flat(footprint.level, last_level));
+            let left = mix(strokes, flat_tone, hatch_flat_weight(footprint.level, last_level));
             paper *= select(1.0, left, shares[axis] > 0.0);
         }
         let color = hatch_color(paper, vec3(0.98, 0.97, 0.94), vec3(0.12, 0.1, 0.2));

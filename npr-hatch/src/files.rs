@@ -47,7 +47,7 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
 ///
 /// # Errors
 /// Those of [`write_file`] that do not depend on writing.
-pub fn check_place(path: &Path) -> io::Result<()> {
+pub fn check_writable(path: &Path) -> io::Result<()> {
     target(path).map(|_| ())
 }
 
@@ -167,7 +167,7 @@ mod tests {
             let error = write_file(&path, b"new").expect_err(name);
             assert_eq!(error.kind(), kind, "{name}: {error}");
             assert!(error.to_string().contains(said), "{name}: {error}");
-            let checked = check_place(&path).expect_err(name);
+            let checked = check_writable(&path).expect_err(name);
             assert_eq!(checked.to_string(), error.to_string(), "{name}");
         }
         assert_eq!(names(folder.path()), ["folder", "old"]);

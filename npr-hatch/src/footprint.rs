@@ -60,10 +60,10 @@ pub fn hatch_footprint(uv_dx: DVec2, uv_dy: DVec2, texels: f64, last_level: f64)
 /// tones: a level of 4 × 4 thresholds has 16 tones. `last_level` is the level of a single texel.
 ///
 /// ```
-/// use npr_hatch::lookup::hatch_flat;
-/// assert_eq!([3.0, 4.0, 4.25, 5.0, 8.0].map(|level| hatch_flat(level, 8.0)), [0.0, 0.0, 0.25, 1.0, 1.0]);
+/// use npr_hatch::lookup::hatch_flat_weight;
+/// assert_eq!([3.0, 4.0, 4.25, 5.0, 8.0].map(|level| hatch_flat_weight(level, 8.0)), [0.0, 0.0, 0.25, 1.0, 1.0]);
 /// ```
-pub fn hatch_flat(level: f64, last_level: f64) -> f64 {
+pub fn hatch_flat_weight(level: f64, last_level: f64) -> f64 {
     (level - (last_level - 4.0)).clamp(0.0, 1.0)
 }
 

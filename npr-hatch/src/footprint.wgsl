@@ -30,7 +30,7 @@ fn hatch_footprint(uv_dx: vec2<f32>, uv_dy: vec2<f32>, texels: f32, last_level: 
     return HatchFootprint(level, scaled * (length_of * inverseSqrt(max(dot(scaled, scaled), 1e-30))));
 }
 
-fn hatch_flat(level: f32, last_level: f32) -> f32 {
+fn hatch_flat_weight(level: f32, last_level: f32) -> f32 {
     return saturate(level - (last_level - 4.0));
 }
 

@@ -17,7 +17,7 @@
 //!   write pictures, and [`files`] writes files atomically.
 //! - [`hatch_weights`] and [`hatch_blend`] weight and blend six tones by light (Card & Mitchell 2002, listings 4 and 5).
 //!   [`weights`] describes the transfer curve: with a brightness of 7 and the default tones the hatched tone is N·L, with a
-//!   minimum of 1/7. [`hatch_color`] applies a tone to a coloured surface, [`hatch_shadowed`] limits the tone in shadows.
+//!   minimum of 1/7. [`hatch_color`] applies a tone to a coloured surface, [`hatch_tone_in_shadow`] limits the tone in shadows.
 //! - [`Thresholds`] and [`hatch_threshold`]: all tones in one channel.
 //! - [`lookup`]: level selection and filtering that preserves the tone. [`mapping`]: texture coordinates on surfaces by
 //!   planar projection, rotated by a [`field`] of directions, or by texture coordinates of any [`density`].
@@ -99,8 +99,8 @@ pub use stroke::{Stroke, StrokeImage};
 pub use tam::Tam;
 pub use threshold::{Thresholds, hatch_threshold};
 pub use weights::{
-    HATCH_TONES, HatchWeights, hatch_blend, hatch_color, hatch_level, hatch_linear, hatch_shadowed, hatch_transfer,
-    hatch_weights,
+    HATCH_TONES, HatchWeights, hatch_blend, hatch_color, hatch_level, hatch_level_of_tone, hatch_tone_in_shadow,
+    hatch_transfer, hatch_weights,
 };
 
 /// The functions of this crate in WGSL: no bindings, no entry points, every name begins with `hatch_` or `Hatch`.

@@ -13,7 +13,7 @@
 //! are spread along the longer axis where one would alias. Beyond [`HATCH_MAX_ANISOTROPY`] coarser levels are used.
 //!
 //! Every level has the requested mean tone, so none of this changes the tone. Where a map covers only a few pixels there
-//! is no room for strokes, and a flat tone replaces them ([`hatch_flat`]).
+//! is no room for strokes, and a flat tone replaces them ([`hatch_flat_weight`]).
 //!
 //! # Thresholds are compared before they are filtered
 //!
@@ -25,10 +25,10 @@
 use glam::{DVec2, DVec3};
 
 pub use crate::footprint::{
-    HATCH_MAX_ANISOTROPY, HATCH_SPREAD, HatchFootprint, HatchTaps, hatch_flat, hatch_footprint, hatch_samples,
+    HATCH_MAX_ANISOTROPY, HATCH_SPREAD, HatchFootprint, HatchTaps, hatch_flat_weight, hatch_footprint, hatch_samples,
     hatch_taps,
 };
-pub use crate::threshold::hatch_softened;
+pub use crate::threshold::hatch_soft_tone;
 use crate::{Tam, Thresholds, hatch_threshold};
 
 /// Bilinear interpolation in one level. `texel` returns the value at a column and a row.
@@ -74,7 +74,7 @@ pub fn hatch_texels(tam: &Tam, uv: DVec2, footprint: HatchFootprint) -> (DVec3, 
 /// The ink at `uv` for a tone, 0..=1: the thresholds are compared and then filtered. `width` is the range of tones over
 /// which a texel turns to ink.
 pub fn hatch_ink(map: &Thresholds, uv: DVec2, footprint: HatchFootprint, tone: f64, width: f64) -> f64 {
-    let softened = hatch_softened(tone, width);
+    let softened = hatch_soft_tone(tone, width);
     let ink = filtered(uv, footprint, |level, uv| {
         let side = map.side >> level;
         bilinear(uv, side, |x, y| {

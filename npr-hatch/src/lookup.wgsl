@@ -82,7 +82,7 @@ fn hatch_ink_at(map: texture_2d<f32>, nearest: sampler, uv: vec2<f32>, level: f3
 fn hatch_ink(
     map: texture_2d<f32>, nearest: sampler, uv: vec2<f32>, footprint: HatchFootprint, tone: f32, width: f32,
 ) -> f32 {
-    let softened = hatch_softened(tone, width);
+    let softened = hatch_soft_tone(tone, width);
     let samples = hatch_samples(footprint);
     var ink = 0.0;
     for (var i = 0; i < samples; i++) {

@@ -137,10 +137,10 @@ pub fn hatch_threshold(texel: f64, tone: f64, width: f64) -> f64 {
 /// the range of all thresholds, so that rounding leaves no specks.
 ///
 /// ```
-/// use npr_hatch::lookup::hatch_softened;
-/// assert_eq!([0.0, 0.3, 1.0].map(|tone| hatch_softened(tone, 0.25)), [-0.25, 0.3, 1.25]);
+/// use npr_hatch::lookup::hatch_soft_tone;
+/// assert_eq!([0.0, 0.3, 1.0].map(|tone| hatch_soft_tone(tone, 0.25)), [-0.25, 0.3, 1.25]);
 /// ```
-pub fn hatch_softened(tone: f64, width: f64) -> f64 {
+pub fn hatch_soft_tone(tone: f64, width: f64) -> f64 {
     let end = 0.5 * width;
     if tone <= 0.0 {
         -width

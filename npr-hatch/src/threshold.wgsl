@@ -7,7 +7,7 @@ fn hatch_threshold(texel: f32, tone: f32, width: f32) -> f32 {
     return select(0.0, 1.0, texel > tone || tone <= 0.0);
 }
 
-fn hatch_softened(tone: f32, width: f32) -> f32 {
+fn hatch_soft_tone(tone: f32, width: f32) -> f32 {
     let end = 0.5 * width;
     if tone <= 0.0 {
         return -width;

@@ -10,7 +10,7 @@
 //! linear function through (1, t6), (2, t5) to (6, t1) and (7, 1), constant beyond both ends. With the tones of
 //! [`crate::even_tones`], t = 1 - i/7, it is **tone = clamp(factor, 1, 7) / 7**. A brightness of 7 gives a tone equal to
 //! N·L with a minimum of 1/7; a brightness of 6, as suggested by the comment "times six" of listing 4, gives a maximum of
-//! 6/7. For other tones [`hatch_linear`] computes the light factor that gives a requested tone.
+//! 6/7. For other tones [`hatch_level_of_tone`] computes the light factor that gives a requested tone.
 //!
 //! # Per vertex or per pixel
 //!
@@ -73,12 +73,12 @@ pub fn hatch_transfer(light: DVec3, dark: DVec3, level: f64) -> f64 {
 ///
 /// ```
 /// use glam::DVec3;
-/// use npr_hatch::{hatch_linear, hatch_transfer};
+/// use npr_hatch::{hatch_level_of_tone, hatch_transfer};
 /// let (light, dark) = (DVec3::new(0.9, 0.8, 0.5), DVec3::new(0.4, 0.25, 0.1));
-/// let level = hatch_linear(light, dark, 0.3);
+/// let level = hatch_level_of_tone(light, dark, 0.3);
 /// assert!((hatch_transfer(light, dark, level) - 0.3).abs() < 1e-12);
 /// ```
-pub fn hatch_linear(light: DVec3, dark: DVec3, tone: f64) -> f64 {
+pub fn hatch_level_of_tone(light: DVec3, dark: DVec3, tone: f64) -> f64 {
     let knots = [dark.z, dark.y, dark.x, light.z, light.y, light.x, 1.0];
     // The segments of the piecewise linear function contribute 0..=1 each.
     knots.windows(2).fold(1.0, |level, part| level + ((tone - part[0]) / (part[1] - part[0])).clamp(0.0, 1.0))
@@ -86,7 +86,7 @@ pub fn hatch_linear(light: DVec3, dark: DVec3, tone: f64) -> f64 {
 
 /// The tone in shadow: `lit` is 1 in full light and 0 in full shadow, where the tone is limited to `darkest` for any N·L
 /// (Card & Mitchell 2002, figure 10c).
-pub fn hatch_shadowed(tone: f64, darkest: f64, lit: f64) -> f64 {
+pub fn hatch_tone_in_shadow(tone: f64, darkest: f64, lit: f64) -> f64 {
     tone * lit + tone.min(darkest) * (1.0 - lit)
 }
 

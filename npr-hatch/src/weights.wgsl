@@ -28,13 +28,13 @@ fn hatch_transfer(light: vec3<f32>, dark: vec3<f32>, level: f32) -> f32 {
     return hatch_blend(light, dark, hatch_weights(level));
 }
 
-fn hatch_linear(light: vec3<f32>, dark: vec3<f32>, tone: f32) -> f32 {
+fn hatch_level_of_tone(light: vec3<f32>, dark: vec3<f32>, tone: f32) -> f32 {
     let from_dark = saturate((tone - dark.zyx) / (vec3(dark.yx, light.z) - dark.zyx));
     let from_light = saturate((tone - light.zyx) / (vec3(light.yx, 1.0) - light.zyx));
     return 1.0 + dot(from_dark + from_light, vec3(1.0));
 }
 
-fn hatch_shadowed(tone: f32, darkest: f32, lit: f32) -> f32 {
+fn hatch_tone_in_shadow(tone: f32, darkest: f32, lit: f32) -> f32 {
     return tone * lit + min(tone, darkest) * (1.0 - lit);
 }
 

@@ -3,11 +3,13 @@
 
 use glam::{DVec2, DVec3, UVec2};
 use npr_hatch::lookup::{
-    HATCH_MAX_ANISOTROPY, HATCH_SPREAD, HatchFootprint, HatchTaps, hatch_footprint, hatch_ink, hatch_softened,
+    HATCH_MAX_ANISOTROPY, HATCH_SPREAD, HatchFootprint, HatchTaps, hatch_footprint, hatch_ink, hatch_soft_tone,
     hatch_taps, hatch_texels,
 };
-use npr_hatch::mapping::{hatch_moved, hatch_share, hatch_turned};
-use npr_hatch::{Drawing, TamParameters, Thresholds, draw, hatch_blend, hatch_linear, hatch_threshold, hatch_weights};
+use npr_hatch::mapping::{hatch_offset, hatch_rotate, hatch_share_tone};
+use npr_hatch::{
+    Drawing, TamParameters, Thresholds, draw, hatch_blend, hatch_level_of_tone, hatch_threshold, hatch_weights,
+};
 use oorandom::Rand64;
 use std::f64::consts::{PI, SQRT_2};
 use std::sync::LazyLock;
@@ -66,7 +68,7 @@ fn the_mean_of_a_filtered_picture_is_the_tone() {
             worst_ink = worst_ink.max((found - tone).abs());
             let reachable = tone.max(1.0 / 7.0);
             let (light, dark) = six(0);
-            let weights = hatch_weights(hatch_linear(light, dark, reachable));
+            let weights = hatch_weights(hatch_level_of_tone(light, dark, reachable));
             let found = texels.iter().map(|&(light, dark)| hatch_blend(light, dark, weights)).sum::<f64>();
             worst_six = worst_six.max((found / texels.len() as f64 - reachable).abs());
         }
@@ -109,12 +111,13 @@ fn hatchings_that_meet_have_the_tone_together() {
         let mut worst = [0.0_f64; 3];
         for step in 1..10 {
             let tone = f64::from(step) / 10.0;
-            let paper =
-                |uv: DVec2, share| 1.0 - hatch_ink(thresholds, uv, footprint, hatch_share(tone, share), 1.0 / 64.0);
-            let turned = |uv: DVec2, turn: i32| hatch_turned(uv, turn) + hatch_moved(turn);
+            let paper = |uv: DVec2, share| {
+                1.0 - hatch_ink(thresholds, uv, footprint, hatch_share_tone(tone, share), 1.0 / 64.0)
+            };
+            let turned = |uv: DVec2, turn: i32| hatch_rotate(uv, turn) + hatch_offset(turn);
             let both = [
                 // Two planes that share an axis.
-                mean(&places, |uv| paper(uv, share) * paper(uv + hatch_moved(1), 1.0 - share)),
+                mean(&places, |uv| paper(uv, share) * paper(uv + hatch_offset(1), 1.0 - share)),
                 mean(&places, |uv| paper(turned(uv, 3), share) * paper(turned(uv, 4), 1.0 - share)),
                 mean(&places, |uv| paper(uv, share) * paper(uv * 2.0, 1.0 - share)),
             ];
@@ -328,13 +331,13 @@ fn a_soft_edge_keeps_the_mean_up_to_white_and_black() {
     let thresholds = 65536;
     for width in [1.0 / 64.0, 0.1, 0.5, 1.0] {
         for tone in [0.0, 1e-4, 0.003, 0.02, 0.2, 0.5, 0.77, 0.99, 0.9999, 1.0] {
-            let at = hatch_softened(tone, width);
+            let at = hatch_soft_tone(tone, width);
             let ink = |i: i32| hatch_threshold((f64::from(i) + 0.5) / f64::from(thresholds), at, width);
             let paper = 1.0 - (0..thresholds).map(ink).sum::<f64>() / f64::from(thresholds);
             assert!((paper - tone).abs() < 1e-8, "{width}, {tone}: {paper}");
         }
     }
-    assert_eq!((hatch_softened(0.4, 0.0), hatch_softened(1.2, 0.0), hatch_softened(-0.1, 0.2)), (0.4, 1.0, -0.2));
+    assert_eq!((hatch_soft_tone(0.4, 0.0), hatch_soft_tone(1.2, 0.0), hatch_soft_tone(-0.1, 0.2)), (0.4, 1.0, -0.2));
 }
 
 /// For all thresholds including the extremes 0 and 65535, to which those of a large map round.

@@ -3,14 +3,14 @@
 use glam::{DVec2, DVec3, Vec3, Vec3Swizzles as _};
 use npr_hatch::field::LineTensor;
 use npr_hatch::mapping::{
-    HATCH_TURNS, HatchStep, hatch_doubled, hatch_moved, hatch_octave, hatch_plane, hatch_plane_weights, hatch_share,
-    hatch_turn, hatch_turned,
+    HATCH_DIRECTIONS, HatchBlend, hatch_direction_step, hatch_doubled_angle, hatch_octave, hatch_offset, hatch_plane,
+    hatch_plane_weights, hatch_rotate, hatch_share_tone,
 };
 use oorandom::Rand64;
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
 /// The angle between two directions.
-const TURN: f64 = PI / HATCH_TURNS as f64;
+const TURN: f64 = PI / HATCH_DIRECTIONS as f64;
 
 fn direction(random: &mut Rand64) -> DVec3 {
     loop {
@@ -28,15 +28,15 @@ fn in_plane(axis: u32, angle: f64) -> DVec3 {
     each[axis as usize]
 }
 
-/// The tensor d dᵀ as arguments of [`hatch_doubled`], in f64.
+/// The tensor d dᵀ as arguments of [`hatch_doubled_angle`], in f64.
 fn doubled(d: DVec3, axis: u32) -> DVec2 {
-    hatch_doubled(d * d, DVec3::new(d.x * d.y, d.x * d.z, d.y * d.z), axis)
+    hatch_doubled_angle(d * d, DVec3::new(d.x * d.y, d.x * d.z, d.y * d.z), axis)
 }
 
 /// The weight of each direction.
-fn shares(step: HatchStep) -> [f64; HATCH_TURNS as usize] {
-    assert!((0..HATCH_TURNS as i32).contains(&step.first) && (0.0..=1.0).contains(&step.share), "{step:?}");
-    let mut shares = [0.0; HATCH_TURNS as usize];
+fn shares(step: HatchBlend) -> [f64; HATCH_DIRECTIONS as usize] {
+    assert!((0..HATCH_DIRECTIONS as i32).contains(&step.first) && (0.0..=1.0).contains(&step.share), "{step:?}");
+    let mut shares = [0.0; HATCH_DIRECTIONS as usize];
     shares[step.first as usize] += 1.0 - step.share;
     shares[(step.first as usize + 1) % shares.len()] += step.share;
     shares
@@ -134,7 +134,7 @@ fn a_tensor_has_the_doubled_angle_of_what_is_seen() {
             assert_eq!(doubled(d, axis), doubled(-d, axis));
             // The tensor of a field has the same order of elements, in f32.
             let LineTensor { diagonal, others } = LineTensor::from_direction(d.as_vec3());
-            let handed = hatch_doubled(Vec3::from(diagonal).as_dvec3(), Vec3::from(others).as_dvec3(), axis);
+            let handed = hatch_doubled_angle(Vec3::from(diagonal).as_dvec3(), Vec3::from(others).as_dvec3(), axis);
             assert!((handed - expected).abs().max_element() < 1e-6);
         }
     }
@@ -149,10 +149,10 @@ fn turned_strokes_run_along_the_direction() {
         for number in 0..7200 {
             let angle = f64::from(number) / 7200.0 * 2.0 * PI;
             let d = in_plane(axis, angle);
-            let step = hatch_turn(doubled(d, axis));
-            assert_eq!(step, hatch_turn(doubled(-d, axis)));
+            let step = hatch_direction_step(doubled(d, axis));
+            assert_eq!(step, hatch_direction_step(doubled(-d, axis)));
             for (turn, share) in shares(step).into_iter().enumerate() {
-                let map = hatch_turned(hatch_plane(d, axis), turn as i32);
+                let map = hatch_rotate(hatch_plane(d, axis), turn as i32);
                 let off = map.y.abs().atan2(map.x.abs());
                 most_off = if share > 0.0 { most_off.max(off) } else { most_off };
                 most_off_of_half = if share >= 0.5 { most_off_of_half.max(off) } else { most_off_of_half };
@@ -168,17 +168,17 @@ fn turned_strokes_run_along_the_direction() {
 #[test]
 fn exact_directions_have_one_turn() {
     for axis in 0..3 {
-        for turn in 0..HATCH_TURNS {
-            let found = shares(hatch_turn(doubled(in_plane(axis, f64::from(turn) * TURN), axis)));
+        for turn in 0..HATCH_DIRECTIONS {
+            let found = shares(hatch_direction_step(doubled(in_plane(axis, f64::from(turn) * TURN), axis)));
             assert_eq!(found[turn as usize], 1.0, "{axis}, {turn}: {found:?}");
         }
     }
     for none in [DVec2::ZERO, -DVec2::ZERO] {
-        assert_eq!(hatch_turn(none), HatchStep { first: 0, share: 0.0 });
+        assert_eq!(hatch_direction_step(none), HatchBlend { first: 0, share: 0.0 });
     }
     // Both signs of zero at a half turn.
-    assert_eq!(shares(hatch_turn(DVec2::new(-1.0, 0.0)))[6], 1.0);
-    assert_eq!(shares(hatch_turn(DVec2::new(-1.0, -0.0)))[6], 1.0);
+    assert_eq!(shares(hatch_direction_step(DVec2::new(-1.0, 0.0)))[6], 1.0);
+    assert_eq!(shares(hatch_direction_step(DVec2::new(-1.0, -0.0)))[6], 1.0);
 }
 
 #[test]
@@ -187,7 +187,7 @@ fn shares_of_turns_are_continuous_and_one_together() {
     // The weight goes from 0 to 1 over a quarter of a step.
     let steepest = 4.0 / TURN;
     let count = (2.0 * PI / step) as u32 + 1;
-    let at = |number: u32| shares(hatch_turn(doubled(in_plane(2, f64::from(number) * step), 2) * 0.3));
+    let at = |number: u32| shares(hatch_direction_step(doubled(in_plane(2, f64::from(number) * step), 2) * 0.3));
     for number in 0..count {
         let (here, next) = (at(number), at(number + 1));
         assert!((here.iter().sum::<f64>() - 1.0).abs() < 1e-12);
@@ -214,11 +214,11 @@ fn an_octave_changes_in_the_middle_quarter() {
         (8.0, 8, 0.0),
     ];
     for (octave, first, share) in expected {
-        assert_eq!(hatch_octave(octave), HatchStep { first, share }, "{octave}");
+        assert_eq!(hatch_octave(octave), HatchBlend { first, share }, "{octave}");
     }
     // The weight of the second hatching is a piecewise linear function from 0 to 1.
     let place = |number: i32| {
-        let HatchStep { first, share } = hatch_octave(f64::from(number) * 1e-3);
+        let HatchBlend { first, share } = hatch_octave(f64::from(number) * 1e-3);
         f64::from(first) + share
     };
     for number in -5000..5000 {
@@ -233,13 +233,13 @@ fn turning_is_a_rotation_back() {
     for _ in 0..100 {
         let place = direction(&mut random).truncate() * 5.0;
         for turn in -3..30 {
-            let turned = hatch_turned(place, turn);
+            let turned = hatch_rotate(place, turn);
             let expected = DVec2::from_angle(-f64::from(turn) * TURN).rotate(place);
             assert!((turned - expected).abs().max_element() < 1e-12, "{place}, {turn}: {turned}");
         }
-        assert!((hatch_turned(place, 0) - place).abs().max_element() < 1e-14);
-        assert!((hatch_turned(place, 6) - DVec2::new(place.y, -place.x)).abs().max_element() < 1e-14);
-        assert!((hatch_turned(place, 12) + place).abs().max_element() < 1e-14);
+        assert!((hatch_rotate(place, 0) - place).abs().max_element() < 1e-14);
+        assert!((hatch_rotate(place, 6) - DVec2::new(place.y, -place.x)).abs().max_element() < 1e-14);
+        assert!((hatch_rotate(place, 12) + place).abs().max_element() < 1e-14);
     }
 }
 
@@ -247,7 +247,7 @@ fn turning_is_a_rotation_back() {
 fn hatchings_are_moved_apart() {
     // The number of all hatchings: twelve directions of three planes. A square grid of as many points has a distance
     // of 1/6.
-    let places: Vec<DVec2> = (0..36).map(hatch_moved).collect();
+    let places: Vec<DVec2> = (0..36).map(hatch_offset).collect();
     let mut nearest = f64::INFINITY;
     for (i, a) in places.iter().enumerate() {
         assert!(a.min_element() >= 0.0 && a.max_element() < 1.0);
@@ -257,10 +257,10 @@ fn hatchings_are_moved_apart() {
         }
     }
     assert!(nearest > 0.5 / 6.0, "{nearest}");
-    assert_eq!(hatch_moved(0), DVec2::ZERO);
+    assert_eq!(hatch_offset(0), DVec2::ZERO);
     // Also for negative octaves, which occur in magnified maps.
     for number in 1..36 {
-        assert!((hatch_moved(-number) + hatch_moved(number) - 1.0).abs().max_element() < 1e-12);
+        assert!((hatch_offset(-number) + hatch_offset(number) - 1.0).abs().max_element() < 1e-12);
     }
 }
 
@@ -273,16 +273,20 @@ fn the_product_of_shares_is_the_tone() {
         let weights = hatch_plane_weights(direction(&mut random));
         let turn = random.rand_float();
         let product = [turn, 1.0 - turn]
-            .map(|part| (0..3).map(|axis| hatch_share(tone, weights[axis] * part)).product::<f64>())
+            .map(|part| (0..3).map(|axis| hatch_share_tone(tone, weights[axis] * part)).product::<f64>())
             .into_iter()
             .product::<f64>();
         assert!((product - tone).abs() < 1e-9, "{weights} {turn}: {product}, not {tone}");
     }
     for tone in [0.0, 1e-9, 0.3, 1.0] {
-        assert_eq!((hatch_share(tone, 0.0), hatch_share(tone, 1.0)), (1.0, tone), "all paper, and as asked for");
+        assert_eq!(
+            (hatch_share_tone(tone, 0.0), hatch_share_tone(tone, 1.0)),
+            (1.0, tone),
+            "all paper, and as asked for"
+        );
     }
-    assert_eq!(hatch_share(1.0, 0.3), 1.0);
+    assert_eq!(hatch_share_tone(1.0, 0.3), 1.0);
     // Black remains black when it is distributed over several hatchings.
-    assert!(hatch_share(0.0, 0.5).powi(2) <= 1e-6);
-    assert!(hatch_share(0.2, 0.3) > hatch_share(0.2, 0.4));
+    assert!(hatch_share_tone(0.0, 0.5).powi(2) <= 1e-6);
+    assert!(hatch_share_tone(0.2, 0.3) > hatch_share_tone(0.2, 0.4));
 }

@@ -135,7 +135,7 @@ fn even_tones_are_linear() {
         let tone = hatch_transfer(light, dark, factor);
         assert_abs_diff_eq!(tone, factor.clamp(1.0, 7.0) / 7.0, epsilon = 1e-7);
     }
-    assert_abs_diff_eq!(hatch_linear(light, dark, 0.6), 4.2, epsilon = 1e-5);
+    assert_abs_diff_eq!(hatch_level_of_tone(light, dark, 0.6), 4.2, epsilon = 1e-5);
 }
 
 #[test]
@@ -143,11 +143,11 @@ fn linear_inverts_the_transfer() {
     let (light, dark) = (DVec3::new(0.93, 0.9, 0.5), DVec3::new(0.45, 0.2, 0.05));
     for i in 0..=1000 {
         let tone = f64::from(i) / 1000.0;
-        let factor = hatch_linear(light, dark, tone);
+        let factor = hatch_level_of_tone(light, dark, tone);
         assert!((1.0..=7.0).contains(&factor));
         assert_abs_diff_eq!(hatch_transfer(light, dark, factor), tone.max(0.05), epsilon = 1e-12);
     }
-    assert_eq!((hatch_linear(light, dark, -1.0), hatch_linear(light, dark, 2.0)), (1.0, 7.0));
+    assert_eq!((hatch_level_of_tone(light, dark, -1.0), hatch_level_of_tone(light, dark, 2.0)), (1.0, 7.0));
 }
 
 /// A patch of a surface hatched with the map has the tone of its lighting.
@@ -178,9 +178,9 @@ fn shadows_have_the_darkest_tone() {
     let darkest = 1.0 / 7.0;
     for step in 0..=20 {
         let tone = f64::from(step) / 20.0;
-        assert_eq!(hatch_shadowed(tone, darkest, 1.0), tone);
-        assert_eq!(hatch_shadowed(tone, darkest, 0.0), tone.min(darkest));
-        let soft = hatch_shadowed(tone, darkest, 0.5);
+        assert_eq!(hatch_tone_in_shadow(tone, darkest, 1.0), tone);
+        assert_eq!(hatch_tone_in_shadow(tone, darkest, 0.0), tone.min(darkest));
+        let soft = hatch_tone_in_shadow(tone, darkest, 0.5);
         assert!((soft - 0.5 * (tone + tone.min(darkest))).abs() < 1e-15);
     }
 }
@@ -219,7 +219,7 @@ proptest! {
         let brighter = hatch_blend(light, dark, hatch_weights(factor + more));
         prop_assert!(brighter >= tone - 1e-12, "{tone}, then {brighter}");
         for lit in [0.0, 0.3, 1.0] {
-            let shadowed = hatch_shadowed(tone, dark.z, lit);
+            let shadowed = hatch_tone_in_shadow(tone, dark.z, lit);
             prop_assert!((dark.z - 1e-12..=tone + 1e-12).contains(&shadowed), "{shadowed} of {tone}");
         }
         let color = hatch_color(tone, DVec3::new(0.9, 0.5, 0.2), DVec3::new(0.1, 0.0, 0.2));
@@ -230,7 +230,7 @@ proptest! {
     /// one.
     #[test]
     fn any_tone_is_reached((light, dark) in tones(), tone in 0.0..1.0f64) {
-        let factor = hatch_linear(light, dark, tone);
+        let factor = hatch_level_of_tone(light, dark, tone);
         prop_assert!((1.0..=7.0).contains(&factor), "{factor}");
         let tones = [1.0, light.x, light.y, light.z, dark.x, dark.y, dark.z];
         // Two equal tones have no factor between them.

@@ -66,10 +66,12 @@ fn functions_have_the_signatures_of_the_rust_ones() {
 
 #[test]
 fn a_different_signature_is_found() {
-    let swapped =
-        differences_with("fn hatch_shadowed(tone: f32, darkest: f32", "fn hatch_shadowed(darkest: f32, tone: f32");
-    assert!(matches!(&swapped[..], [line] if line.starts_with("hatch_shadowed: ")), "{swapped:?}");
-    let missing = differences_with("hatch_flat", "hatch_level_flat");
+    let swapped = differences_with(
+        "fn hatch_tone_in_shadow(tone: f32, darkest: f32",
+        "fn hatch_tone_in_shadow(darkest: f32, tone: f32",
+    );
+    assert!(matches!(&swapped[..], [line] if line.starts_with("hatch_tone_in_shadow: ")), "{swapped:?}");
+    let missing = differences_with("hatch_flat_weight", "hatch_level_flat");
     assert!(matches!(&missing[..], [line] if line.starts_with("hatch_level_flat: ")), "{missing:?}");
 }
 
@@ -87,7 +89,7 @@ fn is_a_library() {
         let name = function.name.as_deref().unwrap();
         assert!(name.starts_with("hatch_"), "{name}");
     }
-    let types = ["HatchFootprint", "HatchStep", "HatchTaps", "HatchWeights"];
+    let types = ["HatchFootprint", "HatchBlend", "HatchTaps", "HatchWeights"];
     assert_eq!(type_names(&module), BTreeSet::from(types));
 }
 
@@ -96,7 +98,7 @@ fn lookups_are_a_library_behind_it() {
     let source = [WGSL, LOOKUP_WGSL].concat();
     let module = validated(&source);
     assert_library(&module);
-    let types = ["HatchFootprint", "HatchStep", "HatchTaps", "HatchTexels", "HatchWeights"];
+    let types = ["HatchFootprint", "HatchBlend", "HatchTaps", "HatchTexels", "HatchWeights"];
     assert_eq!(type_names(&module), BTreeSet::from(types));
 }
 

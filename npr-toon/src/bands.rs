@@ -47,7 +47,7 @@ impl Bands {
     }
 
     /// Three diffuse bands with the constants and the aliased borders of Card & Mitchell 2002, listing 3.
-    pub fn listing_3() -> Self {
+    pub fn three_diffuse_bands() -> Self {
         Self {
             thresholds: vec![0.1, 0.8],
             tones: vec![Vec3::splat(0.2), Vec3::splat(0.6), Vec3::new(0.9, 0.9, 1.0)],
@@ -60,7 +60,7 @@ impl Bands {
     /// text of Card & Mitchell 2002 describes cartoon shading.
     ///
     /// The text states no numbers, so thresholds and tones are those of listing 3.
-    pub fn chapter_text() -> Self {
+    pub fn diffuse_and_specular() -> Self {
         Self {
             thresholds: vec![0.1],
             tones: vec![Vec3::splat(0.2), Vec3::splat(0.6)],

@@ -4,7 +4,7 @@
 //! use glam::DVec3;
 //! use npr_toon::{Bands, toon_band_hard, toon_n_dot_l};
 //!
-//! let bands = Bands::listing_3();
+//! let bands = Bands::three_diffuse_bands();
 //! bands.validate()?;
 //! let n_dot_l = toon_n_dot_l(DVec3::Z, DVec3::new(0.0, 3.0, 4.0)); // 0.8
 //! assert_eq!(toon_band_hard(&bands, n_dot_l - 1e-6), DVec3::splat(f64::from(0.6_f32)));
@@ -35,7 +35,7 @@
 //!
 //! Errors in print: the second to last instruction of Card & Mitchell's listing 2, which normalises the half vector, lacks
 //! its opcode (`mul`). Their text describes one threshold on N·L and one on N·H; their listing 3 has two on N·L and never
-//! reads the half vector. Both variants are provided: [`Bands::chapter_text`] and [`Bands::listing_3`].
+//! reads the half vector. Both variants are provided: [`Bands::diffuse_and_specular`] and [`Bands::three_diffuse_bands`].
 //!
 //! # Colours
 //!
@@ -74,8 +74,8 @@ pub use glam;
 pub use bands::{Bands, Highlight};
 pub use error::ToonError;
 pub use light::{
-    MIN_SUM, MIN_WIDTH, toon_band_hard, toon_band_smooth, toon_coverage, toon_half, toon_highlight, toon_n_dot_h,
-    toon_n_dot_h_interpolated, toon_n_dot_h_of, toon_n_dot_l, toon_n_dot_l_interpolated, toon_shade, toon_width,
+    MIN_SUM, MIN_WIDTH, toon_band, toon_band_hard, toon_coverage, toon_half, toon_highlight, toon_n_dot_h,
+    toon_n_dot_h_from_dots, toon_n_dot_h_interpolated, toon_n_dot_l, toon_n_dot_l_interpolated, toon_shade, toon_width,
 };
 pub use uniform::{MAX_BANDS, ToonUniform};
 

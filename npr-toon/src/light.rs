@@ -48,7 +48,7 @@ pub fn toon_n_dot_h_interpolated(normal: DVec3, half_vector: DVec3) -> f64 {
 }
 
 /// N·H of unit vectors from their dot products without computing H, since |L + E|² = 2 + 2 L·E. 0 where L is opposite E.
-pub fn toon_n_dot_h_of(n_dot_l: f64, n_dot_e: f64, l_dot_e: f64) -> f64 {
+pub fn toon_n_dot_h_from_dots(n_dot_l: f64, n_dot_e: f64, l_dot_e: f64) -> f64 {
     let squared = 2.0 + 2.0 * l_dot_e;
     if squared > 0.0 { (n_dot_l + n_dot_e) / squared.sqrt() } else { 0.0 }
 }
@@ -79,7 +79,7 @@ pub fn toon_band_hard(bands: &Bands, n_dot_l: f64) -> DVec3 {
 
 /// The mean tone of a pixel across which N·L changes linearly by `width`: the tones weighted by the fraction of the pixel
 /// that each band covers (see the crate's section on borders). Width 0 gives [`toon_band_hard`].
-pub fn toon_band_smooth(bands: &Bands, n_dot_l: f64, width: f64) -> DVec3 {
+pub fn toon_band(bands: &Bands, n_dot_l: f64, width: f64) -> DVec3 {
     let uppers = bands.thresholds.iter().map(|&t| toon_coverage(n_dot_l, f64::from(t), width));
     let mut tone = DVec3::ZERO;
     // The fraction of the pixel at or above the band's lower threshold; 1 for the darkest band.
@@ -105,7 +105,7 @@ pub fn toon_highlight(bands: &Bands, n_dot_l: f64, nl_width: f64, n_dot_h: f64, 
 /// [`Bands::antialias`] is set.
 pub fn toon_shade(bands: &Bands, base_color: DVec3, n_dot_l: f64, nl_width: f64, n_dot_h: f64, nh_width: f64) -> DVec3 {
     let (nl_width, nh_width) = if bands.antialias { (nl_width, nh_width) } else { (0.0, 0.0) };
-    let color = base_color * toon_band_smooth(bands, n_dot_l, nl_width);
+    let color = base_color * toon_band(bands, n_dot_l, nl_width);
     let Some(highlight) = bands.highlight else { return color };
     let opacity = toon_highlight(bands, n_dot_l, nl_width, n_dot_h, nh_width);
     color * (1.0 - opacity) + highlight.color.as_dvec3() * opacity

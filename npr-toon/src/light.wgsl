@@ -50,7 +50,7 @@ fn toon_n_dot_h(normal: vec3<f32>, to_light: vec3<f32>, to_eye: vec3<f32>) -> f3
 }
 
 // N.H of unit vectors from their dot products: |L + E| is sqrt(2 + 2 L.E). 0 where L is opposite to E.
-fn toon_n_dot_h_of(n_dot_l: f32, n_dot_e: f32, l_dot_e: f32) -> f32 {
+fn toon_n_dot_h_from_dots(n_dot_l: f32, n_dot_e: f32, l_dot_e: f32) -> f32 {
     let squared = 2.0 + 2.0 * l_dot_e;
     return select(0.0, (n_dot_l + n_dot_e) * inverseSqrt(max(squared, 1e-30)), squared > 0.0);
 }

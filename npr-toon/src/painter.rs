@@ -25,7 +25,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3, DVec4};
 
 use crate::light::saturate;
-use crate::source::{self, Light, LightPlace, combined_color, toon_to_light};
+use crate::source::{self, Light, LightKind, combined_color, toon_to_light};
 use crate::{ToonError, toon_n_dot_l};
 
 /// The maximum number of lights: one per axis of a 2D ramp.
@@ -67,7 +67,7 @@ impl Painter {
 }
 
 /// The diffuse term of a light: N·L times its brightness, not clamped.
-pub fn toon_reach(n_dot_l: f64, brightness: f64) -> f64 {
+pub fn toon_diffuse(n_dot_l: f64, brightness: f64) -> f64 {
     n_dot_l * brightness
 }
 
@@ -78,7 +78,7 @@ pub fn toon_reach(n_dot_l: f64, brightness: f64) -> f64 {
 pub fn toon_painter_uv(painter: &Painter, position: DVec3, normal: DVec3) -> DVec2 {
     let diffuse = |index: usize| {
         painter.lights.get(index).map_or(0.0, |light| {
-            toon_reach(toon_n_dot_l(normal, toon_to_light(light.place, position)), f64::from(light.brightness))
+            toon_diffuse(toon_n_dot_l(normal, toon_to_light(light.place, position)), f64::from(light.brightness))
         })
     };
     DVec2::new(diffuse(0), diffuse(1))
@@ -109,9 +109,9 @@ pub fn toon_paint(painter: &Painter, shade: DVec3, material: DVec4) -> DVec4 {
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct PainterUniform {
     /// The first light: the direction to it and 0, or its position and 1.
-    pub place_a: [f32; 4],
+    pub light_a: [f32; 4],
     /// The second light, likewise.
-    pub place_b: [f32; 4],
+    pub light_b: [f32; 4],
     /// The common colour of the lights, and the light scale.
     pub light_color: [f32; 4],
     /// The brightness of the first and of the second light; 0 for a missing light.
@@ -131,14 +131,14 @@ impl PainterUniform {
     /// zero direction of an aggregate of two lights that cancel.
     pub fn unchecked(lights: &[Light], light_scale: f32) -> Self {
         let place = |index: usize| match lights.get(index).map(|light| light.place) {
-            Some(LightPlace::Directional { to_light }) => to_light.extend(0.0).to_array(),
-            Some(LightPlace::Positional { position }) => position.extend(1.0).to_array(),
+            Some(LightKind::Directional { to_light }) => to_light.extend(0.0).to_array(),
+            Some(LightKind::Positional { position }) => position.extend(1.0).to_array(),
             None => [0.0; 4],
         };
         let brightness = |index: usize| lights.get(index).map_or(0.0, |light| light.brightness);
         Self {
-            place_a: place(0),
-            place_b: place(1),
+            light_a: place(0),
+            light_b: place(1),
             light_color: combined_color(lights).as_vec3().extend(light_scale).to_array(),
             brightness: [brightness(0), brightness(1)],
             padding: [0; 2],

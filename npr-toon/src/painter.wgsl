@@ -2,8 +2,8 @@
 
 struct ToonPainter {
     // Per light: xyz the direction to it and w 0, or its position and w 1.
-    place_a: vec4<f32>,
-    place_b: vec4<f32>,
+    light_a: vec4<f32>,
+    light_b: vec4<f32>,
     // rgb the common colour of the lights, w the light scale.
     light_color: vec4<f32>,
     // Per light.
@@ -12,7 +12,7 @@ struct ToonPainter {
 }
 
 // The diffuse term of a light, not clamped.
-fn toon_reach(n_dot_l: f32, brightness: f32) -> f32 {
+fn toon_diffuse(n_dot_l: f32, brightness: f32) -> f32 {
     return n_dot_l * brightness;
 }
 
@@ -20,8 +20,8 @@ fn toon_reach(n_dot_l: f32, brightness: f32) -> f32 {
 fn toon_painter_uv(painter: ToonPainter, position: vec3<f32>, normal: vec3<f32>) -> vec2<f32> {
     let n = toon_unit(normal);
     return vec2<f32>(
-        toon_reach(dot(n, toon_to_light(painter.place_a, position)), painter.brightness.x),
-        toon_reach(dot(n, toon_to_light(painter.place_b, position)), painter.brightness.y),
+        toon_diffuse(dot(n, toon_to_light(painter.light_a, position)), painter.brightness.x),
+        toon_diffuse(dot(n, toon_to_light(painter.light_b, position)), painter.brightness.y),
     );
 }
 

@@ -96,7 +96,7 @@ impl Ramp {
 /// The ramp's colour at `x`.
 ///
 /// For a hard ramp, the mean over a pixel across which `x` changes linearly by `width`, as for
-/// [`crate::toon_band_smooth`]; width 0 gives the colour at the pixel's centre. A smooth ramp has no borders and ignores
+/// [`crate::toon_band`]; width 0 gives the colour at the pixel's centre. A smooth ramp has no borders and ignores
 /// `width`. NaN gives the colour of the first stop.
 ///
 /// ```

@@ -12,7 +12,7 @@ use crate::error::is_color;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case", rename_all_fields = "kebab-case", deny_unknown_fields))]
-pub enum LightPlace {
+pub enum LightKind {
     /// A light at infinite distance.
     Directional {
         /// The direction from the surface to the light, of any non-zero length.
@@ -31,7 +31,7 @@ pub enum LightPlace {
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case", deny_unknown_fields))]
 pub struct Light {
     /// Its direction or position.
-    pub place: LightPlace,
+    pub place: LightKind,
     /// A display-referred RGB factor on the colours of lit surfaces.
     pub color: Vec3,
     /// The factor on N·L, finite and not negative; 0 switches the light off.
@@ -41,12 +41,12 @@ pub struct Light {
 impl Light {
     /// A white directional light of brightness 1.
     pub fn directional(to_light: Vec3) -> Self {
-        Self { place: LightPlace::Directional { to_light }, color: Vec3::ONE, brightness: 1.0 }
+        Self { place: LightKind::Directional { to_light }, color: Vec3::ONE, brightness: 1.0 }
     }
 
     /// A white point light of brightness 1.
     pub fn positional(position: Vec3) -> Self {
-        Self { place: LightPlace::Positional { position }, color: Vec3::ONE, brightness: 1.0 }
+        Self { place: LightKind::Positional { position }, color: Vec3::ONE, brightness: 1.0 }
     }
 }
 
@@ -55,14 +55,14 @@ impl Light {
 pub fn validate(lights: &[Light]) -> Result<(), ToonError> {
     for (index, light) in lights.iter().enumerate() {
         match light.place {
-            LightPlace::Directional { to_light: value } => {
+            LightKind::Directional { to_light: value } => {
                 // The bounds of `toon_unit` in the shader.
                 let squared = value.length_squared();
                 if squared < 1e-30 || !squared.is_finite() {
                     return Err(ToonError::LightDirection { index, value });
                 }
             }
-            LightPlace::Positional { position: value } => {
+            LightKind::Positional { position: value } => {
                 // The squared distance would overflow in the shader's f32 normalisation.
                 if !value.length_squared().is_finite() {
                     return Err(ToonError::LightPosition { index, value });
@@ -80,10 +80,10 @@ pub fn validate(lights: &[Light]) -> Result<(), ToonError> {
 }
 
 /// The unit vector from `position` to a light; zero at the position of a point light.
-pub fn toon_to_light(light: LightPlace, position: DVec3) -> DVec3 {
+pub fn toon_to_light(light: LightKind, position: DVec3) -> DVec3 {
     match light {
-        LightPlace::Directional { to_light } => to_light.as_dvec3(),
-        LightPlace::Positional { position: light } => light.as_dvec3() - position,
+        LightKind::Directional { to_light } => to_light.as_dvec3(),
+        LightKind::Positional { position: light } => light.as_dvec3() - position,
     }
     .normalize_or_zero()
 }

@@ -48,7 +48,7 @@ fn bands() -> Bands {
 fn shaded_and_true(sphere: &Sphere, at: DVec2, limit: f64) -> Option<(f64, f64)> {
     let slope = sphere.derivatives(at)?;
     let width = toon_width(slope.x, slope.y).min(limit);
-    let shaded = toon_band_smooth(&bands(), sphere.n_dot_l(at)?, width).x;
+    let shaded = toon_band(&bands(), sphere.n_dot_l(at)?, width).x;
     let (mut sum, mut count) = (0.0, 0.0);
     for i in 0..16 {
         for j in 0..16 {
@@ -105,8 +105,8 @@ fn at_the_outline_tones_are_not_mixed_into_one() {
     let (slope, n_dot_l) = (sphere.derivatives(at).unwrap(), sphere.n_dot_l(at).unwrap());
     assert_eq!(toon_band_hard(&bands(), n_dot_l).x, 1.0);
     // Without a limit, close to the mean of the darkest and the lightest tone.
-    assert_abs_diff_eq!(toon_band_smooth(&bands(), n_dot_l, toon_width(slope.x, slope.y)).x, 0.75, epsilon = 0.02);
-    assert!(toon_band_smooth(&bands(), n_dot_l, toon_border_width(slope.x, slope.y)).x > 0.9);
+    assert_abs_diff_eq!(toon_band(&bands(), n_dot_l, toon_width(slope.x, slope.y)).x, 0.75, epsilon = 0.02);
+    assert!(toon_band(&bands(), n_dot_l, toon_border_width(slope.x, slope.y)).x > 0.9);
 }
 
 #[test]
@@ -118,7 +118,7 @@ fn borders_are_a_pixel_wide_at_any_distance() {
         let gray = |x: f64| {
             let at = DVec2::new(x, 0.0);
             let slope = sphere.derivatives(at).unwrap();
-            toon_band_smooth(&bands, sphere.n_dot_l(at).unwrap(), toon_border_width(slope.x, slope.y)).x
+            toon_band(&bands, sphere.n_dot_l(at).unwrap(), toon_border_width(slope.x, slope.y)).x
         };
         let border = f64::from(0.3_f32) * radius;
         assert_abs_diff_eq!(gray(border), 0.5, epsilon = 1e-9);
@@ -134,7 +134,7 @@ fn a_flat_face_at_a_threshold_has_one_tone() {
     let bands = bands();
     let tones = (-4..=4).map(|step| f64::from(0.55_f32) + f64::from(step) * f64::from(f32::EPSILON));
     let (soft, hard): (Vec<_>, Vec<_>) =
-        tones.map(|n_dot_l| (toon_band_smooth(&bands, n_dot_l, width).x, toon_band_hard(&bands, n_dot_l).x)).unzip();
+        tones.map(|n_dot_l| (toon_band(&bands, n_dot_l, width).x, toon_band_hard(&bands, n_dot_l).x)).unzip();
     let spread = |of: &[f64]| of.iter().fold(0.0_f64, |most, &x| most.max((x - of[0]).abs()));
     assert!(spread(&soft) < 1.0 / 255.0 && spread(&hard) > 0.1);
 }

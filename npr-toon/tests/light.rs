@@ -10,7 +10,7 @@ fn gray(value: f32) -> DVec3 {
 
 #[test]
 fn listing_3_at_its_thresholds() {
-    let bands = Bands::listing_3();
+    let bands = Bands::three_diffuse_bands();
     let (dark, average, bright) = (gray(0.2), gray(0.6), Vec3::new(0.9, 0.9, 1.0).as_dvec3());
     let (low, high) = (f64::from(0.1_f32), f64::from(0.8_f32));
     let expected = [
@@ -24,11 +24,11 @@ fn listing_3_at_its_thresholds() {
     ];
     for (n_dot_l, tone) in expected {
         assert_eq!(toon_band_hard(&bands, n_dot_l), tone, "{n_dot_l}");
-        assert_eq!(toon_band_smooth(&bands, n_dot_l, 0.0), tone, "{n_dot_l}");
+        assert_eq!(toon_band(&bands, n_dot_l, 0.0), tone, "{n_dot_l}");
         assert_eq!(toon_shade(&bands, DVec3::ONE, n_dot_l, 0.3, 1.0, 0.3), tone, "not antialiased: {n_dot_l}");
     }
     // The centre is 1/10 pixel above the border: 6/10 of the pixel are in the average band.
-    assert!(toon_band_smooth(&bands, low + 0.002, 0.02).abs_diff_eq(0.4 * dark + 0.6 * average, 1e-12));
+    assert!(toon_band(&bands, low + 0.002, 0.02).abs_diff_eq(0.4 * dark + 0.6 * average, 1e-12));
 }
 
 #[test]
@@ -36,12 +36,12 @@ fn hard_shading_has_its_border_at_zero() {
     let bands = Bands::hard_shading();
     assert_eq!(toon_band_hard(&bands, -f64::MIN_POSITIVE), DVec3::splat(0.5));
     assert_eq!(toon_band_hard(&bands, 0.0), DVec3::ONE);
-    assert_eq!(toon_band_smooth(&bands, 0.0, 0.01), DVec3::splat(0.75));
+    assert_eq!(toon_band(&bands, 0.0, 0.01), DVec3::splat(0.75));
 }
 
 #[test]
 fn highlight_replaces_the_band() {
-    let mut bands = Bands::chapter_text();
+    let mut bands = Bands::diffuse_and_specular();
     let threshold = f64::from(0.8_f32);
     let (base, specular) = (DVec3::new(1.0, 0.5, 0.25), Vec3::new(0.9, 0.9, 1.0).as_dvec3());
     assert_eq!(toon_shade(&bands, base, 0.5, 0.0, threshold.next_down(), 0.0), base * gray(0.6));
@@ -75,7 +75,7 @@ fn vectors() {
     assert_eq!(toon_half(DVec3::Z, DVec3::NEG_Z + DVec3::X * 5e-7), DVec3::ZERO);
     assert_eq!(toon_half(-rounded * 2.773408, DVec3::Z + DVec3::Y * 6e-8), DVec3::ZERO);
     assert!(toon_half(DVec3::Z, DVec3::NEG_Z + DVec3::X * 1e-5).x > 0.99);
-    assert_eq!(toon_n_dot_h_of(-0.2064291, 0.20689194, -1.0), 0.0);
+    assert_eq!(toon_n_dot_h_from_dots(-0.2064291, 0.20689194, -1.0), 0.0);
 }
 
 #[test]
@@ -98,7 +98,7 @@ fn n_dot_h_of_dot_products_is_that_of_the_vectors() {
         (1.0, -1.0, -1.0, 0.0),
         (1.0, -0.5, -1.0 - 1e-15, 0.0),
     ] {
-        assert_abs_diff_eq!(toon_n_dot_h_of(n_dot_l, n_dot_e, l_dot_e), expected, epsilon = 1e-15);
+        assert_abs_diff_eq!(toon_n_dot_h_from_dots(n_dot_l, n_dot_e, l_dot_e), expected, epsilon = 1e-15);
     }
     // Equal to N·H of the vectors, unless L and E are nearly opposite.
     let unit = |i: i32| {
@@ -108,7 +108,7 @@ fn n_dot_h_of_dot_products_is_that_of_the_vectors() {
     for i in 0..1000 {
         let (n, l, e) = (unit(i), unit(3 * i + 1), unit(5 * i + 2));
         if l.dot(e) > -0.99 {
-            let of_dots = toon_n_dot_h_of(n.dot(l), n.dot(e), l.dot(e));
+            let of_dots = toon_n_dot_h_from_dots(n.dot(l), n.dot(e), l.dot(e));
             assert_abs_diff_eq!(of_dots, toon_n_dot_h(n, l, e), epsilon = 1e-12);
         }
     }
@@ -122,18 +122,18 @@ fn sampled(bands: &Bands, n_dot_l: f64, width: f64) -> DVec3 {
 
 #[test]
 fn smooth_is_the_mean_over_the_pixel() {
-    let one = Bands { thresholds: vec![0.25], tones: vec![Vec3::ZERO, Vec3::ONE], ..Bands::listing_3() };
+    let one = Bands { thresholds: vec![0.25], tones: vec![Vec3::ZERO, Vec3::ONE], ..Bands::three_diffuse_bands() };
     // Two borders in one pixel at the larger widths.
     let close = Bands {
         thresholds: vec![0.2, 0.25, 0.3],
         tones: vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::ONE],
-        ..Bands::listing_3()
+        ..Bands::three_diffuse_bands()
     };
     for bands in [one, close] {
         for step in -100..=100 {
             for width in [0.001, 0.02, 0.1, 0.5] {
                 let n_dot_l = 0.25 + f64::from(step) * 0.004;
-                let error = toon_band_smooth(&bands, n_dot_l, width) - sampled(&bands, n_dot_l, width);
+                let error = toon_band(&bands, n_dot_l, width) - sampled(&bands, n_dot_l, width);
                 assert!(error.abs().max_element() < 1.0 / 255.0, "{n_dot_l} {width}: {error}");
             }
         }
@@ -142,14 +142,15 @@ fn smooth_is_the_mean_over_the_pixel() {
 
 #[test]
 fn one_band_is_flat() {
-    let bands = Bands { thresholds: vec![], tones: vec![Vec3::splat(0.5)], ..Bands::listing_3() };
+    let bands = Bands { thresholds: vec![], tones: vec![Vec3::splat(0.5)], ..Bands::three_diffuse_bands() };
     assert_eq!(bands.validate(), Ok(()));
-    assert_eq!(toon_band_smooth(&bands, -1.0, 0.5), DVec3::splat(0.5));
+    assert_eq!(toon_band(&bands, -1.0, 0.5), DVec3::splat(0.5));
 }
 
 #[test]
 fn presets_are_valid_and_each_rule_is_checked() {
-    for bands in [Bands::hard_shading(), Bands::listing_3(), Bands::chapter_text(), Bands::default()] {
+    for bands in [Bands::hard_shading(), Bands::three_diffuse_bands(), Bands::diffuse_and_specular(), Bands::default()]
+    {
         assert_eq!(bands.validate(), Ok(()));
     }
     let broken = |change: &dyn Fn(&mut Bands)| {

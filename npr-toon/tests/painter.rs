@@ -27,10 +27,10 @@ fn brightness_scales_the_coordinates() {
     // On back-facing surfaces it is not clamped: the ramp does that, as the sampler in the listing does.
     let uv = toon_painter_uv(&painter, DVec3::ZERO, DVec3::NEG_Z);
     assert!(uv.abs_diff_eq(DVec2::new(-0.5, -0.75), 1e-7), "{uv}");
-    assert_eq!(toon_reach(0.8, 0.5), 0.4);
+    assert_eq!(toon_diffuse(0.8, 0.5), 0.4);
     // The product equals that of the listing, which scales the light vector.
     let scaled = toon_n_dot_l_interpolated(DVec3::Z, DVec3::new(0.0, 0.6, 0.8) * 0.5);
-    assert_eq!(toon_reach(toon_n_dot_l_interpolated(DVec3::Z, DVec3::new(0.0, 0.6, 0.8)), 0.5), scaled);
+    assert_eq!(toon_diffuse(toon_n_dot_l_interpolated(DVec3::Z, DVec3::new(0.0, 0.6, 0.8)), 0.5), scaled);
 }
 
 #[test]
@@ -44,7 +44,7 @@ fn one_light_or_none() {
 
 #[test]
 fn positional_lights() {
-    let place = LightPlace::Positional { position: Vec3::new(0.0, 0.0, 5.0) };
+    let place = LightKind::Positional { position: Vec3::new(0.0, 0.0, 5.0) };
     assert!(toon_to_light(place, DVec3::new(0.0, 3.0, 1.0)).abs_diff_eq(DVec3::new(0.0, -0.6, 0.8), 1e-15));
     // At the position of the light, and for zero or NaN normals, the result is 0.
     let painter = Painter::new(vec![Light::positional(Vec3::new(0.0, 0.0, 5.0))]).unwrap();
@@ -156,11 +156,11 @@ fn packs_lights() {
     let sun = Light { brightness: 0.5, ..Light::directional(Vec3::Y) };
     let lamp = Light { color: Vec3::X, ..Light::positional(Vec3::new(1.0, 2.0, 3.0)) };
     let uniform = PainterUniform::new(&Painter::new(vec![sun, lamp]).unwrap()).unwrap();
-    assert_eq!((uniform.place_a, uniform.place_b), ([0.0, 1.0, 0.0, 0.0], [1.0, 2.0, 3.0, 1.0]));
+    assert_eq!((uniform.light_a, uniform.light_b), ([0.0, 1.0, 0.0, 0.0], [1.0, 2.0, 3.0, 1.0]));
     assert_eq!(uniform.brightness, [0.5, 1.0]);
     assert_eq!(uniform.light_color, [1.0, 1.0 / 3.0, 1.0 / 3.0, 0.75]);
     let one = PainterUniform::new(&Painter::new(vec![sun]).unwrap()).unwrap();
-    assert_eq!((one.place_b, one.brightness), ([0.0; 4], [0.5, 0.0]));
+    assert_eq!((one.light_b, one.brightness), ([0.0; 4], [0.5, 0.0]));
 }
 
 fn vector() -> impl Strategy<Value = Vec3> {

@@ -38,12 +38,12 @@ fn smooth_ramp_is_linear_between_stops() {
 
 #[test]
 fn bands_are_a_hard_ramp() {
-    for bands in [Bands::hard_shading(), Bands::listing_3(), Bands::default()] {
+    for bands in [Bands::hard_shading(), Bands::three_diffuse_bands(), Bands::default()] {
         let ramp = Ramp::from_bands(&bands).unwrap();
         for step in -120..=120 {
             for width in [0.0, 0.01, 0.3] {
                 let x = f64::from(step) / 100.0;
-                assert_eq!(toon_ramp(&ramp, x, width), toon_band_smooth(&bands, x, width));
+                assert_eq!(toon_ramp(&ramp, x, width), toon_band(&bands, x, width));
             }
         }
     }
@@ -116,7 +116,7 @@ fn row_colours() {
 fn row_made_from_bands() {
     // Ten texels over 0..1 with steps at 0.1 and 0.8: one dark, seven average, two bright. (0.9 in f32 is slightly less
     // than 0.9, so it rounds to 229.)
-    let ramp = Ramp::from_bands(&Bands::listing_3()).unwrap();
+    let ramp = Ramp::from_bands(&Bands::three_diffuse_bands()).unwrap();
     let row = RampRow::from_ramp(&ramp, 10, 0.0, 1.0, TexelFilter::Nearest).unwrap();
     let (dark, average, bright) = ([51, 51, 51, 255], [153, 153, 153, 255], [229, 229, 255, 255]);
     assert_eq!(row.texels, [dark, average, average, average, average, average, average, average, bright, bright]);
@@ -230,7 +230,7 @@ fn invalid_ramps_are_rejected() {
         RampUniform::new(&hard(&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0].map(|x| (x, 0.5)))),
         Err(ToonError::TooManyStops { stops: 9, max: 8 })
     );
-    let broken = Bands { thresholds: vec![0.5, 0.1], ..Bands::listing_3() };
+    let broken = Bands { thresholds: vec![0.5, 0.1], ..Bands::three_diffuse_bands() };
     assert_eq!(Ramp::from_bands(&broken), Err(ToonError::ThresholdOrder { index: 1, value: 0.1, before: 0.5 }));
     // 1 below the threshold rounds to the threshold in f32.
     let far = Bands { thresholds: vec![-1e9], ..Bands::hard_shading() };
@@ -252,7 +252,7 @@ fn invalid_ramps_are_rejected() {
 
     // A border at 0, below which clamped coordinates cannot be.
     assert_eq!(Ramp2d::from_bands(&Bands::hard_shading()), Err(ToonError::StopOutside { index: 1, value: 0.0 }));
-    assert!(Ramp2d::from_bands(&Bands::listing_3()).is_ok());
+    assert!(Ramp2d::from_bands(&Bands::three_diffuse_bands()).is_ok());
     // Coordinates are clamped at 0, so a gradient cannot begin below.
     let smooth = |of: &[(f32, f32)]| Ramp2d { b: ramp(RampBlend::Smooth, of), ..two() }.validate();
     assert_eq!(smooth(&[(-0.5, 0.0), (1.0, 1.0)]), Err(ToonError::StopOutside { index: 0, value: -0.5 }));

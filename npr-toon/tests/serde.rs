@@ -5,7 +5,7 @@ use npr_toon::half_lambert::HalfLambert;
 use npr_toon::normal::NormalUse;
 use npr_toon::ramp::{Ramp, RampBlend, RampStop};
 use npr_toon::row::TexelFilter;
-use npr_toon::source::{Light, LightPlace};
+use npr_toon::source::{Light, LightKind};
 use npr_toon::table::{Corner, Ramp2d};
 use npr_toon::{Bands, Highlight};
 use serde::de::DeserializeOwned;
@@ -58,5 +58,5 @@ fn missing_fields_have_the_defaults_and_unknown_fields_are_errors() {
     assert_eq!(serde_json::from_value::<HalfLambert>(json!({})).unwrap(), HalfLambert::default());
     assert_eq!(serde_json::from_value::<Ramp>(json!({ "stops": [] })).unwrap().blend, RampBlend::Hard);
     assert!(serde_json::from_value::<Bands>(json!({ "tone": [] })).is_err());
-    assert!(serde_json::from_value::<LightPlace>(json!({ "directional": { "direction": [0, 1, 0] } })).is_err());
+    assert!(serde_json::from_value::<LightKind>(json!({ "directional": { "direction": [0, 1, 0] } })).is_err());
 }

@@ -61,13 +61,13 @@ const EXCEPTIONS: Exceptions = Exceptions {
         ("toon_pixel_width", "takes derivatives, which Rust does not have"),
         ("toon_pixel_border_width", "takes derivatives, which Rust does not have"),
     ],
-    renamed: &[("toon_band", "toon_band_smooth", "Rust has a function of its own for width 0, toon_band_hard")],
+    renamed: &[("toon_band", "toon_band", "Rust has a function of its own for width 0, toon_band_hard")],
     types: &[
         ("Bands", "ToonBands", "the uniform of the style"),
         ("Ramp", "ToonRamp", "the uniform of the style"),
         ("Ramp2d", "ToonRamp2d", "the uniform of the style"),
         ("Painter", "ToonPainter", "the uniform of the style"),
-        ("LightPlace", "vec4<f32>", "a direction with w 0, or a position with w 1"),
+        ("LightKind", "vec4<f32>", "a direction with w 0, or a position with w 1"),
     ],
     split: &[
         (
@@ -134,7 +134,7 @@ fn uniforms_have_the_layout_of_the_shader() {
     );
     assert_layout!("ToonRamp", RampUniform, [stops, is_smooth]);
     assert_layout!("ToonRamp2d", Ramp2dUniform, [a, b, corner]);
-    assert_layout!("ToonPainter", PainterUniform, [place_a, place_b, light_color, brightness]);
+    assert_layout!("ToonPainter", PainterUniform, [light_a, light_b, light_color, brightness]);
     let sizes = [size_of::<ToonUniform>(), size_of::<RampUniform>(), size_of::<Ramp2dUniform>()];
     assert_eq!((sizes, size_of::<PainterUniform>()), ([160, 144, 304], 64));
 }
@@ -219,7 +219,7 @@ fn serves_a_painter() {
 fn packs_ramps() {
     let ramps = Ramp2d {
         corner: Some(Corner { threshold: 0.9, color: Vec3::X }),
-        ..Ramp2d::from_bands(&Bands::listing_3()).unwrap()
+        ..Ramp2d::from_bands(&Bands::three_diffuse_bands()).unwrap()
     };
     let uniform = Ramp2dUniform::new(&ramps).unwrap();
     assert_eq!(uniform.a.stops[0], [0.2, 0.2, 0.2, -1.0]);
@@ -234,7 +234,7 @@ fn packs_ramps() {
 
 #[test]
 fn packs_bands() {
-    let uniform = ToonUniform::new(&Bands::chapter_text()).unwrap();
+    let uniform = ToonUniform::new(&Bands::diffuse_and_specular()).unwrap();
     assert_eq!(uniform.bands[0], [0.2, 0.2, 0.2, 0.1]);
     // Unused entries repeat the last tone.
     assert_eq!((uniform.bands[1], uniform.bands[7]), ([0.6, 0.6, 0.6, 1e4], [0.6, 0.6, 0.6, 1e4]));
@@ -249,7 +249,7 @@ fn refuses_what_does_not_fit() {
     let with = |count: usize| Bands {
         thresholds: (1..count).map(|i| i as f32 / count as f32).collect(),
         tones: vec![Vec3::ONE; count],
-        ..Bands::listing_3()
+        ..Bands::three_diffuse_bands()
     };
     assert!(ToonUniform::new(&with(MAX_BANDS)).is_ok());
     assert_eq!(ToonUniform::new(&with(9)), Err(ToonError::TooManyTones { tones: 9, max: 8 }));

@@ -56,7 +56,7 @@ impl FrameContext<'_> {
     fn lit_point(&self, normal: DVec3, at: DVec3) -> LitPoint {
         let camera = &self.plan.view.camera;
         let eye = camera.homogeneous_eye();
-        LitPoint { normal, at, to_eye: eye.truncate() - at * eye.w, eye_depth: self.eye_depth.dot(at.extend(1.0)) }
+        LitPoint { normal, at, to_eye: eye.truncate() - at * eye.w }
     }
 
     fn corners(&self, hit: &Hit) -> [LitPoint; 3] {
@@ -71,7 +71,7 @@ impl FrameContext<'_> {
         let Some(first) = paint.lights.first() else { return DVec2::ZERO };
         let to_light = toon_to_light(first.place, point.at);
         let diffuse = model.diffuse(toon_n_dot_l(point.normal, to_light), f64::from(first.brightness));
-        DVec2::new(diffuse, model.second(point, to_light, &paint.lights))
+        DVec2::new(diffuse, model.second(point, to_light, &paint.lights, &paint.view))
     }
 
     /// The display-referred colour of a hatched hit whose own is `base`.
@@ -118,6 +118,6 @@ fn light_interpolated(paint: &PaintPlan, model: &dyn ShadeModel, corners: &[LitP
     let normal = mean(&|point| point.normal.normalize_or_zero());
     let to_light = mean(&|point| toon_to_light(first.place, point.at));
     let diffuse = model.diffuse(toon_n_dot_l_interpolated(normal, to_light), f64::from(first.brightness));
-    let second = mean(&|point| model.second_vector(point, &paint.lights));
+    let second = mean(&|point| model.second_vector(point, &paint.lights, &paint.view));
     DVec2::new(diffuse, model.second_interpolated(normal, to_light, second, &paint.lights))
 }

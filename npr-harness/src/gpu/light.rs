@@ -14,7 +14,7 @@ use npr_toon::normal::NormalUse;
 use npr_toon::painter::{Painter, PainterUniform};
 use npr_toon::ramp::RampUniform;
 use npr_toon::row::TexelFilter;
-use npr_toon::source::{Light, LightPlace};
+use npr_toon::source::{Light, LightKind};
 use npr_toon::table::Ramp2dUniform;
 use wgpu::util::DeviceExt;
 
@@ -50,7 +50,7 @@ pub(super) struct LightVariant {
 impl LightVariant {
     fn new(style: &Style, lights: &[Light]) -> Self {
         let positional =
-            |number: usize| matches!(lights.get(number).map(|light| light.place), Some(LightPlace::Positional { .. }));
+            |number: usize| matches!(lights.get(number).map(|light| light.place), Some(LightKind::Positional { .. }));
         let tinted = lights.first().is_none_or(|light| light.brightness != 1.0 || light.color != glam::Vec3::ONE);
         let mut variant = Self {
             shade: 0,

@@ -5,12 +5,11 @@ use super::uniform::uniform_buffer;
 use crate::error::HarnessError;
 use crate::hatch::gpu::{HATCH_ENTRY_WGSL, HATCH_WGSL, HatchVariant};
 use crate::plan::{PaintPlan, Plan};
-use crate::shade::{Shade, ShadeOnDevice, flag};
+use crate::shade::{Shade, ShadeOnDevice, ShadeView, flag};
 use crate::shadow::gpu::SHADOW_WGSL;
-use crate::view::View;
 use npr_toon::normal::NormalUse;
 use npr_toon::painter::PainterUniform;
-use npr_toon::source::{Light, LightPlace};
+use npr_toon::source::{Light, LightKind};
 use wgpu::util::DeviceExt;
 
 /// The parts of a shader, each with its name.
@@ -53,9 +52,9 @@ pub(super) fn assemble(parts: &Parts) -> String {
 ///
 /// # Errors
 /// What is wrong with the shade's numbers.
-pub fn surface_wgsl(shade: &Shade, view: &View) -> Result<String, HarnessError> {
+pub fn surface_wgsl(shade: &Shade) -> Result<String, HarnessError> {
     let hatched = matches!(shade, Shade::Hatch(_));
-    Ok(assemble(&parts(&shade.model().on_device(view)?, hatched)))
+    Ok(assemble(&parts(&shade.model().on_device(&ShadeView::default())?, hatched)))
 }
 
 /// What of the light and the shade is known when a pipeline is made.
@@ -80,7 +79,8 @@ pub(super) struct LightOnDevice {
 impl LightOnDevice {
     pub(super) fn new(context: &GpuContext, plan: &Plan) -> Result<Self, HarnessError> {
         let paint = plan.paint.as_ref();
-        let shade = paint.map_or(&Shade::Paper, |paint| &paint.shade).model().on_device(&plan.view)?;
+        let (shade, view) = paint.map_or((&Shade::Paper, ShadeView::default()), |paint| (&paint.shade, paint.view));
+        let shade = shade.model().on_device(&view)?;
         let lights: &[Light] = paint.map_or(&[], |paint| &paint.lights);
         let mut constants = shade.constants.clone();
         constants.extend(light_constants(paint, lights));
@@ -106,9 +106,8 @@ impl LightOnDevice {
 
 /// The overrides of `lights.wgsl`.
 fn light_constants(paint: Option<&PaintPlan>, lights: &[Light]) -> [(&'static str, f64); 4] {
-    let positional = |number: usize| {
-        flag(matches!(lights.get(number).map(|light| light.place), Some(LightPlace::Positional { .. })))
-    };
+    let positional =
+        |number: usize| flag(matches!(lights.get(number).map(|light| light.place), Some(LightKind::Positional { .. })));
     let tinted = lights.first().is_none_or(|light| light.brightness != 1.0 || light.color != glam::Vec3::ONE);
     [
         (

@@ -3,14 +3,14 @@
 use super::plan::{HatchPlan, HatchVertex};
 use super::style::{HatchGround, HatchMapping, HatchShade, HatchTransfer, six_tones};
 use glam::{DVec2, DVec3};
-use npr_hatch::lookup::{HatchFootprint, hatch_flat, hatch_footprint, hatch_ink, hatch_texels};
+use npr_hatch::lookup::{HatchFootprint, hatch_flat_weight, hatch_footprint, hatch_ink, hatch_texels};
 use npr_hatch::mapping::{
-    HATCH_TURNS, hatch_doubled, hatch_moved, hatch_octave, hatch_plane, hatch_plane_weights, hatch_share, hatch_turn,
-    hatch_turned,
+    HATCH_DIRECTIONS, hatch_direction_step, hatch_doubled_angle, hatch_octave, hatch_offset, hatch_plane,
+    hatch_plane_weights, hatch_rotate, hatch_share_tone,
 };
 use npr_hatch::{
-    HatchWeights, Tam, Thresholds, hatch_blend, hatch_color, hatch_level, hatch_linear, hatch_shadowed, hatch_transfer,
-    hatch_weights,
+    HatchWeights, Tam, Thresholds, hatch_blend, hatch_color, hatch_level, hatch_level_of_tone, hatch_tone_in_shadow,
+    hatch_transfer, hatch_weights,
 };
 
 /// A map as a frame looks it up.
@@ -84,12 +84,12 @@ impl<'a> Strokes<'a> {
     }
 
     fn weights(&self, tone: f64) -> HatchWeights {
-        hatch_weights(hatch_linear(self.tones.0, self.tones.1, tone))
+        hatch_weights(hatch_level_of_tone(self.tones.0, self.tones.1, tone))
     }
 
     /// What one hatching leaves as paper.
     fn once(&self, uv: DVec2, footprint: HatchFootprint, tone: f64, weights: HatchWeights) -> f64 {
-        let flat = hatch_flat(footprint.level, self.last_level());
+        let flat = hatch_flat_weight(footprint.level, self.last_level());
         let (strokes, mean) = if let Some(thresholds) = self.thresholds {
             (1.0 - hatch_ink(thresholds, uv, footprint, tone, HatchShade::WIDTH), tone)
         } else {
@@ -112,7 +112,7 @@ impl<'a> Strokes<'a> {
             // Weights that were interpolated are nobody's tone: what is left is their mean.
             return before + share * self.once(uv, footprint, sampled.tone, sampled.weights);
         }
-        let tone = hatch_share(sampled.tone, share);
+        let tone = hatch_share_tone(sampled.tone, share);
         before * self.once(uv, footprint, tone, self.weights(tone))
     }
 
@@ -141,16 +141,16 @@ impl<'a> Strokes<'a> {
             let place = hatch_plane(sampled.at, axis);
             let footprint = self.footprint(hatch_plane(sampled.at_dx, axis), hatch_plane(sampled.at_dy, axis));
             if self.plan.shade.mapping == HatchMapping::Planes {
-                paper = self.share(paper, sampled, place + hatch_moved(axis as i32), footprint, weight);
+                paper = self.share(paper, sampled, place + hatch_offset(axis as i32), footprint, weight);
                 continue;
             }
             let [diagonal, others] = sampled.tensor;
-            let step = hatch_turn(hatch_doubled(diagonal, others, axis));
-            let turns = HATCH_TURNS as i32;
+            let step = hatch_direction_step(hatch_doubled_angle(diagonal, others, axis));
+            let turns = HATCH_DIRECTIONS as i32;
             for i in 0..2 {
                 let turn = (step.first + i) % turns;
-                let turned = HatchFootprint { spread: hatch_turned(footprint.spread, turn), ..footprint };
-                let uv = hatch_turned(place, turn) + hatch_moved(axis as i32 * turns + turn);
+                let turned = HatchFootprint { spread: hatch_rotate(footprint.spread, turn), ..footprint };
+                let uv = hatch_rotate(place, turn) + hatch_offset(axis as i32 * turns + turn);
                 let share = weight * if i == 1 { step.share } else { 1.0 - step.share };
                 paper = self.share(paper, sampled, uv, turned, share);
             }
@@ -184,7 +184,7 @@ impl<'a> Strokes<'a> {
     /// The display-referred colour of a pixel. `base`: the surface's own.
     pub(crate) fn color(&self, hatching: &Hatching<'_>, base: DVec3, paper: DVec3) -> DVec3 {
         let lit = if hatching.in_shadow { 0.0 } else { 1.0 };
-        let tone = hatch_shadowed(self.tone(hatching.diffuse), self.tone(0.0), lit);
+        let tone = hatch_tone_in_shadow(self.tone(hatching.diffuse), self.tone(0.0), lit);
         let of_corners =
             if self.plan.weights_at_vertices && !hatching.in_shadow { (hatching.diffuse_of_corners)() } else { None };
         let weights = match of_corners {

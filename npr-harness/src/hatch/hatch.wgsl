@@ -81,7 +81,7 @@ fn hatched_tone(reach: f32) -> f32 {
 }
 
 fn hatched_weights(tone: f32) -> HatchWeights {
-    return hatch_weights(hatch_linear(hatch.light_tones, hatch.dark_tones, tone));
+    return hatch_weights(hatch_level_of_tone(hatch.light_tones, hatch.dark_tones, tone));
 }
 
 @vertex
@@ -109,7 +109,7 @@ fn vs_hatched(
 
 // What one hatching leaves as paper.
 fn hatched_once(uv: vec2<f32>, footprint: HatchFootprint, tone: f32, weights: HatchWeights) -> f32 {
-    let flat = hatch_flat(footprint.level, hatch.last_level);
+    let flat = hatch_flat_weight(footprint.level, hatch.last_level);
     if surface_hatch_thresholds {
         return mix(1.0 - hatch_ink(hatch_map, hatch_sampler, uv, footprint, tone, hatch.width), tone, flat);
     }
@@ -143,7 +143,7 @@ fn hatched_share(before: f32, asked: Hatching, uv: vec2<f32>, footprint: HatchFo
         // Weights that were interpolated are nobody's tone: what is left is their mean.
         return before + share * hatched_once(uv, footprint, asked.tone, asked.weights);
     }
-    let tone = hatch_share(asked.tone, share);
+    let tone = hatch_share_tone(asked.tone, share);
     return before * hatched_once(uv, footprint, tone, hatched_weights(tone));
 }
 
@@ -166,14 +166,14 @@ fn hatched_by_planes(list: ptr<function, Hatchings>, asked: Hatching) {
         let place = hatch_plane(asked.at, axis);
         let footprint = hatched_footprint(hatch_plane(asked.at_dx, axis), hatch_plane(asked.at_dy, axis));
         if surface_hatch_mapping == HATCH_BY_PLANES {
-            hatched_list(list, place + hatch_moved(i32(axis)), footprint, weights[axis]);
+            hatched_list(list, place + hatch_offset(i32(axis)), footprint, weights[axis]);
             continue;
         }
-        let step = hatch_turn(hatch_doubled(asked.diagonal, asked.others, axis));
+        let step = hatch_direction_step(hatch_doubled_angle(asked.diagonal, asked.others, axis));
         for (var i = 0; i < 2; i++) {
             let turn = (step.first + i) % 12;
-            let turned = HatchFootprint(footprint.level, hatch_turned(footprint.spread, turn));
-            let uv = hatch_turned(place, turn) + hatch_moved(i32(axis) * 12 + turn);
+            let turned = HatchFootprint(footprint.level, hatch_rotate(footprint.spread, turn));
+            let uv = hatch_rotate(place, turn) + hatch_offset(i32(axis) * 12 + turn);
             hatched_list(list, uv, turned, weights[axis] * select(1.0 - step.share, step.share, i == 1));
         }
     }
@@ -203,7 +203,7 @@ fn hatched_color(in: HatchedSurface, base: vec3<f32>, front: bool, at: ShadowAt)
     var in_shadow = false;
     if surface_shadow != 0u {
         in_shadow = at.dark;
-        tone = hatch_shadowed(tone, hatched_tone(0.0), select(1.0, 0.0, in_shadow));
+        tone = hatch_tone_in_shadow(tone, hatched_tone(0.0), select(1.0, 0.0, in_shadow));
     }
     var weights = HatchWeights(in.light_weights, in.dark_weights);
     if surface_hatch_at_vertices && (!front || in_shadow) {

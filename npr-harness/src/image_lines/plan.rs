@@ -6,7 +6,7 @@ use crate::error::HarnessError;
 use crate::scene::Scene;
 use crate::shadow::ShadowLines;
 use crate::view::View;
-use glam::{DVec3, UVec2};
+use glam::UVec2;
 use npr_imagespace::ImageSpaceError;
 use npr_imagespace::artist::LineKind;
 use npr_imagespace::composite::Composite;
@@ -167,21 +167,8 @@ impl ImagePlan {
     }
 }
 
-/// The range of eye depth in which the scene lies, before the camera.
-fn depth_range(scene: &Scene, camera: &Camera) -> (f64, f64) {
-    let back = camera.axes()[2];
-    let (low, high) = scene.bounds().map_or((DVec3::ZERO, DVec3::ZERO), |(l, h)| (l.as_dvec3(), h.as_dvec3()));
-    let depth = |corner: DVec3| (camera.eye - corner).dot(back);
-    let nearest = depth(DVec3::select(back.cmpgt(DVec3::ZERO), high, low));
-    let farthest = depth(DVec3::select(back.cmpgt(DVec3::ZERO), low, high));
-    // A thousandth to spare: the range's ends are clamped, and what is clamped bends.
-    let spare = 1e-3 * (farthest - nearest);
-    let near = (nearest - spare).max(camera.near * 0.999);
-    (near, (farthest + spare).max(near * 1.001))
-}
-
 fn depth_code(scene: &Scene, camera: &Camera, layout: TexelLayout) -> Result<DepthCode, ImageSpaceError> {
-    let (near, far) = depth_range(scene, camera);
+    let (near, far) = scene.depth_range(camera);
     match camera.projection {
         Projection::Perspective { .. } => DepthCode::perspective(near as f32, far as f32, layout),
         Projection::Orthographic { .. } => DepthCode::parallel(near as f32, far as f32, layout),

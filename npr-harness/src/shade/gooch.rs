@@ -1,9 +1,8 @@
 //! From cool to warm.
 
-use super::{LitPoint, ShadeModel, ShadeOnDevice, Shading};
+use super::{LitPoint, ShadeModel, ShadeOnDevice, ShadeView, Shading};
 use crate::error::HarnessError;
 use crate::schema::{Color, one, white};
-use crate::view::View;
 use glam::DVec3;
 use npr_gooch::{Gooch, GoochUniform, Highlight, Tones, gooch_highlight, gooch_over, gooch_r_dot_e, gooch_tone};
 use npr_toon::source::Light;
@@ -33,8 +32,7 @@ impl Default for GoochTable {
 #[serde(rename_all = "kebab-case")]
 enum TonesName {
     Equation,
-    #[serde(rename = "listing-7")]
-    Listing7,
+    SwappedShares,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -56,7 +54,7 @@ impl GoochTable {
             beta: gooch.beta,
             tones: match gooch.tones {
                 Tones::Equation => TonesName::Equation,
-                Tones::Listing7 => TonesName::Listing7,
+                Tones::SwappedShares => TonesName::SwappedShares,
             },
             highlight: gooch.highlight.map(|highlight| HighlightTable {
                 color: Color(highlight.color),
@@ -74,7 +72,7 @@ impl GoochTable {
             beta: self.beta,
             tones: match self.tones {
                 TonesName::Equation => Tones::Equation,
-                TonesName::Listing7 => Tones::Listing7,
+                TonesName::SwappedShares => Tones::SwappedShares,
             },
             highlight: self.highlight.map(|highlight| Highlight {
                 color: highlight.color.0,
@@ -96,11 +94,11 @@ impl ShadeModel for Gooch {
         n_dot_l
     }
 
-    fn second(&self, point: &LitPoint, to_light: DVec3, _lights: &[Light]) -> f64 {
+    fn second(&self, point: &LitPoint, to_light: DVec3, _lights: &[Light], _view: &ShadeView) -> f64 {
         gooch_r_dot_e(point.normal, to_light, point.to_eye)
     }
 
-    fn second_vector(&self, point: &LitPoint, _lights: &[Light]) -> DVec3 {
+    fn second_vector(&self, point: &LitPoint, _lights: &[Light], _view: &ShadeView) -> DVec3 {
         point.to_eye.normalize_or_zero()
     }
 
@@ -113,7 +111,7 @@ impl ShadeModel for Gooch {
         gooch_over(self, gooch_tone(self, shading.base, light.x), gooch_highlight(self, light.x, light.y))
     }
 
-    fn on_device(&self, _view: &View) -> Result<ShadeOnDevice, HarnessError> {
+    fn on_device(&self, _view: &ShadeView) -> Result<ShadeOnDevice, HarnessError> {
         Ok(ShadeOnDevice {
             uniform: bytemuck::bytes_of(&GoochUniform::new(self)?).to_vec(),
             ..ShadeOnDevice::new(&[

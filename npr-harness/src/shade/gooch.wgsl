@@ -7,7 +7,7 @@ fn shade_diffuse(n_dot_l: f32) -> f32 {
 }
 
 fn shade_second(n: vec3<f32>, l: vec3<f32>, n_dot_l: f32, at: vec3<f32>, eye: vec3<f32>) -> f32 {
-    return gooch_r_dot_e_of(n, l, toon_unit(eye));
+    return gooch_r_dot_e_unit(n, l, toon_unit(eye));
 }
 
 fn shade_second_vector(at: vec3<f32>, eye: vec3<f32>) -> vec3<f32> {

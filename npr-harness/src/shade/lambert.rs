@@ -1,9 +1,8 @@
 //! Ambient and diffuse light.
 
-use super::{ShadeModel, ShadeOnDevice, Shading};
+use super::{ShadeModel, ShadeOnDevice, ShadeView, Shading};
 use crate::error::HarnessError;
 use crate::schema::within;
-use crate::view::View;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -43,7 +42,7 @@ impl ShadeModel for Lambert {
         shading.base * shading.light_color * (ambient + (1.0 - ambient) * shading.light.x.max(0.0))
     }
 
-    fn on_device(&self, _view: &View) -> Result<ShadeOnDevice, HarnessError> {
+    fn on_device(&self, _view: &ShadeView) -> Result<ShadeOnDevice, HarnessError> {
         Ok(ShadeOnDevice {
             uniform: bytemuck::bytes_of(&[self.ambient, 0.0, 0.0, 0.0]).to_vec(),
             ..ShadeOnDevice::new(&[

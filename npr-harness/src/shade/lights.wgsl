@@ -14,22 +14,22 @@ override surface_tinted: bool = true;
 // From a point to the first light: a unit vector.
 fn to_first_light(at: vec3<f32>) -> vec3<f32> {
     if surface_first_positional {
-        return toon_to_light(lights.place_a, at);
+        return toon_to_light(lights.light_a, at);
     }
-    return lights.place_a.xyz;
+    return lights.light_a.xyz;
 }
 
 fn to_second_light(at: vec3<f32>) -> vec3<f32> {
     if surface_second_positional {
-        return toon_to_light(lights.place_b, at);
+        return toon_to_light(lights.light_b, at);
     }
-    return lights.place_b.xyz;
+    return lights.light_b.xyz;
 }
 
 // N.L of the first light times its brightness.
 fn by_brightness(n_dot_l: f32) -> f32 {
     if surface_tinted {
-        return toon_reach(n_dot_l, lights.brightness.x);
+        return toon_diffuse(n_dot_l, lights.brightness.x);
     }
     return n_dot_l;
 }

@@ -1,8 +1,7 @@
 //! World-space normals as colours, negated in shadow.
 
-use super::{ShadeModel, ShadeOnDevice, Shading};
+use super::{ShadeModel, ShadeOnDevice, ShadeView, Shading};
 use crate::error::HarnessError;
-use crate::view::View;
 use glam::DVec3;
 
 pub(super) struct Normals;
@@ -20,7 +19,7 @@ impl ShadeModel for Normals {
         (shading.normal)() * 0.5 + 0.5
     }
 
-    fn on_device(&self, _view: &View) -> Result<ShadeOnDevice, HarnessError> {
+    fn on_device(&self, _view: &ShadeView) -> Result<ShadeOnDevice, HarnessError> {
         Ok(ShadeOnDevice::new(&[
             ("npr-toon", npr_toon::WGSL),
             ("one_light.wgsl", super::lambert::ONE_LIGHT_WGSL),

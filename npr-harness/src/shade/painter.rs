@@ -1,12 +1,11 @@
 //! Two lights, each an axis of a 2D ramp: the cartoon renderer's painter (*The Evolution of a Cartoon Renderer*).
 
 use super::ramp_table::{FilterName, StopsTable, image_filter, texels_of};
-use super::{LitPoint, ShadeModel, ShadeOnDevice, Shading};
+use super::{LitPoint, ShadeModel, ShadeOnDevice, ShadeView, Shading};
 use crate::error::HarnessError;
 use crate::schema::{Color, StyleFile, Texel};
-use crate::view::View;
 use glam::{DVec2, DVec3, UVec2};
-use npr_toon::painter::{Painter, toon_overbright, toon_reach};
+use npr_toon::painter::{Painter, toon_diffuse, toon_overbright};
 use npr_toon::source::{Light, toon_to_light};
 use npr_toon::table::{Corner, Ramp2d, Ramp2dUniform, RampTable, toon_ramp_2d, toon_table};
 use npr_toon::{toon_n_dot_l, toon_n_dot_l_interpolated};
@@ -161,21 +160,21 @@ impl ShadeModel for PainterShade {
         self.material_by_alpha
     }
 
-    fn second(&self, point: &LitPoint, _to_light: DVec3, lights: &[Light]) -> f64 {
+    fn second(&self, point: &LitPoint, _to_light: DVec3, lights: &[Light], _view: &ShadeView) -> f64 {
         lights.get(1).map_or(0.0, |second| {
             let to_light = toon_to_light(second.place, point.at);
-            toon_reach(toon_n_dot_l(point.normal, to_light), f64::from(second.brightness))
+            toon_diffuse(toon_n_dot_l(point.normal, to_light), f64::from(second.brightness))
         })
     }
 
-    fn second_vector(&self, point: &LitPoint, lights: &[Light]) -> DVec3 {
+    fn second_vector(&self, point: &LitPoint, lights: &[Light], _view: &ShadeView) -> DVec3 {
         lights.get(1).map_or(DVec3::ZERO, |second| toon_to_light(second.place, point.at))
     }
 
     fn second_interpolated(&self, normal: DVec3, _to_light: DVec3, second: DVec3, lights: &[Light]) -> f64 {
         lights
             .get(1)
-            .map_or(0.0, |light| toon_reach(toon_n_dot_l_interpolated(normal, second), f64::from(light.brightness)))
+            .map_or(0.0, |light| toon_diffuse(toon_n_dot_l_interpolated(normal, second), f64::from(light.brightness)))
     }
 
     fn second_in_shadow(&self, second: f64) -> f64 {
@@ -190,7 +189,7 @@ impl ShadeModel for PainterShade {
         toon_overbright(shading.base * shade, shading.light_color, f64::from(self.light_scale))
     }
 
-    fn on_device(&self, _view: &View) -> Result<ShadeOnDevice, HarnessError> {
+    fn on_device(&self, _view: &ShadeView) -> Result<ShadeOnDevice, HarnessError> {
         let mut uniform: Ramp2dUniform = bytemuck::Zeroable::zeroed();
         let (mut stops, mut filter, mut image) = (1, None, None);
         match &self.ramp {

@@ -7,7 +7,7 @@ fn shade_diffuse(n_dot_l: f32) -> f32 {
 }
 
 fn shade_second(n: vec3<f32>, l: vec3<f32>, n_dot_l: f32, at: vec3<f32>, eye: vec3<f32>) -> f32 {
-    return toon_reach(dot(n, to_second_light(at)), lights.brightness.y);
+    return toon_diffuse(dot(n, to_second_light(at)), lights.brightness.y);
 }
 
 fn shade_second_vector(at: vec3<f32>, eye: vec3<f32>) -> vec3<f32> {
@@ -15,7 +15,7 @@ fn shade_second_vector(at: vec3<f32>, eye: vec3<f32>) -> vec3<f32> {
 }
 
 fn shade_second_interpolated(n: vec3<f32>, l: vec3<f32>, n_dot_l: f32, second: vec3<f32>) -> f32 {
-    return toon_reach(dot(n, second), lights.brightness.y);
+    return toon_diffuse(dot(n, second), lights.brightness.y);
 }
 
 fn shade_second_of_back(second: f32) -> f32 {

@@ -1,10 +1,9 @@
 //! Any colours by light, from a 1D ramp.
 
 use super::ramp_table::{FilterName, StopsTable, image_filter, texels_of};
-use super::{ShadeModel, ShadeOnDevice, Shading, flag};
+use super::{ShadeModel, ShadeOnDevice, ShadeView, Shading, flag};
 use crate::error::HarnessError;
 use crate::schema::{StyleFile, Texel};
-use crate::view::View;
 use glam::{DVec2, DVec3};
 use npr_toon::half_lambert::{HalfLambert, toon_half_lambert};
 use npr_toon::ramp::{Ramp, RampUniform, toon_ramp};
@@ -166,7 +165,7 @@ impl ShadeModel for RampShade {
         shading.base * shading.light_color * factor
     }
 
-    fn on_device(&self, _view: &View) -> Result<ShadeOnDevice, HarnessError> {
+    fn on_device(&self, _view: &ShadeView) -> Result<ShadeOnDevice, HarnessError> {
         let mut uniform: RampShadeUniform = bytemuck::Zeroable::zeroed();
         if let Some(HalfLambert { scale, bias, squared }) = self.half_lambert {
             (uniform.half_scale, uniform.half_bias, uniform.half_squared) = (scale, bias, u32::from(squared));

@@ -1,9 +1,8 @@
 //! Bands of light, with a highlight where N·H is above a threshold.
 
-use super::{LitPoint, ShadeModel, ShadeOnDevice, Shading, flag};
+use super::{LitPoint, ShadeModel, ShadeOnDevice, ShadeView, Shading, flag};
 use crate::error::HarnessError;
 use crate::schema::{Color, one, white, yes};
-use crate::view::View;
 use glam::{DVec2, DVec3};
 use npr_toon::source::{Light, toon_to_light};
 use npr_toon::{Bands, Highlight, ToonUniform, toon_half, toon_n_dot_h, toon_n_dot_h_interpolated, toon_shade};
@@ -74,11 +73,11 @@ impl ShadeModel for Bands {
         Ok(())
     }
 
-    fn second(&self, point: &LitPoint, to_light: DVec3, _lights: &[Light]) -> f64 {
+    fn second(&self, point: &LitPoint, to_light: DVec3, _lights: &[Light], _view: &ShadeView) -> f64 {
         if has_highlight(self) { toon_n_dot_h(point.normal, to_light, point.to_eye) } else { 0.0 }
     }
 
-    fn second_vector(&self, point: &LitPoint, lights: &[Light]) -> DVec3 {
+    fn second_vector(&self, point: &LitPoint, lights: &[Light], _view: &ShadeView) -> DVec3 {
         lights.first().map_or(DVec3::ZERO, |light| toon_half(toon_to_light(light.place, point.at), point.to_eye))
     }
 
@@ -92,7 +91,7 @@ impl ShadeModel for Bands {
         toon_shade(self, shading.base * shading.light_color, light.x, width.x, light.y, width.y)
     }
 
-    fn on_device(&self, _view: &View) -> Result<ShadeOnDevice, HarnessError> {
+    fn on_device(&self, _view: &ShadeView) -> Result<ShadeOnDevice, HarnessError> {
         Ok(ShadeOnDevice {
             // Loops over the bands are unrolled for as many as there are.
             constants: vec![

@@ -14,7 +14,7 @@ fn shade_second(n: vec3<f32>, l: vec3<f32>, n_dot_l: f32, at: vec3<f32>, eye: ve
         return 0.0;
     }
     let e = toon_unit(eye);
-    return toon_n_dot_h_of(n_dot_l, dot(n, e), dot(l, e));
+    return toon_n_dot_h_from_dots(n_dot_l, dot(n, e), dot(l, e));
 }
 
 fn shade_second_vector(at: vec3<f32>, eye: vec3<f32>) -> vec3<f32> {

@@ -1,8 +1,7 @@
 //! Surfaces that no shade colours: paper, and hatched ones, which take the diffuse term.
 
-use super::{ShadeModel, ShadeOnDevice, Shading};
+use super::{ShadeModel, ShadeOnDevice, ShadeView, Shading};
 use crate::error::HarnessError;
-use crate::view::View;
 use glam::DVec3;
 
 pub(super) struct Unlit;
@@ -16,7 +15,7 @@ impl ShadeModel for Unlit {
         shading.base
     }
 
-    fn on_device(&self, _view: &View) -> Result<ShadeOnDevice, HarnessError> {
+    fn on_device(&self, _view: &ShadeView) -> Result<ShadeOnDevice, HarnessError> {
         Ok(ShadeOnDevice::new(&[
             ("npr-toon", npr_toon::WGSL),
             ("one_light.wgsl", super::lambert::ONE_LIGHT_WGSL),

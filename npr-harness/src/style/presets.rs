@@ -255,7 +255,7 @@ pub fn styles() -> Vec<Style> {
             ..style(
                 "printed-bands",
                 "the three bands of the 2002 chapter's listing 3, aliased, normals as interpolated",
-                Shade::Toon(Bands::listing_3()),
+                Shade::Toon(Bands::three_diffuse_bands()),
                 Lines::NONE,
             )
         },
@@ -265,7 +265,7 @@ pub fn styles() -> Vec<Style> {
             ..style(
                 "printed-gooch",
                 "the cool and warm tones of the 2002 chapter's listing 7, as printed",
-                Shade::Gooch(Gooch::listing_7()),
+                Shade::Gooch(Gooch::swapped_shares()),
                 Lines::NONE,
             )
         },

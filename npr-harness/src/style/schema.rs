@@ -12,7 +12,7 @@ use crate::shadow::schema::ShadowTable;
 use glam::Vec3;
 use npr_toon::Bands;
 use npr_toon::normal::NormalUse;
-use npr_toon::source::{Light, LightPlace};
+use npr_toon::source::{Light, LightKind};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -126,8 +126,8 @@ impl StyleTable {
 impl LightTable {
     fn new(StyleLight { light, frame }: &StyleLight) -> Self {
         let (direction, position) = match light.place {
-            LightPlace::Directional { to_light } => (Some(to_light.to_array()), None),
-            LightPlace::Positional { position } => (None, Some(position.to_array())),
+            LightKind::Directional { to_light } => (Some(to_light.to_array()), None),
+            LightKind::Positional { position } => (None, Some(position.to_array())),
         };
         let frame = match frame {
             LightFrame::View => FrameName::View,
@@ -138,8 +138,8 @@ impl LightTable {
 
     fn light(self, index: usize, file: &StyleFile<'_>) -> Result<StyleLight, HarnessError> {
         let place = match (self.direction, self.position) {
-            (Some(to_light), None) => LightPlace::Directional { to_light: to_light.into() },
-            (None, Some(position)) => LightPlace::Positional { position: position.into() },
+            (Some(to_light), None) => LightKind::Directional { to_light: to_light.into() },
+            (None, Some(position)) => LightKind::Positional { position: position.into() },
             _ => return Err(file.wrong(format!("light {index} needs either a direction or a position"))),
         };
         let frame = match self.frame {

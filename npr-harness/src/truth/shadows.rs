@@ -23,7 +23,7 @@ use npr_imagespace::composite::Composite;
 use npr_imagespace::format::texel::{TexelLayout, ink_wide_tap};
 use npr_imagespace::shadow::{ShadowState, ink_shadow_state};
 use npr_outline::segment::MAX_SLOPE;
-use npr_toon::source::{Light, LightPlace};
+use npr_toon::source::{Light, LightKind};
 
 /// A light, and a view under it.
 #[derive(Clone, Debug)]
@@ -75,8 +75,8 @@ fn behind(scene: &Scene, shot: ShadowShot) -> ShadowShot {
         let aside = DVec2::from_angle(f64::from(around) / 16.0 * std::f64::consts::TAU) * sin;
         let to_light = DVec3::new(aside.x, aside.y, -cos).as_vec3();
         let place = match shot.light.light.place {
-            LightPlace::Directional { .. } => LightPlace::Directional { to_light },
-            LightPlace::Positional { position } => LightPlace::Positional { position: to_light * position.length() },
+            LightKind::Directional { .. } => LightKind::Directional { to_light },
+            LightKind::Positional { position } => LightKind::Positional { position: to_light * position.length() },
         };
         ShadowShot { light: StyleLight { light: Light { place, ..shot.light.light }, ..shot.light }, ..shot.clone() }
     };

@@ -5,7 +5,7 @@ use crate::random::{Random, with};
 use glam::{DVec3, DVec4, Vec4};
 use npr_gooch::{
     Gooch, GoochUniform, Highlight, Tones, gooch_cool, gooch_highlight, gooch_n_dot_l, gooch_over, gooch_r_dot_e,
-    gooch_r_dot_e_of, gooch_shade, gooch_tone, gooch_warm, gooch_weight,
+    gooch_r_dot_e_unit, gooch_shade, gooch_tone, gooch_warm, gooch_weight,
 };
 
 fn xyz(v: Vec4) -> DVec3 {
@@ -30,11 +30,11 @@ fn models() -> Vec<Gooch> {
             yellow: random.color(),
             alpha: random.range(0.0, 1.5),
             beta: random.range(0.0, 1.5),
-            tones: random.pick(&[Tones::Equation, Tones::Listing7]),
+            tones: random.pick(&[Tones::Equation, Tones::SwappedShares]),
             highlight: if random.one_in(4) { None } else { Some(highlight) },
         }
     };
-    let presets = [Gooch::default(), Gooch::listing_7()];
+    let presets = [Gooch::default(), Gooch::swapped_shares()];
     presets.into_iter().chain((2..MODELS).map(|_| any(&random))).collect()
 }
 
@@ -49,7 +49,7 @@ fn highlight_bound(model: &Gooch, _: &Given) -> Allowed {
 }
 
 /// No more than the highlight, though (R·E)^n changes n (R·E)^(n-1) times as fast as R·E, which f32 has to within 8e-7
-/// from its dot products: see `gooch_r_dot_e_of`.
+/// from its dot products: see `gooch_r_dot_e_unit`.
 ///
 /// At N·L = 0 the highlight ends, which at grazing angles is a jump: exempt where f32 may be on its other side.
 fn shade_bound(model: &Gooch, g: &Given) -> Allowed {
@@ -123,12 +123,12 @@ const CHECKS: &[Check<Gooch>] = &[
         allowed: small,
     },
     Check {
-        name: "gooch_r_dot_e_of",
-        wgsl: "vec4(gooch_r_dot_e_of(gooch_unit(a.xyz), gooch_unit(b.xyz), gooch_unit(c.xyz)))",
+        name: "gooch_r_dot_e_unit",
+        wgsl: "vec4(gooch_r_dot_e_unit(gooch_unit(a.xyz), gooch_unit(b.xyz), gooch_unit(c.xyz)))",
         given: scene,
         rust: |_, g| {
             let [n, l, e] = [0, 1, 2].map(|i| xyz(g[i]).normalize_or_zero());
-            DVec4::splat(gooch_r_dot_e_of(n, l, e))
+            DVec4::splat(gooch_r_dot_e_unit(n, l, e))
         },
         allowed: small,
     },

@@ -4,14 +4,15 @@ use crate::check::{Allowed, Check, Given, MODELS, SMALL, compare};
 use crate::random::{Random, with};
 use glam::{DVec2, DVec3, DVec4, Vec2, Vec3, Vec4};
 use npr_hatch::lookup::{
-    HatchFootprint, HatchTaps, hatch_flat, hatch_footprint, hatch_samples, hatch_softened, hatch_taps,
+    HatchFootprint, HatchTaps, hatch_flat_weight, hatch_footprint, hatch_samples, hatch_soft_tone, hatch_taps,
 };
 use npr_hatch::mapping::{
-    HatchStep, hatch_doubled, hatch_moved, hatch_octave, hatch_plane, hatch_plane_weights, hatch_share, hatch_turn,
-    hatch_turned,
+    HatchBlend, hatch_direction_step, hatch_doubled_angle, hatch_octave, hatch_offset, hatch_plane,
+    hatch_plane_weights, hatch_rotate, hatch_share_tone,
 };
 use npr_hatch::{
-    hatch_blend, hatch_color, hatch_level, hatch_linear, hatch_shadowed, hatch_threshold, hatch_transfer, hatch_weights,
+    hatch_blend, hatch_color, hatch_level, hatch_level_of_tone, hatch_threshold, hatch_tone_in_shadow, hatch_transfer,
+    hatch_weights,
 };
 
 fn xyz(v: Vec4) -> DVec3 {
@@ -167,7 +168,7 @@ fn doubled(random: &Random, _: &()) -> Given {
 }
 
 fn turned_between(_: &(), g: &Given) -> DVec4 {
-    let HatchStep { first, share } = hatch_turn(xy(g[0]));
+    let HatchBlend { first, share } = hatch_direction_step(xy(g[0]));
     let at = on_circle(f64::from(first) + share, 12.0);
     DVec4::new(at.x, at.y, 0.0, 0.0)
 }
@@ -219,10 +220,10 @@ const CONTINUOUS: &str = "
     fn high_beside_low(taps: HatchTaps, side: u32) -> vec4<f32> {
         return vec4(vec2<f32>(taps.high) - vec2<f32>((taps.low + 1u) % side), 0.0, 0.0);
     }
-    fn step_on_circle(at: HatchStep) -> vec4<f32> {
+    fn step_on_circle(at: HatchBlend) -> vec4<f32> {
         return vec4(on_circle(f32(at.first) + at.share, 12.0), 0.0, 0.0);
     }
-    fn step_as_number(at: HatchStep) -> vec4<f32> {
+    fn step_as_number(at: HatchBlend) -> vec4<f32> {
         return vec4(f32(at.first) + at.share);
     }";
 
@@ -263,20 +264,20 @@ const CHECKS: &[Check<()>] = &[
         allowed: small,
     },
     Check {
-        name: "hatch_linear",
-        wgsl: "vec4(hatch_linear(a.rgb, b.rgb, c.x))",
+        name: "hatch_level_of_tone",
+        wgsl: "vec4(hatch_level_of_tone(a.rgb, b.rgb, c.x))",
         given: tones,
-        rust: |(), g| DVec4::splat(hatch_linear(xyz(g[0]), xyz(g[1]), x(g[2]))),
+        rust: |(), g| DVec4::splat(hatch_level_of_tone(xyz(g[0]), xyz(g[1]), x(g[2]))),
         allowed: small,
     },
     Check {
-        name: "hatch_shadowed",
-        wgsl: "vec4(hatch_shadowed(a.x, a.y, a.z))",
+        name: "hatch_tone_in_shadow",
+        wgsl: "vec4(hatch_tone_in_shadow(a.x, a.y, a.z))",
         given: |random, ()| {
             let lit = random.pick(&[0.0, 1.0, random.unit()]);
             [Vec4::new(random.unit(), random.range(0.0, 0.5), lit, 0.0); 4]
         },
-        rust: |(), g| DVec4::splat(hatch_shadowed(x(g[0]), f64::from(g[0].y), f64::from(g[0].z))),
+        rust: |(), g| DVec4::splat(hatch_tone_in_shadow(x(g[0]), f64::from(g[0].y), f64::from(g[0].z))),
         allowed: small,
     },
     Check {
@@ -300,14 +301,14 @@ const CHECKS: &[Check<()>] = &[
         allowed: small,
     },
     Check {
-        name: "hatch_flat",
-        wgsl: "vec4(hatch_flat(a.x, a.y))",
+        name: "hatch_flat_weight",
+        wgsl: "vec4(hatch_flat_weight(a.x, a.y))",
         given: |random, ()| {
             let last_level = random.pick(&[2.0, 8.0, 12.0]);
             let level = random.pick(&[last_level, random.range(0.0, last_level), last_level - random.range(2.5, 4.5)]);
             [Vec4::new(level, last_level, 0.0, 0.0); 4]
         },
-        rust: |(), g| DVec4::splat(hatch_flat(x(g[0]), f64::from(g[0].y))),
+        rust: |(), g| DVec4::splat(hatch_flat_weight(x(g[0]), f64::from(g[0].y))),
         allowed: small,
     },
     Check {
@@ -326,13 +327,13 @@ const CHECKS: &[Check<()>] = &[
         allowed: |_, _| Allowed::Within(0.0),
     },
     Check {
-        name: "hatch_softened",
-        wgsl: "vec4(hatch_softened(a.x, a.y))",
+        name: "hatch_soft_tone",
+        wgsl: "vec4(hatch_soft_tone(a.x, a.y))",
         given: |random, ()| {
             let tone = random.pick(&[0.0, 1.0, random.range(-0.2, 1.2), random.unit(), random.log_range(1e-6, 1.0)]);
             [Vec4::new(tone, random.pick(&[0.0, 1.0 / 64.0, random.unit()]), 0.0, 0.0); 4]
         },
-        rust: |(), g| DVec4::splat(hatch_softened(x(g[0]), f64::from(g[0].y))),
+        rust: |(), g| DVec4::splat(hatch_soft_tone(x(g[0]), f64::from(g[0].y))),
         allowed: small,
     },
     Check {
@@ -378,15 +379,15 @@ const CHECKS: &[Check<()>] = &[
         allowed: |(), _| Allowed::Within(0.0),
     },
     Check {
-        name: "hatch_doubled",
-        wgsl: "vec4(hatch_doubled(a.xyz, b.xyz, u32(c.x)), 0.0, 0.0)",
+        name: "hatch_doubled_angle",
+        wgsl: "vec4(hatch_doubled_angle(a.xyz, b.xyz, u32(c.x)), 0.0, 0.0)",
         given: seen,
-        rust: |(), g| hatch_doubled(xyz(g[0]), xyz(g[1]), g[2].x as u32).extend(0.0).extend(0.0),
+        rust: |(), g| hatch_doubled_angle(xyz(g[0]), xyz(g[1]), g[2].x as u32).extend(0.0).extend(0.0),
         allowed: small,
     },
     Check {
-        name: "hatch_turn",
-        wgsl: "step_on_circle(hatch_turn(a.xy))",
+        name: "hatch_direction_step",
+        wgsl: "step_on_circle(hatch_direction_step(a.xy))",
         given: doubled,
         rust: turned_between,
         allowed: turn_bound,
@@ -396,30 +397,30 @@ const CHECKS: &[Check<()>] = &[
         wgsl: "step_as_number(hatch_octave(a.x))",
         given: octave,
         rust: |(), g| {
-            let HatchStep { first, share } = hatch_octave(x(g[0]));
+            let HatchBlend { first, share } = hatch_octave(x(g[0]));
             DVec4::splat(f64::from(first) + share)
         },
         allowed: small,
     },
     Check {
-        name: "hatch_turned",
-        wgsl: "vec4(hatch_turned(a.xy, i32(a.z)), 0.0, 0.0)",
+        name: "hatch_rotate",
+        wgsl: "vec4(hatch_rotate(a.xy, i32(a.z)), 0.0, 0.0)",
         given: turn,
-        rust: |(), g| hatch_turned(xy(g[0]), g[0].z as i32).extend(0.0).extend(0.0),
+        rust: |(), g| hatch_rotate(xy(g[0]), g[0].z as i32).extend(0.0).extend(0.0),
         allowed: turned_bound,
     },
     Check {
-        name: "hatch_moved",
-        wgsl: "vec4(hatch_moved(i32(a.x)), 0.0, 0.0)",
+        name: "hatch_offset",
+        wgsl: "vec4(hatch_offset(i32(a.x)), 0.0, 0.0)",
         given: |random, ()| [Vec4::splat(random.below(81) as f32 - 40.0); 4],
-        rust: |(), g| hatch_moved(g[0].x as i32).extend(0.0).extend(0.0),
+        rust: |(), g| hatch_offset(g[0].x as i32).extend(0.0).extend(0.0),
         allowed: small,
     },
     Check {
-        name: "hatch_share",
-        wgsl: "vec4(hatch_share(a.x, a.y))",
+        name: "hatch_share_tone",
+        wgsl: "vec4(hatch_share_tone(a.x, a.y))",
         given: tone_and_share,
-        rust: |(), g| DVec4::splat(hatch_share(x(g[0]), f64::from(g[0].y))),
+        rust: |(), g| DVec4::splat(hatch_share_tone(x(g[0]), f64::from(g[0].y))),
         allowed: small,
     },
 ];

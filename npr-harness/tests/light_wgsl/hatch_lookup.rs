@@ -101,7 +101,7 @@ const THRESHOLDS: &str = "
         return vec4(hatch_ink(map, nearest, a.xy, HatchFootprint(b.x, a.zw), b.y, b.z));
     }
     fn ink_at(a: vec4<f32>, b: vec4<f32>) -> vec4<f32> {
-        return vec4(hatch_ink_at(map, nearest, a.xy, b.x, hatch_softened(b.y, b.z), b.z));
+        return vec4(hatch_ink_at(map, nearest, a.xy, b.x, hatch_soft_tone(b.y, b.z), b.z));
     }
     // The side is a power of two, so the product is exact.
     fn texel_of_level(a: vec4<f32>, b: vec4<f32>) -> vec4<f32> {
@@ -110,7 +110,7 @@ const THRESHOLDS: &str = "
         return vec4(hatch_ink_texel(map, nearest, vec2<u32>(fract(a.xy) * f32(side)), side, level));
     }
     fn ink_of_level(a: vec4<f32>, b: vec4<f32>) -> vec4<f32> {
-        return vec4(hatch_ink_of_level(map, nearest, a.xy, i32(b.x), hatch_softened(b.y, b.z), b.z));
+        return vec4(hatch_ink_of_level(map, nearest, a.xy, i32(b.x), hatch_soft_tone(b.y, b.z), b.z));
     }";
 
 const INK: &[Check<Arc<Thresholds>>] = &[

@@ -6,13 +6,13 @@ use glam::{DVec2, DVec3, DVec4, Vec3, Vec4};
 use npr_toon::border::toon_border_width;
 use npr_toon::half_lambert::{HalfLambert, toon_half_lambert};
 use npr_toon::painter::{
-    Painter, PainterUniform, toon_material, toon_overbright, toon_paint, toon_painter_uv, toon_reach,
+    Painter, PainterUniform, toon_diffuse, toon_material, toon_overbright, toon_paint, toon_painter_uv,
 };
-use npr_toon::source::{Light, LightPlace, toon_to_light};
+use npr_toon::source::{Light, LightKind, toon_to_light};
 use npr_toon::{
-    Bands, Highlight, TOON_BANDS_OVERRIDE, ToonUniform, toon_band_hard, toon_band_smooth, toon_coverage, toon_half,
-    toon_highlight, toon_n_dot_h, toon_n_dot_h_interpolated, toon_n_dot_h_of, toon_n_dot_l, toon_n_dot_l_interpolated,
-    toon_shade, toon_width,
+    Bands, Highlight, TOON_BANDS_OVERRIDE, ToonUniform, toon_band, toon_band_hard, toon_coverage, toon_half,
+    toon_highlight, toon_n_dot_h, toon_n_dot_h_from_dots, toon_n_dot_h_interpolated, toon_n_dot_l,
+    toon_n_dot_l_interpolated, toon_shade, toon_width,
 };
 
 fn xyz(v: Vec4) -> DVec3 {
@@ -146,8 +146,8 @@ const FUNCTIONS: &[Check<Bands>] = &[
         allowed: small,
     },
     Check {
-        name: "toon_n_dot_h_of",
-        wgsl: "vec4(toon_n_dot_h_of(a.x, a.y, a.z))",
+        name: "toon_n_dot_h_from_dots",
+        wgsl: "vec4(toon_n_dot_h_from_dots(a.x, a.y, a.z))",
         // Dot products as a shader has them: each rounded by itself, so that L.E may come out below -1.
         given: |random, bands| {
             let [n, l, e, _] = vectors(random, bands);
@@ -155,7 +155,7 @@ const FUNCTIONS: &[Check<Bands>] = &[
             let l_dot_e = (l.dot(e) as f32 * random.pick(&[1.0, 1.0 + f32::EPSILON])).min(1.0);
             [Vec4::new(n.dot(l) as f32, n.dot(e) as f32, l_dot_e, 0.0); 4]
         },
-        rust: |_, g| one(toon_n_dot_h_of(f64::from(g[0].x), f64::from(g[0].y), f64::from(g[0].z))),
+        rust: |_, g| one(toon_n_dot_h_from_dots(f64::from(g[0].x), f64::from(g[0].y), f64::from(g[0].z))),
         // The sum in the numerator is rounded to f32; see `half_bound`.
         allowed: |_, g| {
             let length = (2.0 + 2.0 * f64::from(g[0].z)).max(0.0).sqrt();
@@ -222,7 +222,7 @@ const FUNCTIONS: &[Check<Bands>] = &[
         rust: |_, g| {
             let tones = vec![g[1].truncate(), g[2].truncate()];
             let bands = Bands { thresholds: vec![g[0].z], tones, highlight: None, antialias: true };
-            color(toon_band_smooth(&bands, f64::from(g[0].x), f64::from(g[0].y)))
+            color(toon_band(&bands, f64::from(g[0].x), f64::from(g[0].y)))
         },
         allowed: small,
     },
@@ -278,7 +278,7 @@ const BANDS: &[Check<Bands>] = &[
         name: "toon_band",
         wgsl: "vec4(toon_band(u, a.x, a.y), 0.0)",
         given: lit,
-        rust: |bands, g| color(toon_band_smooth(bands, f64::from(g[0].x), f64::from(g[0].y))),
+        rust: |bands, g| color(toon_band(bands, f64::from(g[0].x), f64::from(g[0].y))),
         allowed: small,
     },
     Check {
@@ -308,9 +308,9 @@ fn any_painter(random: &Random) -> Painter {
     let count = random.below(3);
     let light = |_| {
         let place = if random.one_in(2) {
-            LightPlace::Directional { to_light: random.direction() * random.log_range(1e-3, 1e3) }
+            LightKind::Directional { to_light: random.direction() * random.log_range(1e-3, 1e3) }
         } else {
-            LightPlace::Positional { position: random.direction() * random.log_range(0.1, 1e4) }
+            LightKind::Positional { position: random.direction() * random.log_range(0.1, 1e4) }
         };
         Light { place, color: random.color(), brightness: random.pick(&[0.0, 1.0, random.range(0.0, 2.0)]) }
     };
@@ -321,7 +321,7 @@ fn any_painter(random: &Random) -> Painter {
 /// A point, perhaps at a light's own place or near it, and a normal.
 fn point(random: &Random, painter: &Painter) -> Given {
     let light = painter.lights.first().map(|light| light.place);
-    let position = if let Some(LightPlace::Positional { position }) = light { position } else { Vec3::ZERO };
+    let position = if let Some(LightKind::Positional { position }) = light { position } else { Vec3::ZERO };
     let at = match random.below(6) {
         0 => position,
         1 => position + random.direction() * random.log_range(1e-5, 1.0),
@@ -348,17 +348,17 @@ const PAINTER: &[Check<Painter>] = &[
         },
         rust: |_, g| {
             let v = g[1].truncate();
-            let positional = LightPlace::Positional { position: v };
-            let place = if g[1].w == 0.0 { LightPlace::Directional { to_light: v } } else { positional };
+            let positional = LightKind::Positional { position: v };
+            let place = if g[1].w == 0.0 { LightKind::Directional { to_light: v } } else { positional };
             color(toon_to_light(place, xyz(g[0])))
         },
         allowed: small,
     },
     Check {
-        name: "toon_reach",
-        wgsl: "vec4(toon_reach(a.x, a.y))",
+        name: "toon_diffuse",
+        wgsl: "vec4(toon_diffuse(a.x, a.y))",
         given: |random, _| [Vec4::new(random.range(-1.0, 1.0), random.range(0.0, 2.0), 0.0, 0.0); 4],
-        rust: |_, g| one(toon_reach(f64::from(g[0].x), f64::from(g[0].y))),
+        rust: |_, g| one(toon_diffuse(f64::from(g[0].x), f64::from(g[0].y))),
         allowed: small,
     },
     Check {
@@ -407,7 +407,8 @@ fn pack(bands: &Bands) -> ToonUniform {
 fn bands_are_their_reference() {
     let Some(gpu) = crate::device() else { return };
     let random = Random::new(3);
-    let presets = [Bands::hard_shading(), Bands::listing_3(), Bands::chapter_text(), Bands::default()];
+    let presets =
+        [Bands::hard_shading(), Bands::three_diffuse_bands(), Bands::diffuse_and_specular(), Bands::default()];
     let others = (presets.len()..MODELS).map(|number| any_bands(&random, number as u32 % 8 + 1));
     let models: Vec<_> = presets.into_iter().chain(others).collect();
     for checks in [FUNCTIONS, BANDS] {

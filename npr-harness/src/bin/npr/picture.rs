@@ -3,7 +3,7 @@
 use crate::terminal::{say, tell};
 use npr_harness::error::{HarnessError, PathRole};
 use npr_harness::picture::{Image, PictureFormat};
-use npr_hatch::files::{check_place, write_file};
+use npr_hatch::files::{check_writable, write_file};
 use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
@@ -36,7 +36,7 @@ impl<'a> Destination<'a> {
         if width.max(height) > limit {
             return Err(HarnessError::FormatSize { width, height, format, limit });
         }
-        check_place(output).map_err(unusable(output))?;
+        check_writable(output).map_err(unusable(output))?;
         Ok(Self::File(output, format))
     }
 

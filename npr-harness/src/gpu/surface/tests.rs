@@ -4,7 +4,6 @@ use super::*;
 use crate::shade::Shade;
 use crate::shadow::gpu::ShadowUniform;
 use crate::style::style;
-use crate::view::View;
 use naga::TypeInner;
 use std::mem::offset_of;
 
@@ -12,8 +11,7 @@ use std::mem::offset_of;
 fn the_uniforms_lie_as_the_shader_has_them() {
     // Hatched, since that has all of them.
     let Shade::Hatch(shade) = style("hatch").expect("a style of this crate").shade else { panic!("it hatches") };
-    let view = View::new(crate::gallery::still_life_camera(), (16, 16));
-    let text = surface_wgsl(&Shade::Hatch(shade), &view).expect("good numbers");
+    let text = surface_wgsl(&Shade::Hatch(shade)).expect("good numbers");
     let module = naga::front::wgsl::parse_str(&text).expect("the shader parses");
     let layout = |name: &str| {
         let (_, ty) = module.types.iter().find(|(_, t)| t.name.as_deref() == Some(name)).expect("it is there");

@@ -3,8 +3,8 @@
 use super::Document;
 use crate::LoadError;
 use crate::load::external::{External, meanings, shortened};
-use base64::{DecodeError, Engine};
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
+use base64::{DecodeError, Engine};
 use gltf::json::{Index, Root, buffer};
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -259,9 +259,21 @@ mod tests {
         ] {
             assert_eq!(names(uri).unwrap()[0], Path::new(name), "{uri}");
         }
-        for uri in
-            ["", ".", "..", "C:/a.bin", "http://a/a.bin", "file://host/a.bin", "a%", "a%0", "a%zz", "a%é", "a%%41", "a%ff", "a%00b"]
-        {
+        for uri in [
+            "",
+            ".",
+            "..",
+            "C:/a.bin",
+            "http://a/a.bin",
+            "file://host/a.bin",
+            "a%",
+            "a%0",
+            "a%zz",
+            "a%é",
+            "a%%41",
+            "a%ff",
+            "a%00b",
+        ] {
             assert!(names(uri).is_err(), "{uri}");
         }
     }
