@@ -202,7 +202,14 @@ pub(crate) trait ShadeModel {
     }
 
     /// The second number of vectors as they were interpolated.
-    fn second_interpolated(&self, _normal: DVec3, _to_light: DVec3, _second: DVec3, _lights: &[Light]) -> f64 {
+    fn second_interpolated(
+        &self,
+        _normal: DVec3,
+        _to_light: DVec3,
+        _second: DVec3,
+        _lights: &[Light],
+        _view: &ShadeView,
+    ) -> f64 {
         0.0
     }
 

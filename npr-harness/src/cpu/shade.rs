@@ -119,5 +119,5 @@ fn light_interpolated(paint: &PaintPlan, model: &dyn ShadeModel, corners: &[LitP
     let to_light = mean(&|point| toon_to_light(first.place, point.at));
     let diffuse = model.diffuse(toon_n_dot_l_interpolated(normal, to_light), f64::from(first.brightness));
     let second = mean(&|point| model.second_vector(point, &paint.lights, &paint.view));
-    DVec2::new(diffuse, model.second_interpolated(normal, to_light, second, &paint.lights))
+    DVec2::new(diffuse, model.second_interpolated(normal, to_light, second, &paint.lights, &paint.view))
 }

@@ -102,7 +102,14 @@ impl ShadeModel for Gooch {
         point.to_eye.normalize_or_zero()
     }
 
-    fn second_interpolated(&self, normal: DVec3, to_light: DVec3, second: DVec3, _lights: &[Light]) -> f64 {
+    fn second_interpolated(
+        &self,
+        normal: DVec3,
+        to_light: DVec3,
+        second: DVec3,
+        _lights: &[Light],
+        _view: &ShadeView,
+    ) -> f64 {
         2.0 * npr_toon::toon_n_dot_l_interpolated(normal, to_light) * normal.dot(second) - to_light.dot(second)
     }
 

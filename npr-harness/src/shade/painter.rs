@@ -171,7 +171,14 @@ impl ShadeModel for PainterShade {
         lights.get(1).map_or(DVec3::ZERO, |second| toon_to_light(second.place, point.at))
     }
 
-    fn second_interpolated(&self, normal: DVec3, _to_light: DVec3, second: DVec3, lights: &[Light]) -> f64 {
+    fn second_interpolated(
+        &self,
+        normal: DVec3,
+        _to_light: DVec3,
+        second: DVec3,
+        lights: &[Light],
+        _view: &ShadeView,
+    ) -> f64 {
         lights
             .get(1)
             .map_or(0.0, |light| toon_diffuse(toon_n_dot_l_interpolated(normal, second), f64::from(light.brightness)))

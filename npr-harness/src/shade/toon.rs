@@ -81,7 +81,14 @@ impl ShadeModel for Bands {
         lights.first().map_or(DVec3::ZERO, |light| toon_half(toon_to_light(light.place, point.at), point.to_eye))
     }
 
-    fn second_interpolated(&self, normal: DVec3, _to_light: DVec3, second: DVec3, _lights: &[Light]) -> f64 {
+    fn second_interpolated(
+        &self,
+        normal: DVec3,
+        _to_light: DVec3,
+        second: DVec3,
+        _lights: &[Light],
+        _view: &ShadeView,
+    ) -> f64 {
         if has_highlight(self) { toon_n_dot_h_interpolated(normal, second) } else { 0.0 }
     }
 
