@@ -13,6 +13,7 @@ pub mod ramp;
 mod ramp_table;
 pub mod toon;
 mod unlit;
+pub mod x_toon;
 
 use crate::error::HarnessError;
 use crate::hatch::HatchShade;
@@ -27,6 +28,7 @@ use npr_toon::source::Light;
 use painter::PainterShade;
 use ramp::RampShade;
 use serde::{Deserialize, Serialize};
+use x_toon::XToon;
 
 /// How surfaces are painted.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,6 +43,8 @@ pub enum Shade {
     Ramp(RampShade),
     /// Two lights, each an axis of a 2D ramp.
     Painter(PainterShade),
+    /// Bands that fade with depth or near the silhouette.
+    XToon(XToon),
     /// From cool to warm.
     Gooch(Gooch),
     /// Strokes of a tonal art map.
@@ -59,6 +63,7 @@ pub(crate) enum ShadeTable {
     Toon(toon::ToonTable),
     Ramp(ramp::RampTable),
     Painter(painter::PainterTable),
+    XToon(x_toon::XToonTable),
     Gooch(gooch::GoochTable),
     Hatch(HatchTable),
 }
@@ -72,6 +77,7 @@ impl ShadeTable {
             Shade::Toon(bands) => Self::Toon(toon::ToonTable::new(bands)),
             Shade::Ramp(ramp) => Self::Ramp(ramp::RampTable::new(ramp)),
             Shade::Painter(painter) => Self::Painter(painter::PainterTable::new(painter)),
+            Shade::XToon(x_toon) => Self::XToon(x_toon::XToonTable::new(x_toon)),
             Shade::Gooch(gooch) => Self::Gooch(gooch::GoochTable::new(gooch)),
             Shade::Hatch(hatch) => Self::Hatch(HatchTable::new(hatch)),
         }
@@ -85,6 +91,7 @@ impl ShadeTable {
             Self::Toon(table) => Shade::Toon(table.bands()),
             Self::Ramp(table) => Shade::Ramp(table.ramp(file)?),
             Self::Painter(table) => Shade::Painter(table.painter(file)?),
+            Self::XToon(table) => Shade::XToon(table.x_toon(file)?),
             Self::Gooch(table) => Shade::Gooch(table.gooch()),
             Self::Hatch(table) => Shade::Hatch(table.hatch(file)?),
         })
@@ -100,6 +107,7 @@ impl Shade {
             Self::Toon(bands) => bands,
             Self::Ramp(ramp) => ramp,
             Self::Painter(painter) => painter,
+            Self::XToon(x_toon) => x_toon,
             Self::Gooch(gooch) => gooch,
             Self::Normals => &normals::Normals,
         }

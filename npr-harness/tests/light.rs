@@ -20,6 +20,7 @@ use npr_harness::shade::Shade;
 use npr_harness::shade::lambert::Lambert;
 use npr_harness::shade::painter::{PainterShade, Ramp2dSource};
 use npr_harness::shade::ramp::{RampShade, RampSource};
+use npr_harness::shade::x_toon::{XToon, XToonDetail};
 use npr_harness::shadow::{ShadowLines, ShadowStyle};
 use npr_harness::style::{Lines, Style, style};
 use npr_harness::view::View;
@@ -137,6 +138,10 @@ fn cases() -> Vec<(&'static str, Shade, Vec<StyleLight>)> {
     let twice = Ramp2dSource::Ramps(Ramp2d { a: smooth.clone(), b: stops(RampBlend::Hard), corner: None });
     let aliased = Bands { antialias: false, ..Bands::default() };
     let half = Some(HalfLambert::HALF_LIFE);
+    let x_toon = |detail| {
+        let abstracted = Ramp { stops: vec![RampStop { at: -1.0, color: Vec3::splat(0.9) }], blend: RampBlend::Hard };
+        Shade::XToon(XToon { detailed: stops(RampBlend::Hard), abstracted, detail })
+    };
     vec![
         ("Lambert, one lamp", Shade::Lambert(Lambert { ambient: 0.2 }), vec![lamp]),
         ("bands", Shade::Toon(Bands::default()), vec![key]),
@@ -159,6 +164,8 @@ fn cases() -> Vec<(&'static str, Shade, Vec<StyleLight>)> {
         ("table, nearest", painter(Ramp2dSource::Image(table(TexelFilter::Nearest)), false), vec![key, dim]),
         ("table, linear", painter(Ramp2dSource::Image(table(TexelFilter::Linear)), false), vec![lamp, there]),
         ("painter, one light", painter(hard(), false), vec![dim]),
+        ("X-Toon by depth", x_toon(XToonDetail::Depth { from: 0.1, to: 0.8 }), vec![key]),
+        ("X-Toon by silhouette", x_toon(XToonDetail::Silhouette { exponent: 1.5 }), vec![lamp]),
         ("Gooch", Shade::Gooch(Gooch::default()), vec![key]),
         ("Gooch, a lamp", Shade::Gooch(Gooch { tones: Tones::SwappedShares, ..Gooch::default() }), vec![lamp]),
     ]

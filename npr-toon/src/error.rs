@@ -131,6 +131,20 @@ pub enum ToonError {
         /// The number of texels.
         texels: usize,
     },
+    /// The depths of [`crate::x_toon::Detail::Depth`] do not ascend from above 0, or are not finite.
+    #[error("detail from a depth of {near} to {far}: the first must be above 0, the second above the first and finite")]
+    DetailDepths {
+        /// Where detail is 1.
+        near: f32,
+        /// Where it is 0.
+        far: f32,
+    },
+    /// The exponent of [`crate::x_toon::Detail::Silhouette`] is not above 0 and finite.
+    #[error("an exponent of detail of {exponent}: it must be above 0 and finite")]
+    DetailExponent {
+        /// The rejected value.
+        exponent: f32,
+    },
     /// The ends of an image row are not ascending, or their difference is not finite.
     #[error("a row from {from} to {to}: the end must be above the start by a finite amount")]
     RowEnds {

@@ -20,6 +20,7 @@
 //! - [`Bands`], [`toon_shade`]: bands of N·L and a highlight, at the crate's root.
 //! - [`ramp`], [`row`]: colour ramps over the diffuse term, computed from stops or read from an image.
 //! - [`table`], [`painter`]: two lights, one per axis of a 2D ramp, with one common light colour.
+//! - [`x_toon`]: bands that fade with depth or near the silhouette.
 //! - [`half_lambert`]: half-Lambert lighting; [`source`]: lights, and the aggregate of several lights.
 //! - [`border`]: limits on the width of antialiased borders; [`normal`]: errors of interpolated normals.
 //!
@@ -67,6 +68,7 @@ pub mod row;
 pub mod source;
 pub mod table;
 mod uniform;
+pub mod x_toon;
 
 /// The vector and matrix types in this API.
 pub use glam;
@@ -98,6 +100,7 @@ pub const WGSL: &str = concat!(
     include_str!("row.wgsl"),
     include_str!("table.wgsl"),
     include_str!("painter.wgsl"),
+    include_str!("x_toon.wgsl"),
 );
 
 /// The name of the override in [`WGSL`] for the number of bands that its functions read: 1..=[`MAX_BANDS`] and at least

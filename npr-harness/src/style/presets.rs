@@ -10,6 +10,7 @@ use crate::shade::Shade;
 use crate::shade::lambert::Lambert;
 use crate::shade::painter::{PainterShade, Ramp2dSource};
 use crate::shade::ramp::{RampShade, RampSource};
+use crate::shade::x_toon::{XToon, XToonDetail};
 use crate::shadow::{ShadowLines, ShadowStyle};
 use glam::Vec3;
 use npr_gooch::Gooch;
@@ -64,6 +65,15 @@ fn two_lights() -> PainterShade {
         ramp: Ramp2dSource::Ramps(Ramp2d { a: first, b: second, corner }),
         light_scale: Painter::LIGHT_SCALE,
         material_by_alpha: false,
+    }
+}
+
+/// Three bands in front, and hardly any at the back of the scene.
+fn fading() -> XToon {
+    XToon {
+        detailed: ramp(RampBlend::Hard, [(-1.0, [0.34, 0.32, 0.46]), (0.05, [0.72, 0.71, 0.78]), (0.55, [1.0; 3])]),
+        abstracted: ramp(RampBlend::Hard, [(-1.0, [0.86, 0.87, 0.92]), (0.05, [0.97, 0.97, 0.98])]),
+        detail: XToonDetail::Depth { from: 0.0, to: 0.9 },
     }
 }
 
@@ -149,6 +159,7 @@ pub fn styles() -> Vec<Style> {
                 ink_lines(2.0, 1.3),
             )
         },
+        style("x-toon", "bands that fade with depth, ink lines", Shade::XToon(fading()), ink_lines(2.0, 1.3)),
         style("wash", "a smooth ramp of colours, fine lines", Shade::Ramp(wash()), ink_lines(1.2, 0.9)),
         style("wrapped", "four bands of half-Lambert light, ink lines", Shade::Ramp(wrapped()), ink_lines(2.0, 1.3)),
         style(
