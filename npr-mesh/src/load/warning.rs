@@ -1,22 +1,23 @@
-//! What was repaired or left out, counted.
+//! Warnings, counted.
 
 use std::collections::HashMap;
 use std::fmt;
 
-/// So many different ones describe a file well enough.
+/// The maximum number of different warnings.
 const MOST: usize = 100;
 
-/// Something that was repaired or left out, and how many times.
+/// Something that was repaired or skipped, and the number of occurrences.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Warning {
-    /// One line, without the model's name.
+    /// A single line without the name of the model.
     pub text: String,
-    /// 1 or more.
+    /// At least 1.
     pub count: u64,
 }
 
 impl Warning {
-    /// Counts equal lines. Of more than [`MOST`] different ones the last says how many more there are.
+    /// Counts equal lines. If there are more than [`MOST`] different lines, the last one states how many were
+    /// omitted.
     pub(super) fn counted(lines: Vec<String>) -> Vec<Self> {
         let mut place_of = HashMap::new();
         let mut warnings: Vec<Self> = Vec::new();
@@ -36,7 +37,7 @@ impl Warning {
     }
 }
 
-/// A file's names may hold anything; a warning stays one line.
+/// Names in files may contain control characters; a warning must remain a single line.
 fn escaped(line: &str) -> String {
     if !line.chars().any(char::is_control) {
         return line.to_owned();
@@ -50,7 +51,7 @@ impl From<String> for Warning {
     }
 }
 
-/// The line, and after it how many times, if more than once.
+/// The text, followed by the count if it is above 1.
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { text, count } = self;
