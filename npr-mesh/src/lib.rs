@@ -43,7 +43,7 @@
 //! - D. Card, J. L. Mitchell: *Non-Photorealistic Rendering with Pixel and Vertex Shaders*, in *Direct3D ShaderX*,
 //!   2002, "Rendering Outlines": unique edges with the normals of their two faces, the negated normal at a boundary.
 //! - A. Vlachos, J. Peters, C. Boyd, J. L. Mitchell: *Curved PN Triangles*, I3D 2001: [`pn_triangles`].
-//! M. Newell's teapot: [`embedded::teapot`]. Sources of algorithms are cited where they are used.
+//! - M. Newell's teapot: [`embedded::teapot`]. Sources of algorithms are cited where they are used.
 #![warn(missing_docs)]
 
 pub mod edges;

@@ -30,32 +30,32 @@ pub fn fill_missing(model: &mut Model, crease_angle_rad: f32) {
     if !model.faces.iter().flatten().any(|&v| missing[v as usize]) {
         return;
     }
-    let mut place = weld_exact(&model.positions);
-    let mut wanted = vec![false; place.len()];
+    let mut representative = weld_exact(&model.positions);
+    let mut wanted = vec![false; representative.len()];
     for (vertex, _) in missing.iter().enumerate().filter(|(_, m)| **m) {
-        wanted[place[vertex] as usize] = true;
+        wanted[representative[vertex] as usize] = true;
     }
     let shapes = face_shapes(model);
     // A tolerance, so that rounding of positions does not separate faces that meet at exactly the crease angle.
     let widest = (f64::from(crease_angle_rad).clamp(0.0, std::f64::consts::PI) + 1e-5).min(std::f64::consts::PI);
     let (least_cos, half_cos) = (widest.cos() - 1e-12, (0.5 * widest).cos());
-    let means = smooth_means(model, &place, &shapes, half_cos);
+    let means = smooth_means(model, &representative, &shapes, half_cos);
     for (vertex, normal) in model.normals.iter_mut().enumerate().filter(|(vertex, _)| missing[*vertex]) {
-        let mean = means[place[vertex] as usize].as_vec3();
+        let mean = means[representative[vertex] as usize].as_vec3();
         if mean != Vec3::ZERO {
             *normal = mean;
-            wanted[place[vertex] as usize] = false;
+            wanted[representative[vertex] as usize] = false;
         }
     }
     drop(means);
-    let (first_corner, corners) = corners_by_place(model, &place, &wanted);
+    let (first_corner, corners) = corners_by_position(model, &representative, &wanted);
     let mut fan = Fan::default();
     for here in 0..wanted.len() {
         let around = &corners[first_corner[here] as usize..first_corner[here + 1] as usize];
         if !around.is_empty() {
-            fan.group(model, &place, &shapes, here as u32, around, least_cos);
+            fan.group(model, &representative, &shapes, here as u32, around, least_cos);
             fan.sum_up(&shapes, around);
-            fan.assign(model, &mut place, &missing, around);
+            fan.assign(model, &mut representative, &missing, around);
         }
     }
 }
@@ -170,7 +170,7 @@ fn face_shapes(model: &Model) -> Vec<FaceShape> {
 }
 
 /// Whether a normal is more than rounding error: whether the height, twice the area over the longest edge, exceeds
-/// half a unit in the last place of the coordinates.
+/// half a unit in the last representative of the coordinates.
 fn is_sound(length: f64, longest_squared: f64, magnitude: f32) -> bool {
     let rounding = f64::from(magnitude) * f64::from(f32::EPSILON) * 0.5;
     length.is_finite() && length > rounding * longest_squared.sqrt()
@@ -204,9 +204,9 @@ fn angle_rad(cross_length: f64, dot: f64) -> f64 {
 /// other.)
 ///
 /// Most positions of most models are smooth, and need no list of faces then.
-fn smooth_means(model: &Model, place: &[u32], shapes: &[FaceShape], half_cos: f64) -> Vec<DVec3> {
-    let mut means = vec![DVec3::ZERO; place.len()];
-    let corners = |face: &[u32; 3]| face.map(|vertex| place[vertex as usize] as usize);
+fn smooth_means(model: &Model, representative: &[u32], shapes: &[FaceShape], half_cos: f64) -> Vec<DVec3> {
+    let mut means = vec![DVec3::ZERO; representative.len()];
+    let corners = |face: &[u32; 3]| face.map(|vertex| representative[vertex as usize] as usize);
     for (face, shape) in model.faces.iter().zip(shapes) {
         for (here, angle_rad) in corners(face).into_iter().zip(shape.angles_rad) {
             means[here] += shape.normal * f64::from(angle_rad);
@@ -228,10 +228,10 @@ fn smooth_means(model: &Model, place: &[u32], shapes: &[FaceShape], half_cos: f6
 
 /// The face corners (three times the face plus 0..3) at each wanted position in ascending order, and the start of
 /// each position's range.
-fn corners_by_place(model: &Model, place: &[u32], wanted: &[bool]) -> (Vec<u32>, Vec<u32>) {
-    let mut first = vec![0u32; place.len() + 1];
+fn corners_by_position(model: &Model, representative: &[u32], wanted: &[bool]) -> (Vec<u32>, Vec<u32>) {
+    let mut first = vec![0u32; representative.len() + 1];
     for &v in model.faces.iter().flatten() {
-        let here = place[v as usize] as usize;
+        let here = representative[v as usize] as usize;
         first[here + 1] += u32::from(wanted[here]);
     }
     let mut sum = 0;
@@ -242,7 +242,7 @@ fn corners_by_place(model: &Model, place: &[u32], wanted: &[bool]) -> (Vec<u32>,
     let mut corners = vec![0u32; sum as usize];
     let mut free = first.clone();
     for (corner, &v) in model.faces.iter().flatten().enumerate() {
-        let here = place[v as usize] as usize;
+        let here = representative[v as usize] as usize;
         if wanted[here] {
             let slot = &mut free[here];
             corners[*slot as usize] = corner as u32;
@@ -296,7 +296,15 @@ impl Fan {
         }
     }
 
-    fn group(&mut self, model: &Model, place: &[u32], shapes: &[FaceShape], here: u32, around: &[u32], least_cos: f64) {
+    fn group(
+        &mut self,
+        model: &Model,
+        representative: &[u32],
+        shapes: &[FaceShape],
+        here: u32,
+        around: &[u32],
+        least_cos: f64,
+    ) {
         self.edges.clear();
         self.parent.clear();
         self.bridges.clear();
@@ -305,7 +313,7 @@ impl Fan {
             let face = model.faces[corner as usize / 3];
             let k = corner as usize % 3;
             for (other, towards) in [(face[(k + 1) % 3], 0), (face[(k + 2) % 3], 1)] {
-                let other = place[other as usize];
+                let other = representative[other as usize];
                 if other != here {
                     self.edges.push(u64::from(other) << 32 | (i as u64) << 1 | towards);
                 }
@@ -416,7 +424,7 @@ impl Fan {
         }
     }
 
-    fn assign(&mut self, model: &mut Model, place: &mut Vec<u32>, missing: &[bool], around: &[u32]) {
+    fn assign(&mut self, model: &mut Model, representative: &mut Vec<u32>, missing: &[bool], around: &[u32]) {
         self.claims.clear();
         let mut is_one = true;
         for (i, &corner) in around.iter().enumerate() {
@@ -455,7 +463,7 @@ impl Fan {
             if let Some(&color) = model.colors.get(vertex as usize) {
                 model.colors.push(color);
             }
-            place.push(place[vertex as usize]);
+            representative.push(representative[vertex as usize]);
             for claim in same {
                 model.faces[claim.3 as usize / 3][claim.3 as usize % 3] = copy;
             }

@@ -160,7 +160,7 @@ fn check(what: &'static str, count: u64, limit: u64) -> Result<(), TessellateErr
 /// The curves along the edges, and the vertices on them.
 struct Network {
     /// Per vertex the lowest-numbered one at its position.
-    place: Vec<u32>,
+    representative: Vec<u32>,
     /// Per edge between two positions, from the lower-numbered one: the inner control points relative to their ends.
     curves: Vec<[DVec3; 2]>,
     /// Per pair of vertices that is a side of a face.
@@ -205,7 +205,7 @@ impl Side {
 
 impl Network {
     fn of(model: &Model, normals: &[DVec3]) -> Self {
-        let place = weld_exact(&model.positions);
+        let representative = weld_exact(&model.positions);
         // Sorted by positions and then by vertices, so that sides with a common curve are adjacent. Sorting is faster
         // than hashing here.
         let pair = |[a, b]: [u32; 2]| (u64::from(a) << 32) | u64::from(b);
@@ -213,15 +213,15 @@ impl Network {
         let mut sides = Vec::with_capacity(model.faces.len() * 3);
         for (face, corners) in model.faces.iter().enumerate() {
             for side in 0..3 {
-                let (ends, _) = along_line(&place, [corners[side], corners[(side + 1) % 3]]);
-                sides.push((pair(ends.map(|v| place[v as usize])), pair(ends), 3 * face as u32 + side as u32));
+                let (ends, _) = along_line(&representative, [corners[side], corners[(side + 1) % 3]]);
+                sides.push((pair(ends.map(|v| representative[v as usize])), pair(ends), 3 * face as u32 + side as u32));
             }
         }
         sides.sort_unstable();
         let mut face_lines = vec![[0; 3]; model.faces.len()];
         let (mut curves, mut lines) = (Vec::with_capacity(sides.len() / 2), Vec::with_capacity(sides.len() / 2));
         for at_edge in sides.chunk_by(|a, b| a.0 == b.0) {
-            let [low, high] = unpair(at_edge[0].0).map(|place| model.positions[place].as_dvec3());
+            let [low, high] = unpair(at_edge[0].0).map(|vertex| model.positions[vertex].as_dvec3());
             let normals_at = |end: usize| at_edge.iter().map(move |side| normals[unpair(side.1)[end]]);
             curves.push([handle(high - low, normals_at(0)), handle(low - high, normals_at(1))]);
             for at_line in at_edge.chunk_by(|a, b| a.1 == b.1) {
@@ -231,12 +231,12 @@ impl Network {
                 lines.push(Line { curve: curves.len() as u32 - 1, first: UNNUMBERED });
             }
         }
-        Self { place, curves, lines, face_lines }
+        Self { representative, curves, lines, face_lines }
     }
 
     /// A side of a face. Its new vertices are added to `fine` unless another face has added them.
     fn side(&mut self, fine: &mut Model, normals: &[DVec3], segments: u32, ends: [u32; 2], line: u32) -> Side {
-        let (along, turned) = along_line(&self.place, ends);
+        let (along, turned) = along_line(&self.representative, ends);
         let line = &mut self.lines[line as usize];
         let handles = self.curves[line.curve as usize];
         if line.first == UNNUMBERED {
@@ -260,8 +260,8 @@ impl Network {
 }
 
 /// The ends of a side in a direction that is common to all faces, and whether the side has the opposite direction.
-fn along_line(place: &[u32], [from, to]: [u32; 2]) -> ([u32; 2], bool) {
-    let turned = (place[from as usize], from) > (place[to as usize], to);
+fn along_line(representative: &[u32], [from, to]: [u32; 2]) -> ([u32; 2], bool) {
+    let turned = (representative[from as usize], from) > (representative[to as usize], to);
     (if turned { [to, from] } else { [from, to] }, turned)
 }
 

@@ -173,7 +173,7 @@ impl Flattener<'_> {
             Placement::Skinned(_) => Influences::read(document, part.primitive, vertices).map_err(fail)?,
         };
         let target = (&mut self.model.positions, &mut self.model.normals);
-        let mirrored = pose::place(placement, influences.as_ref(), &positions, &normals, target).map_err(fail)?;
+        let mirrored = pose::transform(placement, influences.as_ref(), &positions, &normals, target).map_err(fail)?;
 
         let corners = match indices {
             None => None,
@@ -294,7 +294,7 @@ impl Flattener<'_> {
             }
         };
         let first = first as u32;
-        let placed = |[a, b, c]: [u32; 3]| {
+        let wound = |[a, b, c]: [u32; 3]| {
             let [b, c] = if mirrored.face(a) { [c, b] } else { [b, c] };
             [first + a, first + b, first + c]
         };
@@ -302,13 +302,13 @@ impl Flattener<'_> {
         match mode {
             Mode::TriangleStrip => faces.extend(corners.windows(3).enumerate().map(|(i, w)| {
                 // Every other triangle of a strip has the opposite winding.
-                placed(if i % 2 == 0 { [w[0], w[1], w[2]] } else { [w[0], w[2], w[1]] })
+                wound(if i % 2 == 0 { [w[0], w[1], w[2]] } else { [w[0], w[2], w[1]] })
             })),
             Mode::TriangleFan => {
                 let around = corners.get(1..).unwrap_or(&[]);
-                faces.extend(around.windows(2).map(|w| placed([w[0], w[1], corners[0]])));
+                faces.extend(around.windows(2).map(|w| wound([w[0], w[1], corners[0]])));
             }
-            _ => faces.extend(corners.as_chunks::<3>().0.iter().map(|&face| placed(face))),
+            _ => faces.extend(corners.as_chunks::<3>().0.iter().map(|&face| wound(face))),
         }
     }
 

@@ -204,7 +204,7 @@ impl Influences {
 ///
 /// # Errors
 /// A vertex with a missing joint.
-pub(super) fn place(
+pub(super) fn transform(
     placement: &Placement,
     influences: Option<&Influences>,
     positions: &[[f32; 3]],
