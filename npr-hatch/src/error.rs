@@ -51,7 +51,7 @@ pub enum HatchError {
         high: f32,
     },
     /// The first tone with crosswise strokes does not exist.
-    #[error("crosswise strokes begin with tone {tone}, but there are {tones} tones, numbered from 0")]
+    #[error("crosswise strokes are to begin with tone {tone} of {tones}, numbered from 0")]
     CrossFrom {
         /// Index of the tone; 0 is the lightest.
         tone: usize,
@@ -65,7 +65,7 @@ pub enum HatchError {
         candidates: u32,
     },
     /// The strokes are too faint to reach a tone.
-    #[error("tone {tone} ({asked}) cannot be reached at {side} texels: {strokes} strokes give {reached}")]
+    #[error("tone {tone} ({asked}) is out of reach at {side} texels: {strokes} strokes give {reached}")]
     Unreachable {
         /// Index of the tone.
         tone: usize,
@@ -156,7 +156,7 @@ pub enum HatchError {
         expected: u32,
     },
     /// The file does not begin with [`crate::store::MAGIC`].
-    #[error("not a tonal art map: the file begins with {found:02x?}")]
+    #[error("no tonal art map: the file begins with {found:02x?}")]
     Magic {
         /// The first bytes of the file, at most eight.
         found: Vec<u8>,

@@ -364,7 +364,7 @@ fn bad_parameters_are_errors() {
         error(TamParameters { length: [0.5, 0.4], ..default() }),
         "length is the range from 0.5 to 0.4: the end must not be below the start"
     );
-    assert!(error(TamParameters { cross_from: Some(6), ..default() }).contains("tone 6, but there are 6 tones"));
+    assert!(error(TamParameters { cross_from: Some(6), ..default() }).contains("with tone 6 of 6"));
     for candidates in [0, 5000] {
         let placement = Placement::BestOf { candidates };
         assert!(error(TamParameters { placement, ..default() }).contains(&format!("{candidates} candidates")));

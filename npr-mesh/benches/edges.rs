@@ -1,6 +1,6 @@
-//! Edge search against what bounds it: sorting bare edge keys (what most systems do first) and moving the bytes.
+//! The edge search compared with two lower bounds: sorting bare edge keys, and copying the bytes.
 //!
-//! `cargo bench -p npr-mesh`. One thread, fresh buffers, minimum over interleaved rounds; read the ratios.
+//! `cargo bench -p npr-mesh`. One thread, new buffers, minimum over interleaved rounds; the ratios are significant.
 #![allow(clippy::print_stdout)]
 
 use glam::Vec3;
@@ -58,12 +58,12 @@ fn main() {
     let (name, model) = if bunny.exists() {
         ("bunny", npr_mesh::load(bunny, &Default::default()).expect("the bunny loads").model)
     } else {
-        ("torus (the bunny is not there)", npr_mesh::embedded::torus(1.0, 0.4, 264, 132))
+        ("torus (the bunny is missing)", npr_mesh::embedded::torus(1.0, 0.4, 264, 132))
     };
     bench(name, &model, 30);
     let fine = subdivide_midpoint(&subdivide_midpoint(&model));
     bench(&format!("{name}, subdivided twice"), &fine, 7);
-    // In steps of a prime that is no divisor of their number.
+    // In steps of a prime that does not divide the number of faces.
     let count = fine.faces.len() as u64;
     let shuffled = (0..count).map(|i| fine.faces[(i * 2_654_435_761 % count) as usize]).collect();
     bench("the same, faces shuffled", &Model { faces: shuffled, ..fine }, 5);

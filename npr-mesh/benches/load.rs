@@ -1,6 +1,6 @@
-//! From an OBJ file to edges, against tobj alone.
+//! Loading an OBJ file and finding its edges, compared with tobj alone.
 //!
-//! `cargo bench -p npr-mesh --bench load`. One thread, minimum over interleaved rounds; read the ratios.
+//! `cargo bench -p npr-mesh --bench load`. One thread, minimum over interleaved rounds; the ratios are significant.
 #![allow(clippy::print_stdout)]
 
 use npr_mesh::edges;
@@ -54,10 +54,10 @@ fn main() {
     }
     println!("{}", path.file_name().map(|name| name.to_string_lossy()).unwrap_or_default());
     println!("  tobj, triangulated, single index   {bare:8.2} ms  1.00");
-    println!("  loaded, checked, normals made      {load:8.2} ms  {:.2}", load / bare);
+    println!("  loaded, checked, normals computed  {load:8.2} ms  {:.2}", load / bare);
     println!("  the same and edges                 {whole:8.2} ms  {:.2}", whole / bare);
     if path == generated {
-        // Left over in a temporary folder it would do no harm.
+        // A failure is harmless: the file is in a temporary folder.
         let _ = std::fs::remove_file(&generated);
     }
 }

@@ -1,5 +1,5 @@
-//! What kinds of edges a model has: `cargo run -p npr-mesh --example topology -- model.obj`, or without a file those
-//! of the teapot.
+//! Counts the edges of a model by kind: `cargo run -p npr-mesh --example topology -- model.obj`. Without a file it uses the
+//! teapot.
 #![allow(clippy::print_stdout)]
 
 use npr_mesh::edges::{EdgeKind, find};
@@ -27,7 +27,7 @@ fn read(path: PathBuf) -> Result<Model, LoadError> {
     Ok(npr_mesh::load(&path, &Default::default())?.model)
 }
 
-/// A build without loaders knows no format.
+/// Without loaders every format is unknown.
 #[cfg(not(any(feature = "obj", feature = "gltf")))]
 fn read(path: PathBuf) -> Result<Model, LoadError> {
     Err(LoadError::UnknownFormat { path })

@@ -1,20 +1,20 @@
-//! Every unique edge of a model, with its faces, its kind and its dihedral angle.
+//! The unique edges of a model, with their faces, kinds and dihedral angles.
 //!
-//! # Rules for topology that is not that of a closed surface
+//! # Rules for non-manifold and degenerate topology
 //!
 //! - Vertices at exactly equal positions are one vertex ([`crate::weld`]).
-//! - A diagonal that triangulation added (an edge between two faces of one polygon) is no edge, and a polygon's
-//!   faces all have the polygon's Newell normal. Where a polygon is *folded* along its diagonals, though, by more than
-//!   [`EdgeOptions::fold_rad`], some of its triangles can be turned towards an eye and others away. Its diagonals are
-//!   never creases, but its contour may run along them, so they are listed apart ([`Edges::folds`]).
-//! - An edge with one face is a *boundary*, with two a *two-face* edge, with more *non-manifold*. A face that runs
-//!   over one edge twice (two of its corners are at one place) counts twice there.
-//! - Two faces that run over their edge in the same direction are wound oppositely; the dihedral angle is that of
-//!   the surface, with one of them turned round. So a face that a modeller turned by mistake makes no crease.
+//! - A diagonal that triangulation added, an edge between two faces of one polygon, is not an edge. All faces of a
+//!   polygon have its Newell normal. If a polygon is *folded* along its diagonals by more than
+//!   [`EdgeOptions::fold_rad`], some of its triangles can be front-facing and others back-facing. Its diagonals are
+//!   never creases, but a contour may run along them, so they are listed separately ([`Edges::folds`]).
+//! - An edge with one face is a *boundary* edge, with two faces a *two-face* edge, with more a *non-manifold* edge. A
+//!   face with two corners at one position that contains an edge twice counts twice.
+//! - Two faces that traverse their common edge in the same direction have opposite windings. The dihedral angle is
+//!   then computed with one normal negated, so that a face with the wrong winding creates no crease.
 //! - A face of zero area has no normal, and its edges have no dihedral angle.
-//! - For drawing, faces that add nothing to be seen are best left out ([`EdgeOptions::skip_redundant`]): a second
-//!   face over the same three corners, whichever way it is wound, and a face with two corners at one place. Each
-//!   would make edges non-manifold that are not.
+//! - For drawing, redundant faces should be skipped ([`EdgeOptions::skip_redundant`]): duplicate faces with the same
+//!   three corners in any winding, and faces with two corners at one position. They would make their edges
+//!   non-manifold.
 
 mod diagonals;
 mod folds;
@@ -27,31 +27,32 @@ pub use normal::{face_normals, has_zero_area, triangle_normal};
 use crate::weld;
 use glam::Vec3;
 
-/// Stands where there is no face.
+/// Represents a missing face.
 pub const NO_FACE: u32 = u32::MAX;
 
-/// More faces than this [`find`] does not take.
+/// The maximum number of faces that [`find`] accepts.
 pub const MOST_FACES: usize = FACE as usize;
 
-/// What [`find`] shall do.
+/// Options of [`find`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EdgeOptions {
-    /// Vertices within this distance are one; 0 means those at exactly equal positions. World units.
+    /// Vertices within this distance are merged, in units of the positions. 0 merges vertices at exactly equal
+    /// positions.
     pub weld_tolerance: f32,
-    /// Leave out faces that lie exactly on another one or have two corners at one place. For drawing this is right;
-    /// for counting what a file holds it is not.
+    /// Whether to skip duplicate faces and faces with two corners at one position. Use `true` for drawing, and
+    /// `false` to analyse the content of a file.
     pub skip_redundant: bool,
-    /// A polygon that turns by more than this at one of its diagonals, or lacks more than this of folding back, is
-    /// folded: all of its diagonals are listed in [`Edges::folds`]. From π/2 on none is.
+    /// The angle in radians from which on a polygon is folded: if the normals at one of its diagonals differ by more
+    /// than this, and by less than π minus this, all of its diagonals are listed in [`Edges::folds`]. From π/2 on no
+    /// polygon is folded.
     pub fold_rad: f32,
 }
 
-/// [`EdgeOptions::fold_rad`] by default: 2°.
+/// The default of [`EdgeOptions::fold_rad`], 2°.
 ///
-/// Of a polygon that is turned as a whole and stands out less, the contour strays by a quarter of its breadth times the
-/// sine of the angle at most, half a pixel where it is 60 px broad. With 1° quads that are all but flat and seen edge-on
-/// get a second line within a pixel of the first; with 5° the outlines of a smooth model made of quads already lose
-/// pieces.
+/// For a polygon folded by a smaller angle, the contour deviates by at most a quarter of its width times the sine of
+/// the angle, which is half a pixel at a width of 60 px. With 1°, nearly flat quads seen edge-on get a second line
+/// within a pixel of the first; with 5°, the outlines of smooth models made of quads have gaps.
 pub const FOLD_RAD: f32 = 0.035;
 
 impl Default for EdgeOptions {
@@ -60,46 +61,46 @@ impl Default for EdgeOptions {
     }
 }
 
-/// How many faces meet at an edge.
+/// The number of faces at an edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EdgeKind {
-    /// Exactly one.
+    /// One face.
     Boundary,
-    /// Exactly two.
+    /// Two faces.
     TwoFace,
-    /// Three or more.
+    /// Three or more faces.
     NonManifold,
 }
 
-/// A unique edge, in 16 bytes.
+/// A unique edge, 16 bytes.
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub struct Edge {
-    /// The two vertices, representatives of their positions, in the direction in which the first face runs.
+    /// The two vertices, as representatives of their positions, in the direction of the first face.
     pub ends: [u32; 2],
-    /// The first two faces, and what else is known of the edge in the two upper bits of each.
+    /// The first two faces, and flags in the upper two bits of each.
     packed: [u32; 2],
 }
 
 const _: () = assert!(size_of::<Edge>() == 16);
 
-/// The bits of [`Edge::packed`] that number a face; all of them set where there is none.
+/// The bits of [`Edge::packed`] that hold a face index; all set if there is no face.
 const FACE: u32 = (1 << 30) - 1;
-/// In the first of [`Edge::packed`].
+/// A flag in the first element of [`Edge::packed`].
 const NON_MANIFOLD: u32 = 1 << 30;
-/// In the first of [`Edge::packed`].
+/// A flag in the first element of [`Edge::packed`].
 const TWO_MATERIALS: u32 = 1 << 31;
-/// In the second of [`Edge::packed`].
+/// A flag in the second element of [`Edge::packed`].
 const WOUND_OPPOSITELY: u32 = 1 << 31;
 
 impl Edge {
-    /// The first two faces that have this edge; the second is [`NO_FACE`] at a boundary.
+    /// The first two faces of the edge. The second is [`NO_FACE`] at a boundary.
     #[inline]
     pub fn faces(&self) -> [u32; 2] {
         self.packed.map(|packed| if packed & FACE == FACE { NO_FACE } else { packed & FACE })
     }
 
-    /// How many faces meet here.
+    /// The number of faces at the edge.
     #[inline]
     pub fn kind(&self) -> EdgeKind {
         if self.packed[0] & NON_MANIFOLD != 0 {
@@ -111,40 +112,40 @@ impl Edge {
         }
     }
 
-    /// Whether its first two faces run over it in the same direction.
+    /// Whether the first two faces traverse the edge in the same direction.
     #[inline]
     pub fn wound_oppositely(&self) -> bool {
         self.packed[1] & WOUND_OPPOSITELY != 0
     }
 
-    /// Whether faces of different materials meet here.
+    /// Whether faces of different materials meet at the edge.
     #[inline]
     pub fn joins_two_materials(&self) -> bool {
         self.packed[0] & TWO_MATERIALS != 0
     }
 }
 
-/// What [`find`] finds.
+/// The result of [`find`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Edges {
     /// The unique edges.
     pub edges: Vec<Edge>,
-    /// Per face its unit normal (of a polygon's face, the polygon's), or zero where the area is zero.
+    /// Per face its unit normal, that of the polygon for a face of a polygon, or zero for a face of zero area.
     pub face_normals: Vec<Vec3>,
     /// Per vertex the lowest-numbered vertex at its position.
     pub representative: Vec<u32>,
     /// (edge, face) for the third and further faces of non-manifold edges, sorted by edge.
     pub further_faces: Vec<(u32, u32)>,
-    /// Per face whether it was left out as redundant; empty if none was.
+    /// Per face whether it was skipped as redundant; empty if none was.
     pub skipped: Vec<bool>,
-    /// The diagonals of folded polygons, each with its two triangles. Apart from [`Edges::edges`]: for counting what a
-    /// file holds they are no edges, and for drawing they are silhouettes or nothing.
+    /// The diagonals of folded polygons, each with its two triangles. They are not edges of the file, and are drawn
+    /// only where they are silhouettes.
     pub folds: Vec<Edge>,
 }
 
 impl Edges {
-    /// Cosine of the angle between the two faces' normals, wound alike: 1 where the surface goes straight on, −1
-    /// where it folds back. `None` at a boundary or non-manifold edge and beside a face of zero area.
+    /// The cosine of the angle between the normals of the two faces in equal winding: 1 where the surface is flat, −1
+    /// where it folds back. `None` at boundary and non-manifold edges and beside faces of zero area.
     #[inline]
     pub fn cos_dihedral(&self, edge: &Edge) -> Option<f32> {
         if edge.kind() != EdgeKind::TwoFace {
@@ -152,22 +153,21 @@ impl Edges {
         }
         let [n0, n1] = edge.faces().map(|face| self.face_normals[face as usize]);
         let cos = n0.dot(n1);
-        // The normals are unit or zero, and a dot product of exactly 0 is a right angle far more often than a face
-        // of zero area.
+        // Normals are unit or zero. A dot product of exactly 0 usually is a right angle, so it is checked first.
         if cos == 0.0 && (n0 == Vec3::ZERO || n1 == Vec3::ZERO) {
             return None;
         }
         Some(if edge.wound_oppositely() { -cos } else { cos })
     }
 
-    /// What is irregular and was settled by a rule, as lines for people: faces that were left out, opposite windings.
+    /// Messages about irregular topology that was resolved by a rule: skipped faces and opposite windings.
     pub fn warnings(&self) -> Vec<String> {
         let skipped = self.skipped.iter().filter(|skipped| **skipped).count();
         let opposite = |edge: &&Edge| edge.kind() == EdgeKind::TwoFace && edge.wound_oppositely();
         let opposite = self.edges.iter().filter(opposite).count();
         [
-            (skipped, "faces lie on another one or have two corners at one place: they have no edges of their own"),
-            (opposite, "edges have faces wound oppositely: they make no crease"),
+            (skipped, "faces are duplicates or have two corners at one position: they are skipped"),
+            (opposite, "edges have faces of opposite winding: they are not creases"),
         ]
         .iter()
         .filter(|(count, _)| *count > 0)
@@ -175,8 +175,8 @@ impl Edges {
         .collect()
     }
 
-    /// The angle by which the surface turns at an edge: 0 where it goes straight on, π where it folds back.
-    /// `None` as for [`Edges::cos_dihedral`].
+    /// The dihedral angle in radians: 0 where the surface is flat, π where it folds back. `None` as for
+    /// [`Edges::cos_dihedral`].
     pub fn dihedral_rad(&self, edge: &Edge) -> Option<f32> {
         self.cos_dihedral(edge).map(|cos| cos.clamp(-1.0, 1.0).acos())
     }
@@ -185,20 +185,20 @@ impl Edges {
 /// Finds all unique edges.
 ///
 /// - `positions`: per vertex.
-/// - `faces`: three vertices each, every one below `positions.len()`.
+/// - `faces`: three vertices each, every index below `positions.len()`.
 /// - `face_polygon`: as [`crate::Model::face_polygon`], empty or per face.
-/// - `face_material`: per face, or empty where materials do not matter.
+/// - `face_material`: per face, or empty to ignore materials.
 ///
-/// The edges are sorted by their lower ends, those of one by their upper ends, and each one's faces come in ascending
-/// order.
+/// The edges are sorted by their lower and then by their upper vertex. The faces of an edge are in ascending order.
 ///
-/// Memory: 16 bytes an edge and a fold, 12 a face and 4 a vertex for what is returned; on the way the weld's, at most 24
-/// bytes a vertex, and then 24 bytes a face and 4 a vertex. At most `3 * faces.len()` edges. Linear in faces and vertices;
-/// n log n in the faces around a vertex that has many.
+/// Memory: the result takes 16 bytes per edge and per fold, 12 bytes per face and 4 bytes per vertex. Temporarily,
+/// welding takes up to 24 bytes per vertex, and the search 24 bytes per face and 4 bytes per vertex. There are at
+/// most `3 * faces.len()` edges. The time is linear in faces and vertices, and n log n in the number of faces at a
+/// vertex.
 ///
 /// # Panics
-/// If a face names a vertex that is not there, a per-face array has another length than stated, or there are more than
-/// [`MOST_FACES`] faces.
+/// If a face has an invalid vertex index, if a per-face array has another length than stated, or if there are more
+/// than [`MOST_FACES`] faces.
 pub fn find(
     positions: &[Vec3],
     faces: &[[u32; 3]],

@@ -1,68 +1,67 @@
-//! What can be wrong with a model file.
+//! Errors of loading a model.
 
 use std::path::PathBuf;
 
-/// Why a model could not be loaded. Every variant names the file.
+/// An error of loading a model. Every variant names the file.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum LoadError {
-    /// The ending is none that a loader of this build answers to.
+    /// The file extension belongs to no enabled loader.
     #[error("{}: unknown model format (expected .obj, .gltf or .glb)", path.display())]
     UnknownFormat {
         /// The file.
         path: PathBuf,
     },
-    /// The file, or one that it refers to, could not be read.
+    /// The file, or a file that it refers to, could not be read.
     #[error("{}: {source}", path.display())]
     Read {
         /// The file that could not be read.
         path: PathBuf,
-        /// What the system said.
+        /// The error of the operating system.
         source: std::io::Error,
     },
-    /// A file that the model names is neither in the model's own folder nor in
-    /// `LoadOptions::asset_root`.
+    /// A file that the model refers to is outside the model's folder and `LoadOptions::asset_root`.
     #[error("{}: \"{name}\" leads out of the model's folder", path.display())]
     Outside {
-        /// The model.
+        /// The model file.
         path: PathBuf,
-        /// The name in it.
+        /// The name in the model file.
         name: String,
     },
-    /// The bytes are not what the format prescribes.
+    /// The content of the file violates the format.
     #[error("{}: {fault}", path.display())]
     Malformed {
         /// The file.
         path: PathBuf,
-        /// The element and what is wrong with it.
+        /// The element and its fault.
         fault: String,
     },
-    /// Well-formed, and nothing in it to draw.
+    /// The file is valid but contains no triangle.
     #[error("{}: no triangle in it{}", path.display(), why.as_ref().map(|why| format!(" ({why})")).unwrap_or_default())]
     Empty {
         /// The file.
         path: PathBuf,
-        /// The first of what was left out, if anything was.
+        /// The first warning, if there is any.
         why: Option<String>,
     },
-    /// A required extension, or another feature, that this crate does not have.
+    /// The file requires an extension or another feature that is not supported.
     #[error("{}: needs {feature}, which is not supported", path.display())]
     Unsupported {
         /// The file.
         path: PathBuf,
-        /// What it asks for.
+        /// The required feature.
         feature: String,
     },
-    /// More of something than [`crate::Limits`] allows.
+    /// A limit of [`crate::Limits`] is exceeded.
     #[error("{}: {count} {what}, more than the limit of {limit}", path.display())]
     TooLarge {
         /// The file.
         path: PathBuf,
-        /// What there is too much of.
+        /// The counted elements.
         what: &'static str,
-        /// How much there is.
+        /// Their number.
         count: u64,
-        /// How much is allowed.
+        /// The maximum number.
         limit: u64,
     },
 }

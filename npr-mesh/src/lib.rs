@@ -1,4 +1,4 @@
-//! Model files in; clean triangles, normals and edges out.
+//! Loads model files into plain arrays of clean triangles with normals, and finds their edges.
 //!
 //! ```
 //! use npr_mesh::{edges, embedded};
@@ -7,42 +7,43 @@
 //! let found =
 //!     edges::find(&model.positions, &model.faces, &model.face_polygon, &model.face_material, &Default::default());
 //! let creases = found.edges.iter().filter(|edge| found.dihedral_rad(edge) > Some(30f32.to_radians()));
-//! assert_eq!(creases.count(), 12); // no diagonals: the cube's faces are squares
+//! assert_eq!(creases.count(), 12); // the diagonals of the cube's squares are not edges
 //! ```
 //!
-//! [`Model`] is plain arrays: positions, normals, texture coordinates, triangles. `load` fills them from `.obj`
-//! (feature `obj`), `.gltf` and `.glb` (feature `gltf`); [`embedded`] from nothing. Both features are on by default.
+//! [`Model`] consists of plain arrays: positions, normals, texture coordinates, triangles. `load` reads `.obj`
+//! (feature `obj`), `.gltf` and `.glb` (feature `gltf`); [`embedded`] has built-in models. Both features are enabled
+//! by default.
 //!
 //! # Rules
 //!
-//! - A face is the triple of its corners as loaded. Vertices at exactly equal positions are one vertex for edges, so
-//!   that texture and normal seams are no boundaries, and stay apart for shading.
-//! - A polygon of n corners becomes n − 2 triangles ([`triangulate`]). The diagonals are no edges, and all triangles of
+//! - A face is the triple of its corners as loaded. For edges, vertices at exactly equal positions are one vertex, so
+//!   that texture and normal seams are not boundaries. For shading they remain separate.
+//! - A polygon of n corners becomes n − 2 triangles ([`triangulate`]). Diagonals are not edges, and all triangles of
 //!   a polygon have its Newell normal.
-//! - What a file has no normals for gets them ([`normals`]): weighted by angle, split at creases.
-//! - A coarse model becomes round by its normals ([`pn_triangles`]): what was closed stays closed, and the edges within
-//!   a rounded face can be contours.
-//! - Non-manifold edges, opposite windings, faces without area and doubled faces each have a rule, see [`edges`]. None
-//!   of them makes a line disappear that should be seen.
-//! - A file is never trusted: indices, lengths, types and numbers are checked before use, sizes against [`Limits`],
-//!   before memory is asked for them, and what is wrong is a [`LoadError`] that names the file, the element and the
-//!   fault. What could be repaired or left out is a warning beside the model.
-//! - What a model names (materials, textures, buffers) is read from its own folder or below, and from
-//!   `LoadOptions::asset_root` if there is one; `..`, absolute names and symbolic links may lead from one place there to
-//!   another and nowhere else. Only regular files are read, and nothing from a network.
-//! - No size is too small or too large: what is computed of a model at 1e-30 or 1e30 is what it is at 1.
+//! - Missing normals are computed ([`normals`]): weighted by angle, and split at creases.
+//! - Coarse models can be smoothed by their normals ([`pn_triangles`]): closed surfaces remain closed, and edges
+//!   within a smoothed face can be contours.
+//! - There is a rule for non-manifold edges, opposite windings, faces of zero area and duplicate faces, see
+//!   [`edges`]. None of them removes a line that should be visible.
+//! - Files are not trusted: indices, lengths, types and numbers are checked before use, and sizes are checked against
+//!   [`Limits`] before memory is allocated. A violation is a [`LoadError`] that names the file, the element and the
+//!   fault. Repaired or skipped elements are reported as warnings.
+//! - Files that a model refers to (materials, textures, buffers) are read only from the model's own folder and its
+//!   subfolders, and from `LoadOptions::asset_root`. `..`, absolute names and symbolic links must not leave these
+//!   folders. Only regular files are read, and nothing from a network.
+//! - Results do not depend on the scale of the model: sizes of 1e-30 or 1e30 work like 1.
 //!
 //! # Colours
 //!
-//! A material's colour and the vertex colours are linear, textures are sRGB-encoded bytes. Their product is taken in
-//! linear light and encoded once.
+//! Material colours and vertex colours are linear, textures are sRGB-encoded bytes. They are multiplied in linear
+//! light and encoded once.
 //!
 //! # Sources
 //!
 //! - D. Card, J. L. Mitchell: *Non-Photorealistic Rendering with Pixel and Vertex Shaders*, in *Direct3D ShaderX*,
 //!   2002, "Rendering Outlines": unique edges with the normals of their two faces, the negated normal at a boundary.
 //! - A. Vlachos, J. Peters, C. Boyd, J. L. Mitchell: *Curved PN Triangles*, I3D 2001: [`pn_triangles`].
-//! - M. Newell's teapot: [`embedded::teapot`]. Those of the algorithms are named where they are used.
+//! - M. Newell's teapot: [`embedded::teapot`]. Sources of algorithms are cited where they are used.
 #![warn(missing_docs)]
 
 pub mod edges;
@@ -58,7 +59,7 @@ pub mod subdivide;
 pub mod triangulate;
 pub mod weld;
 
-/// The crate of the vectors and matrices in this API.
+/// The vector and matrix types in this API.
 pub use glam;
 
 pub use error::LoadError;

@@ -1,31 +1,32 @@
-//! How large a file may be: all bounds in one place.
+//! Limits on the size of files.
 
-/// Bounds on what a loader accepts. Exceeding one is [`crate::LoadError::TooLarge`].
+/// Limits on what a loader accepts. Exceeding one is [`crate::LoadError::TooLarge`].
 ///
-/// With the defaults a small file, whatever it says, is loaded in less than 2 GiB; any model that fits a machine of
-/// 16 GiB is loaded too, unless it repeats itself more often, or has more texture, than they say. Raise them for those.
+/// With the defaults, a small file is loaded in less than 2 GiB of memory whatever its content, and any model that
+/// fits a machine of 16 GiB is loaded, unless it exceeds the limits on repetition or texture size. Raise those for
+/// such models.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
     /// Bytes of the model file, and of all files together that it refers to.
     pub file_bytes: u64,
-    /// Vertices of the flattened scene, all instances counted.
+    /// Vertices of the flattened scene, including all instances.
     pub vertices: u64,
-    /// Triangles of the flattened scene, all instances counted; never more than [`crate::edges::MOST_FACES`].
+    /// Triangles of the flattened scene, including all instances; never more than [`crate::edges::MOST_FACES`].
     pub faces: u64,
-    /// Vertices, and as many triangles, that need no bytes of their own in a file: beyond these there must be 8 bytes
-    /// in the file and its buffers for each. Bounds what instances and accessors without data make of a few bytes.
+    /// Vertices, and likewise triangles, that need not be backed by data. Above this number there must be 8 bytes per
+    /// element in the file and its buffers. It limits the amplification by instances and by accessors without data.
     pub repeated: u64,
     /// Corners of one polygon.
     pub polygon_corners: u64,
     /// Nodes of a glTF file.
     pub nodes: u64,
-    /// Primitives of glTF meshes, all instances counted.
+    /// Primitives of glTF meshes, including all instances.
     pub instances: u64,
-    /// Displacements by morph targets and weights of joints that are read, all instances counted.
+    /// Morph target displacements and joint weights that are read, including all instances.
     pub displacements: u64,
     /// Texels of one image.
     pub texels: u64,
-    /// Texels of all images of a model; one that is looked up in two ways counts twice.
+    /// Texels of all images of a model; an image with two different samplers counts twice.
     pub texels_in_all: u64,
 }
 

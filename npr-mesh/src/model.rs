@@ -1,54 +1,55 @@
-//! The triangles of a scene, as plain arrays.
+//! The triangles of a scene as plain arrays.
 
 use glam::{Vec2, Vec3, Vec4};
 
-/// A whole scene, flattened: every mesh instance in world space, posed, one vertex array.
+/// A flattened scene: every mesh instance posed and in world space, in one vertex array.
 ///
-/// A *vertex* here is a shading vertex: a position with the normal, texture coordinate and colour that go
-/// with it. Several may stand at one position (at a UV seam, say); for edges they are one, which is
-/// [`crate::edges`]'s business.
+/// A *vertex* is a shading vertex: a position with its normal, texture coordinate and colour. Several vertices may
+/// have one position, for instance at a texture seam; [`crate::edges`] treats them as one.
 ///
-/// Arrays that run beside another have its length or, where stated, may be empty.
+/// Parallel arrays have equal lengths or, where stated, may be empty.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Model {
-    /// Per vertex: where it is, world space, right-handed, Y up.
+    /// Per vertex: the position in world space, right-handed, Y up.
     pub positions: Vec<Vec3>,
     /// Per vertex: the unit normal for shading.
     pub normals: Vec<Vec3>,
-    /// Per vertex, or empty: texture coordinate, origin at the image's upper left (v grows downwards).
+    /// Per vertex, or empty: the texture coordinate with the origin at the upper left of the image (v increases
+    /// downwards).
     pub uvs: Vec<Vec2>,
-    /// Per vertex, or empty: a factor on the material's colour, linear RGBA.
+    /// Per vertex, or empty: a linear RGBA factor on the material's colour.
     pub colors: Vec<Vec4>,
-    /// Three vertices each, counter-clockwise seen from outside.
+    /// Three vertex indices each, counter-clockwise seen from outside.
     pub faces: Vec<[u32; 3]>,
-    /// Per face, or empty where faces have no material: its material, an index into [`Model::materials`]. A face without
-    /// material is opaque.
+    /// Per face, or empty if faces have no material: an index into [`Model::materials`]. Faces without material are
+    /// opaque.
     pub face_material: Vec<u32>,
-    /// Per face, or empty where all are of one: the mesh that it belongs to, from 0. In a glTF file a node's mesh, in
-    /// an `.obj` an object or group; what is appended stays a mesh of its own.
+    /// Per face, or empty if there is one mesh: the index of its mesh. A mesh is the mesh of a node in a glTF file,
+    /// and an object or group in an `.obj` file. Appended models keep their meshes.
     pub face_mesh: Vec<u32>,
-    /// Per face, or empty where every face is a polygon by itself: the polygon of the file that the face was
-    /// cut from. Faces of one polygon stand next to each other and their numbers ascend. An edge between two
-    /// faces of one polygon is a diagonal that triangulation added: it is never a line.
+    /// Per face, or empty if every face is a polygon of its own: the index of the polygon of the file that the face
+    /// was cut from. Faces of one polygon are adjacent and the indices ascend. An edge between two faces of one
+    /// polygon is a diagonal added by triangulation and never a line.
     pub face_polygon: Vec<u32>,
-    /// At least as many as [`Model::face_material`] refers to.
+    /// The materials; at least as many as [`Model::face_material`] refers to.
     pub materials: Vec<Material>,
-    /// Images that the materials refer to.
+    /// The images that the materials refer to.
     pub textures: Vec<Texture>,
 }
 
-/// What a face is made of, as far as a picture of flat tones needs it.
+/// A material, reduced to what flat shading needs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
-    /// The file's name for it, or empty.
+    /// The name in the file, or empty.
     pub name: String,
-    /// Linear RGBA. Multiplied with the texture and the vertex colour in linear light, then encoded once.
+    /// Linear RGBA. It is multiplied with the texture and the vertex colour in linear light; the product is encoded
+    /// once.
     pub base_color: Vec4,
     /// Index into [`Model::textures`].
     pub texture: Option<u32>,
-    /// What the alpha of the product means.
+    /// The meaning of the alpha of the product.
     pub alpha_mode: AlphaMode,
-    /// Whether the back of a face is shaded too (with its normal turned round) or culled.
+    /// Whether back faces are shaded, with the normal negated, or culled.
     pub double_sided: bool,
 }
 
@@ -64,58 +65,58 @@ impl Default for Material {
     }
 }
 
-/// What becomes of a surface's alpha (glTF 2.0, 3.9.4 "Alpha Coverage").
+/// The meaning of a surface's alpha (glTF 2.0, 3.9.4 "Alpha Coverage").
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum AlphaMode {
-    /// Ignored: the surface is solid.
+    /// Alpha is ignored; the surface is opaque.
     #[default]
     Opaque,
-    /// Solid where alpha is at least the cutoff, absent elsewhere.
+    /// Opaque where alpha is at least the cutoff, and invisible elsewhere.
     Mask {
-        /// The least alpha that is kept, 0..=1 as a rule; above 1 nothing is.
+        /// The minimum alpha that is visible, usually 0..=1; above 1 nothing is visible.
         cutoff: f32,
     },
-    /// Laid over what is behind it; drawn after everything else, from back to front.
+    /// Blended over the surfaces behind; drawn after all others from back to front.
     Blend,
 }
 
-/// An image in memory and how it is to be looked up.
+/// An image in memory and its sampling.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Texture {
-    /// Where it came from, for messages.
+    /// The origin of the image, for messages.
     pub name: String,
-    /// Texels.
+    /// Width in texels.
     pub width: u32,
-    /// Texels.
+    /// Height in texels.
     pub height: u32,
     /// `width * height * 4` bytes, rows from the top: sRGB-encoded red, green, blue, and linear alpha.
     pub rgba8: Vec<u8>,
-    /// Outside 0..1, for u and v.
+    /// The addressing outside 0..1 along u and v.
     pub wrap: [Wrap; 2],
-    /// Whether magnification interpolates (`true`) or shows texels as squares.
+    /// Whether magnification interpolates linearly or shows the nearest texel.
     pub smooth: bool,
 }
 
-/// What a texture is outside 0..1.
+/// The addressing of a texture outside 0..1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Wrap {
-    /// Tiled.
+    /// The texture repeats.
     #[default]
     Repeat,
-    /// Tiled, every other tile mirrored.
+    /// The texture repeats, mirrored in every other tile.
     Mirror,
-    /// The border texel goes on.
+    /// The border texels continue.
     Clamp,
 }
 
 impl Model {
-    /// The material of a face, or `None` where it has none.
+    /// The material of a face, or `None` if it has none.
     pub fn material_of(&self, face: u32) -> Option<&Material> {
         self.materials.get(*self.face_material.get(face as usize)? as usize)
     }
 
-    /// Where faces have no material ([`Model::face_material`] is empty): adds [`Material::default`] and gives it to all of
-    /// them.
+    /// If faces have no material ([`Model::face_material`] is empty), adds [`Material::default`] and assigns it to
+    /// all faces.
     pub fn fill_face_material(&mut self) {
         if self.face_material.is_empty() && !self.faces.is_empty() {
             self.face_material = vec![self.materials.len() as u32; self.faces.len()];
@@ -123,11 +124,11 @@ impl Model {
         }
     }
 
-    /// Adds all of `other` to this scene.
+    /// Appends another scene.
     ///
-    /// Optional arrays that only one side has are filled up on the other: texture coordinates with zeros,
-    /// colours with white, polygons with one per face, materials with [`Material::default`]. The other's meshes stay apart
-    /// from those of this scene.
+    /// Optional arrays that only one of the scenes has are filled for the other: texture coordinates with zeros,
+    /// colours with white, polygons with one per face, materials with [`Material::default`]. The meshes of both
+    /// scenes remain distinct.
     pub fn append(&mut self, other: &Model) {
         let has_materials = !self.face_material.is_empty() || !other.face_material.is_empty();
         if has_materials {
@@ -169,7 +170,7 @@ impl Model {
         }
     }
 
-    /// The corners of the smallest axis-aligned box around all vertices that a face uses, or `None` without faces.
+    /// The corners of the axis-aligned bounding box of all vertices that faces use, or `None` without faces.
     pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
         let mut corners = self.faces.iter().flatten().map(|&v| self.positions[v as usize]);
         let first = corners.next()?;

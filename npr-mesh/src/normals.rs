@@ -1,66 +1,66 @@
-//! Vertex normals where a file has none.
+//! Computes missing vertex normals.
 
 use crate::Model;
 use crate::weld::weld_exact;
 use glam::{DVec3, Vec3};
 
-/// Makes a normal for every vertex that has none, and makes the given ones unit.
+/// Computes a normal for every vertex without one, and normalises the given normals.
 ///
-/// A vertex has none if its normal is exactly zero or not finite, or if [`Model::normals`] is too short for it.
+/// A normal is missing if it is exactly zero or not finite, or if [`Model::normals`] is too short.
 ///
-/// Faces around one position that share an edge there belong to one smooth group if the angle between their normals is
-/// at most `crease_angle_rad` (0..=π), and so on from edge to edge. The normal of a group is the sum of its faces'
-/// unit normals, each weighted with the face's angle at the position (G. Thürmer, C. Wüthrich, "Computing Vertex
-/// Normals from Polygonal Facets", 1998), so that it does not depend on how a surface is cut into triangles. A
-/// vertex whose faces are in several groups is split: the lowest group keeps it, the others get copies, appended
-/// to all vertex arrays.
+/// Faces at one position that share an edge there belong to one smooth group if the angle between their normals is at
+/// most `crease_angle_rad` (0..=π), transitively. The normal of a group is the sum of its faces' unit normals
+/// weighted with the face's angle at the position (G. Thürmer, C. Wüthrich, "Computing Vertex Normals from Polygonal
+/// Facets", 1998), which does not depend on the triangulation. A vertex whose faces are in several groups is split:
+/// the lowest group keeps the vertex, and the others get copies, which are appended to all vertex arrays.
 ///
-/// - Vertices at exactly equal positions are one position, and a UV seam leaves no trace in the normals.
-/// - Where the normals of all faces at a position are within half the crease angle of their mean, they are one group
-///   even if some share no edge.
+/// - Vertices at exactly equal positions are one position, so texture seams do not affect normals.
+/// - If the normals of all faces at a position are within half the crease angle of their mean, the faces are one
+///   group even if some share no edge.
 /// - Faces of one polygon ([`Model::face_polygon`]) have the polygon's normal and are always in one group.
-/// - Two faces of opposite winding are compared with one of the normals turned round; each then gets the normal of the
-///   group on its own front.
-/// - A face whose height is within the rounding of its coordinates adds nothing. Two faces on both sides of it are
-///   compared as if they met. It takes the normal of a neighbour, of any face at the position, or up (+Y).
+/// - Two faces of opposite winding are compared with one normal negated; each then gets the normal of the group on
+///   its own front side.
+/// - A face whose height is within the rounding of its coordinates does not contribute. Two faces on both sides of it
+///   are compared as if they were adjacent. It gets the normal of a neighbour, of any face at the position, or +Y.
 ///
-/// Afterwards all normals are finite and unit. The time is about linear, the memory about 60 bytes per face.
+/// Afterwards all normals are finite and of unit length. The time is approximately linear; the memory is about 60
+/// bytes per face.
 pub fn fill_missing(model: &mut Model, crease_angle_rad: f32) {
     let missing = normalize_given(model);
     if !model.faces.iter().flatten().any(|&v| missing[v as usize]) {
         return;
     }
-    let mut place = weld_exact(&model.positions);
-    let mut wanted = vec![false; place.len()];
+    let mut representative = weld_exact(&model.positions);
+    let mut wanted = vec![false; representative.len()];
     for (vertex, _) in missing.iter().enumerate().filter(|(_, m)| **m) {
-        wanted[place[vertex] as usize] = true;
+        wanted[representative[vertex] as usize] = true;
     }
     let shapes = face_shapes(model);
-    // Rounding of the positions must not part faces that meet at just the crease angle.
+    // A tolerance, so that rounding of positions does not separate faces that meet at exactly the crease angle.
     let widest = (f64::from(crease_angle_rad).clamp(0.0, std::f64::consts::PI) + 1e-5).min(std::f64::consts::PI);
     let (least_cos, half_cos) = (widest.cos() - 1e-12, (0.5 * widest).cos());
-    let means = smooth_means(model, &place, &shapes, half_cos);
+    let means = smooth_means(model, &representative, &shapes, half_cos);
     for (vertex, normal) in model.normals.iter_mut().enumerate().filter(|(vertex, _)| missing[*vertex]) {
-        let mean = means[place[vertex] as usize].as_vec3();
+        let mean = means[representative[vertex] as usize].as_vec3();
         if mean != Vec3::ZERO {
             *normal = mean;
-            wanted[place[vertex] as usize] = false;
+            wanted[representative[vertex] as usize] = false;
         }
     }
     drop(means);
-    let (first_corner, corners) = corners_by_place(model, &place, &wanted);
+    let (first_corner, corners) = corners_by_position(model, &representative, &wanted);
     let mut fan = Fan::default();
     for here in 0..wanted.len() {
         let around = &corners[first_corner[here] as usize..first_corner[here + 1] as usize];
         if !around.is_empty() {
-            fan.group(model, &place, &shapes, here as u32, around, least_cos);
+            fan.group(model, &representative, &shapes, here as u32, around, least_cos);
             fan.sum_up(&shapes, around);
-            fan.assign(model, &mut place, &missing, around);
+            fan.assign(model, &mut representative, &missing, around);
         }
     }
 }
 
-/// Per vertex, whether it has no normal; +Y stands there for now.
+/// Normalises the given normals. Returns per vertex whether its normal is missing; missing normals are set to +Y.
 fn normalize_given(model: &mut Model) -> Vec<bool> {
     model.normals.resize(model.positions.len(), Vec3::ZERO);
     model
@@ -82,30 +82,30 @@ fn normalize_given(model: &mut Model) -> Vec<bool> {
 }
 
 struct FaceShape {
-    /// Unit, of the whole polygon; zero if it has no area at all.
+    /// The unit normal of the whole polygon; zero without area.
     normal: DVec3,
-    /// Of the triangle, at its corners.
+    /// The angles at the corners of the triangle.
     angles_rad: [f32; 3],
-    /// Whether the normal is more than rounding.
+    /// Whether the normal is more than rounding error.
     sound: bool,
 }
 
-/// What a face tells before its polygon is known.
+/// Quantities of a triangle, independent of its polygon.
 #[derive(Clone, Copy, Default)]
 struct Measures {
-    /// The triangle's cross product, twice its area long.
+    /// The cross product of two sides, whose length is twice the area.
     area: DVec3,
-    /// Of the sides at the first and at the second corner.
+    /// The dot products of the sides at the first and at the second corner.
     dots: [f64; 2],
     longest_squared: f64,
     shortest_squared: f64,
-    /// The largest coordinate.
+    /// The largest absolute coordinate.
     magnitude: f32,
 }
 
 fn measure(model: &Model, face: &[u32; 3]) -> Measures {
     let [a, b, c] = face.map(|v| model.positions[v as usize]);
-    // In f64 the products of f32 coordinates neither overflow nor vanish.
+    // In f64 the products of f32 coordinates neither overflow nor underflow.
     let (ab, ac) = (b.as_dvec3() - a.as_dvec3(), c.as_dvec3() - a.as_dvec3());
     let bc = ac - ab;
     let (ab2, ac2, bc2) = (ab.length_squared(), ac.length_squared(), bc.length_squared());
@@ -118,12 +118,12 @@ fn measure(model: &Model, face: &[u32; 3]) -> Measures {
     }
 }
 
-/// In blocks: all measures first, then all angles, so that no root or quotient waits for the next face's corners.
+/// Processes blocks, first all measures and then all angles, so that divisions and square roots are pipelined.
 fn face_shapes(model: &Model) -> Vec<FaceShape> {
     const BLOCK: usize = 64;
     let mut measures = [Measures::default(); BLOCK];
     let mut shapes: Vec<FaceShape> = Vec::with_capacity(model.faces.len());
-    // The polygon at the end of `shapes`: where it begins, and its area, longest edge and magnitude so far.
+    // The last polygon in `shapes`: its first face, and its area vector, longest edge and magnitude so far.
     let mut polygon = (0, DVec3::ZERO, 0.0f64, 0.0f32);
     for block in model.faces.chunks(BLOCK) {
         let measures = &mut measures[..block.len()];
@@ -132,7 +132,7 @@ fn face_shapes(model: &Model) -> Vec<FaceShape> {
         }
         let before = shapes.len();
         shapes.extend(measures.iter().map(|measures| {
-            // The cross product of any two sides is as long, so one square root serves all angles.
+            // The cross product of any two sides has the same length, so one square root serves all angles.
             let length = measures.area.length();
             let [at_a, at_b] = measures.dots.map(|dot| angle_rad(length, dot));
             let at_c = if measures.shortest_squared > 0.0 { std::f64::consts::PI - at_a - at_b } else { 0.0 };
@@ -169,8 +169,8 @@ fn face_shapes(model: &Model) -> Vec<FaceShape> {
     shapes
 }
 
-/// Whether a normal is more than rounding. Twice the area over the longest edge is the height; half a unit in the last
-/// place of the coordinates says nothing about it.
+/// Whether a normal is more than rounding error: whether the height, twice the area over the longest edge, exceeds
+/// half a unit in the last representative of the coordinates.
 fn is_sound(length: f64, longest_squared: f64, magnitude: f32) -> bool {
     let rounding = f64::from(magnitude) * f64::from(f32::EPSILON) * 0.5;
     length.is_finite() && length > rounding * longest_squared.sqrt()
@@ -178,7 +178,7 @@ fn is_sound(length: f64, longest_squared: f64, magnitude: f32) -> bool {
 
 /// The angle between two vectors from the length of their cross product and their dot product; 0 if both are zero.
 ///
-/// M. Abramowitz, I. Stegun, "Handbook of Mathematical Functions", 4.4.49: off by at most 2e-8.
+/// M. Abramowitz, I. Stegun, "Handbook of Mathematical Functions", 4.4.49, with an error of at most 2e-8.
 #[inline]
 fn angle_rad(cross_length: f64, dot: f64) -> f64 {
     let (short, long) = (cross_length.min(dot.abs()), cross_length.max(dot.abs()));
@@ -199,13 +199,14 @@ fn angle_rad(cross_length: f64, dot: f64) -> f64 {
     if dot < 0.0 { std::f64::consts::PI - acute } else { acute }
 }
 
-/// Per place the unit mean of its faces' normals, or zero where they may not be one group: where one is not sound, or
-/// further than half the crease angle from the mean. (Any two are then within the whole angle of each other.)
+/// Per position the unit mean of its faces' normals, or zero if they may not be one group: if a normal is unsound, or
+/// deviates from the mean by more than half the crease angle. (Any two are otherwise within the crease angle of each
+/// other.)
 ///
-/// Most places of most models are smooth, and then need no list of their faces.
-fn smooth_means(model: &Model, place: &[u32], shapes: &[FaceShape], half_cos: f64) -> Vec<DVec3> {
-    let mut means = vec![DVec3::ZERO; place.len()];
-    let corners = |face: &[u32; 3]| face.map(|vertex| place[vertex as usize] as usize);
+/// Most positions of most models are smooth, and need no list of faces then.
+fn smooth_means(model: &Model, representative: &[u32], shapes: &[FaceShape], half_cos: f64) -> Vec<DVec3> {
+    let mut means = vec![DVec3::ZERO; representative.len()];
+    let corners = |face: &[u32; 3]| face.map(|vertex| representative[vertex as usize] as usize);
     for (face, shape) in model.faces.iter().zip(shapes) {
         for (here, angle_rad) in corners(face).into_iter().zip(shape.angles_rad) {
             means[here] += shape.normal * f64::from(angle_rad);
@@ -216,7 +217,7 @@ fn smooth_means(model: &Model, place: &[u32], shapes: &[FaceShape], half_cos: f6
     }
     for (face, shape) in model.faces.iter().zip(shapes) {
         for here in corners(face) {
-            // Of a zero mean no normal is near.
+            // Any normal fails this test if the mean is zero.
             if !shape.sound || shape.normal.dot(means[here]) < half_cos {
                 means[here] = DVec3::ZERO;
             }
@@ -225,12 +226,12 @@ fn smooth_means(model: &Model, place: &[u32], shapes: &[FaceShape], half_cos: f6
     means
 }
 
-/// The face corners (three times the face plus 0..3) at each wanted place, in ascending order, and where each place's
-/// begin.
-fn corners_by_place(model: &Model, place: &[u32], wanted: &[bool]) -> (Vec<u32>, Vec<u32>) {
-    let mut first = vec![0u32; place.len() + 1];
+/// The face corners (three times the face plus 0..3) at each wanted position in ascending order, and the start of
+/// each position's range.
+fn corners_by_position(model: &Model, representative: &[u32], wanted: &[bool]) -> (Vec<u32>, Vec<u32>) {
+    let mut first = vec![0u32; representative.len() + 1];
     for &v in model.faces.iter().flatten() {
-        let here = place[v as usize] as usize;
+        let here = representative[v as usize] as usize;
         first[here + 1] += u32::from(wanted[here]);
     }
     let mut sum = 0;
@@ -241,7 +242,7 @@ fn corners_by_place(model: &Model, place: &[u32], wanted: &[bool]) -> (Vec<u32>,
     let mut corners = vec![0u32; sum as usize];
     let mut free = first.clone();
     for (corner, &v) in model.faces.iter().flatten().enumerate() {
-        let here = place[v as usize] as usize;
+        let here = representative[v as usize] as usize;
         if wanted[here] {
             let slot = &mut free[here];
             corners[*slot as usize] = corner as u32;
@@ -251,22 +252,24 @@ fn corners_by_place(model: &Model, place: &[u32], wanted: &[bool]) -> (Vec<u32>,
     (first, corners)
 }
 
-/// The face corners at one place, numbered from 0, and the groups that they form. Kept for its memory only.
+/// The face corners at one position, numbered from 0, and their groups. Reused to avoid allocations.
 #[derive(Default)]
 struct Fan {
-    /// (other end of the edge, corner, whether the edge runs towards this place), packed to sort as one number.
+    /// (other end of the edge, corner, whether the edge runs towards this position), packed into one sortable
+    /// integer.
     edges: Vec<u64>,
-    /// Union-find: a corner of the same group, and whether its face winds the other way.
+    /// A union-find forest: the parent corner, and whether its face has the opposite winding.
     parent: Vec<(u32, bool)>,
-    /// An unsound corner, a sound one across one of its edges, and whether that one winds the other way.
+    /// An unsound corner, a sound corner that shares an edge with it, and whether the latter has the opposite
+    /// winding.
     bridges: Vec<(u32, u32, bool)>,
-    /// Per corner that stands for its group: the group's normal.
+    /// The normal of each group, at its root corner.
     normals: Vec<DVec3>,
-    /// (vertex, group, side, corner) of the corners that want a normal.
+    /// (vertex, group, side, corner) of the corners whose normal is missing.
     claims: Vec<(u32, u32, bool, u32)>,
 }
 
-/// More faces than these at one edge are compared with the next one only.
+/// If an edge has more faces, each is compared only with the next one.
 const FACES_COMPARED_AT_AN_EDGE: usize = 16;
 
 impl Fan {
@@ -277,7 +280,7 @@ impl Fan {
             if parent == at {
                 return (at, turned);
             }
-            // Path halving; the flips of the two steps become one.
+            // Path halving; the flips of the two steps are combined.
             let (grandparent, second_flip) = self.parent[parent as usize];
             self.parent[at as usize] = (grandparent, flip ^ second_flip);
             turned ^= flip ^ second_flip;
@@ -287,13 +290,21 @@ impl Fan {
 
     fn join(&mut self, a: u32, b: u32, opposite: bool) {
         let ((root_a, turned_a), (root_b, turned_b)) = (self.root(a), self.root(b));
-        // The lower one stands for the group, whatever the order of joining.
+        // The lower root is kept, independently of the order of joining.
         if root_a != root_b {
             self.parent[root_a.max(root_b) as usize] = (root_a.min(root_b), turned_a ^ turned_b ^ opposite);
         }
     }
 
-    fn group(&mut self, model: &Model, place: &[u32], shapes: &[FaceShape], here: u32, around: &[u32], least_cos: f64) {
+    fn group(
+        &mut self,
+        model: &Model,
+        representative: &[u32],
+        shapes: &[FaceShape],
+        here: u32,
+        around: &[u32],
+        least_cos: f64,
+    ) {
         self.edges.clear();
         self.parent.clear();
         self.bridges.clear();
@@ -302,7 +313,7 @@ impl Fan {
             let face = model.faces[corner as usize / 3];
             let k = corner as usize % 3;
             for (other, towards) in [(face[(k + 1) % 3], 0), (face[(k + 2) % 3], 1)] {
-                let other = place[other as usize];
+                let other = representative[other as usize];
                 if other != here {
                     self.edges.push(u64::from(other) << 32 | (i as u64) << 1 | towards);
                 }
@@ -341,7 +352,7 @@ impl Fan {
         self.settle_unsound(shapes, around, &meet_smoothly);
     }
 
-    /// Faces on both sides of an unsound one are compared; then each unsound corner joins one group.
+    /// Compares the faces on both sides of each unsound face, and then assigns each unsound corner to one group.
     fn settle_unsound(
         &mut self,
         shapes: &[FaceShape],
@@ -363,8 +374,8 @@ impl Fan {
                 }
             }
         }
-        // Only now, lest the unsound face joins what it must not. A face with two corners at this place runs along its
-        // edge both ways: the same winding is meant.
+        // After all comparisons, so that an unsound face does not connect groups that must remain separate. A face
+        // with two corners at this position contains its edge in both directions; equal winding is assumed.
         for bridge in bridges.chunk_by(|a, b| a.0 == b.0) {
             let &(unsound, sound, opposite) = bridge.iter().find(|b| !b.2).unwrap_or(&bridge[0]);
             self.join(unsound, sound, opposite);
@@ -398,7 +409,7 @@ impl Fan {
                 if length > 1e-9 {
                     self.normals[i as usize] /= length;
                 } else {
-                    // Filled in below by the group's first face with a normal.
+                    // Set below from the group's first face with a normal.
                     self.normals[i as usize] = DVec3::ZERO;
                 }
             }
@@ -406,19 +417,19 @@ impl Fan {
                 self.normals[root as usize] = if turned { -own.normal } else { own.normal };
             }
         }
-        // Nothing sound here, and one group.
+        // There is no sound face at this position, and a single group.
         if self.normals[0] == DVec3::ZERO && self.root(0).0 == 0 {
             let sum: DVec3 = (0..around.len() as u32).map(|i| shape_of(i).normal).sum();
             self.normals[0] = sum.try_normalize().unwrap_or(DVec3::Y);
         }
     }
 
-    fn assign(&mut self, model: &mut Model, place: &mut Vec<u32>, missing: &[bool], around: &[u32]) {
+    fn assign(&mut self, model: &mut Model, representative: &mut Vec<u32>, missing: &[bool], around: &[u32]) {
         self.claims.clear();
         let mut is_one = true;
         for (i, &corner) in around.iter().enumerate() {
             let vertex = model.faces[corner as usize / 3][corner as usize % 3];
-            // What is beyond the end was made here, and is not missing any more.
+            // Vertices beyond the end were added by a split and have a normal.
             if missing.get(vertex as usize) == Some(&true) {
                 let (root, turned) = self.root(i as u32);
                 is_one &= root == 0 && !turned;
@@ -452,7 +463,7 @@ impl Fan {
             if let Some(&color) = model.colors.get(vertex as usize) {
                 model.colors.push(color);
             }
-            place.push(place[vertex as usize]);
+            representative.push(representative[vertex as usize]);
             for claim in same {
                 model.faces[claim.3 as usize / 3][claim.3 as usize % 3] = copy;
             }

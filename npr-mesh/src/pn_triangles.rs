@@ -1,23 +1,23 @@
-//! Curved PN triangles: a finer mesh that bulges as its normals say.
+//! Curved PN triangles: tessellation of a mesh into a smooth surface defined by its normals.
 //!
 //! A. Vlachos, J. Peters, C. Boyd, J. L. Mitchell, "Curved PN Triangles", Symposium on Interactive 3D Graphics 2001:
-//! each face becomes a cubic Bézier triangle made from its three positions and normals. Outlines that are polygons on
-//! a coarse mesh become round.
+//! each face becomes a cubic Bézier triangle defined by its three positions and normals, so that outlines of coarse
+//! meshes become round.
 //!
-//! Two things differ from the paper and its usual implementations:
+//! Two details differ from the paper and its usual implementations:
 //!
-//! - *Creases stay closed.* The paper's patches part where the two sides of an edge have different normals. Here an
-//!   edge has one curve for all its faces. Where the sides differ, the curve leaves its end along the crease: the chord
-//!   is projected onto the line in which both sides' tangent planes meet. So the rim of a cylinder becomes round and
-//!   its lids stay flat: with 12 sides the rim is off by 0.0017 of the radius. (The mean of both sides' control points,
-//!   as by J. McDonald and M. Kilgard, "Crack-Free Point-Normal Triangles using Adjacent Edge Normals", 2010, gives it
-//!   half of its bulge, 0.018; the polygon is off by 0.034.)
-//! - *The normals' mixed terms count twice*, as Bernstein polynomials demand. The usual sum of unit normals, n200 w² +
-//!   … + n110 wu + …, errs to first order in the length of an edge, this to third.
+//! - *Creases remain closed.* In the paper, patches separate where the two sides of an edge have different normals.
+//!   Here all faces of an edge share one curve. Where the normals differ, the tangent of the curve is the chord
+//!   projected onto the intersection line of both tangent planes. The rim of a cylinder thus becomes round while its
+//!   caps remain flat: with 12 sides the error of the rim is 0.0017 of the radius. (The mean of the control points of
+//!   both sides, as in J. McDonald and M. Kilgard, "Crack-Free Point-Normal Triangles using Adjacent Edge Normals",
+//!   2010, gives half of the bulge and an error of 0.018; the error of the polygon is 0.034.)
+//! - *The mixed terms of the normals have the factor 2* of Bernstein polynomials. The usual sum of unit normals, n200
+//!   w² + … + n110 wu + …, has a first-order error in the edge length, this one a third-order error.
 //!
-//! As the paper's, patches do not meet smoothly, on a coarse mesh at angles that may count as creases. Measured with
-//! the unit sphere's normals on an octahedron and an icosahedron, and on the latter subdivided; 16 segments, for the
-//! angles 64:
+//! As in the paper, patches do not join smoothly; on coarse meshes the angles between them may count as creases.
+//! Measured with the normals of the unit sphere on an octahedron and on an icosahedron and its subdivisions, with 16
+//! segments, and 64 for the angles:
 //!
 //! | faces | farthest from the sphere | widest angle between patches | largest error of a normal, by the usual sum |
 //! | --- | --- | --- | --- |
@@ -33,57 +33,59 @@ use crate::Model;
 use crate::edges::MOST_FACES;
 use crate::weld::weld_exact;
 
-/// Why a model could not be tessellated.
+/// An error of [`tessellate`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TessellateError {
-    /// An edge cannot be cut into 0 segments.
+    /// The number of segments per edge is 0.
     #[error("0 segments an edge, of which 1 is the least")]
     NoSegments,
-    /// The result would have more faces than [`crate::edges::find`] takes, or more vertices than a u32 numbers.
+    /// The result would have more faces than [`crate::edges::find`] accepts, or more than `u32::MAX` vertices.
     #[error("{count} {what}, more than the limit of {limit}")]
     TooLarge {
-        /// What there would be too much of: `"faces"` or `"vertices"`.
+        /// The counted elements: `"faces"` or `"vertices"`.
         what: &'static str,
-        /// How much there would be; `u64::MAX` stands for itself and all above.
+        /// Their number in the result, saturated at `u64::MAX`.
         count: u64,
-        /// How much is allowed.
+        /// The maximum number.
         limit: u64,
     },
 }
 
-/// Each face cut into `segments`² faces on its PN triangle; every edge into `segments` pieces.
+/// Tessellates each face into `segments`² faces on its PN triangle, with `segments` segments per edge.
 ///
-/// `segments` is 1 or more; with 1 the model stays as it is.
+/// `segments` is at least 1; with 1 the model is unchanged.
 ///
-/// - Positions lie on the cubic patch, normals are quadratic (unit), texture coordinates and colours linear. What is on
-///   an edge is computed in the same direction whichever face asks.
-/// - Edges are those between exactly equal positions ([`crate::weld`]). All faces at an edge have the same points on
-///   it, to the last bit, whatever their normals and texture coordinates: what was closed stays closed. Faces that
-///   share both its vertices share the new ones as well.
-/// - Where the normals of an edge's sides at one of its ends are within 6° of each other (or of opposite), the curve is
-///   there perpendicular to their mean; from 17° on it runs along the crease; in between it is in between. Of three
-///   sides and more the first and the one that differs most from it count. A boundary has one side.
-/// - A normal that is zero or not finite bends nothing: where no face has another, that end of the edge is straight.
-///   New normals between such corners are zero, which is what [`crate::normals::fill_missing`] fills.
-/// - So a face whose normals are its plane's stays in that plane, unless a neighbour's differ slightly, and an edge
-///   between flat faces stays straight. Within its plane a thin face beside a strongly curved crease can fold over.
-/// - Every new face is a polygon by itself, [`Model::face_polygon`] is empty: the edges within a patch are edges of a
-///   curved surface, at which a contour can run, and so are the former diagonals. (With 1 segment polygons remain.)
+/// - Positions are on the cubic patch, normals are quadratic and normalised, texture coordinates and colours linear.
+///   Points on an edge are computed in the same direction for all its faces.
+/// - Edges are those between exactly equal positions ([`crate::weld`]). All faces of an edge have bitwise equal
+///   points on it for any normals and texture coordinates, so closed surfaces remain closed. Faces that share both
+///   vertices of an edge share its new vertices as well.
+/// - Where the normals of both sides at an end of an edge differ by less than 6° (or from opposite by less), the
+///   curve is perpendicular to their mean there. From 17° on it follows the crease, with a linear transition in
+///   between. Of three and more sides, the first and the one that deviates most from it are used. A boundary has one
+///   side.
+/// - A zero or non-finite normal does not bend the curve. An end of an edge without any valid normal is straight. New
+///   normals between such corners are zero, and can be computed by [`crate::normals::fill_missing`].
+/// - A face with the normals of its own plane thus remains planar unless the normals of a neighbour differ slightly,
+///   and an edge between planar faces remains straight. Within its plane a thin face beside a strongly curved crease
+///   may fold over.
+/// - Every new face is a polygon of its own, and [`Model::face_polygon`] is empty: edges within a patch, and former
+///   diagonals, are edges of a curved surface, on which a contour may run. (With 1 segment polygons are kept.)
 ///
-/// The old vertices keep their numbers and their bits. The new ones follow in the order in which the faces meet them:
-/// those on its edges, then those inside. The faces from face f are `segments`² · f and following, in strips that begin
-/// at its first corner; each has its material.
+/// Existing vertices keep their numbers and values. New vertices follow in the order in which the faces use them,
+/// first those on edges and then those inside. The new faces of face f are `segments`² · f and following, in strips
+/// from its first corner, with its material.
 ///
-/// The time is n log n in the model's faces and linear in the result's; on the way it takes 200 to 400 bytes a face
-/// of the model.
+/// The time is n log n in the number of faces of the model and linear in the size of the result. Temporarily 200 to
+/// 400 bytes per face of the model are used.
 ///
 /// # Errors
-/// `segments` is 0, or the result has more than [`MOST_FACES`] faces or `u32::MAX` vertices. Nothing is allocated for
-/// it before this is known.
+/// `segments` is 0, or the result has more than [`MOST_FACES`] faces or `u32::MAX` vertices. This is checked before
+/// memory is allocated.
 ///
 /// # Panics
-/// If a face names a vertex that is not there, or an array has another length than [`Model`] demands.
+/// If a face has an invalid vertex index, or an array has another length than [`Model`] requires.
 pub fn tessellate(model: &Model, segments: u32) -> Result<Model, TessellateError> {
     if segments == 0 {
         return Err(TessellateError::NoSegments);
@@ -126,7 +128,7 @@ pub fn tessellate(model: &Model, segments: u32) -> Result<Model, TessellateError
                 patch.push_point(&mut fine, [row - column, column].map(|step| f64::from(step) / f64::from(segments)));
             }
         }
-        // Row 0 is the first corner, the last one the opposite edge; columns run from the second corner to the third.
+        // Row 0 is the first corner, the last row the opposite edge; columns go from the second corner to the third.
         let at = |row: u32, column: u32| {
             if column == 0 {
                 sides[0].vertex(row)
@@ -155,42 +157,42 @@ fn check(what: &'static str, count: u64, limit: u64) -> Result<(), TessellateErr
     if count > limit { Err(TessellateError::TooLarge { what, count, limit }) } else { Ok(()) }
 }
 
-/// The curves on which patches meet, and the vertices on them.
+/// The curves along the edges, and the vertices on them.
 struct Network {
     /// Per vertex the lowest-numbered one at its position.
-    place: Vec<u32>,
-    /// Per edge between two places, from the lower-numbered one: its inner control points, each less its end.
+    representative: Vec<u32>,
+    /// Per edge between two positions, from the lower-numbered one: the inner control points relative to their ends.
     curves: Vec<[DVec3; 2]>,
-    /// Per pair of vertices that some face has as a side.
+    /// Per pair of vertices that is a side of a face.
     lines: Vec<Line>,
-    /// Per face and side its line.
+    /// The lines of the three sides of each face.
     face_lines: Vec<[u32; 3]>,
 }
 
-/// Two vertices joined by a curve.
+/// Two vertices that are connected by a curve.
 struct Line {
     curve: u32,
-    /// The first of the new vertices on it; [`UNNUMBERED`] until a face meets them.
+    /// The first new vertex on it; [`UNNUMBERED`] until a face uses the line.
     first: u32,
 }
 
 const UNNUMBERED: u32 = u32::MAX;
 
-/// A side of a face, as it runs around the face.
+/// A side of a face in the direction of the face.
 #[derive(Clone, Copy)]
 struct Side {
     ends: [u32; 2],
     segments: u32,
     /// The first new vertex of its line.
     first: u32,
-    /// Whether it runs against its line.
+    /// Whether its direction is opposite to that of its line.
     turned: bool,
-    /// The inner control points of its curve, each less its end.
+    /// The inner control points of its curve relative to their ends.
     handles: [DVec3; 2],
 }
 
 impl Side {
-    /// The vertex so many of the segments from its beginning.
+    /// The vertex at the end of segment `step`.
     fn vertex(&self, step: u32) -> u32 {
         match step {
             0 => self.ends[0],
@@ -203,22 +205,23 @@ impl Side {
 
 impl Network {
     fn of(model: &Model, normals: &[DVec3]) -> Self {
-        let place = weld_exact(&model.positions);
-        // Sorted by places, then by vertices; what shares a curve then stands together. Sorting beats hashing here.
+        let representative = weld_exact(&model.positions);
+        // Sorted by positions and then by vertices, so that sides with a common curve are adjacent. Sorting is faster
+        // than hashing here.
         let pair = |[a, b]: [u32; 2]| (u64::from(a) << 32) | u64::from(b);
         let unpair = |pair: u64| [(pair >> 32) as usize, pair as u32 as usize];
         let mut sides = Vec::with_capacity(model.faces.len() * 3);
         for (face, corners) in model.faces.iter().enumerate() {
             for side in 0..3 {
-                let (ends, _) = along_line(&place, [corners[side], corners[(side + 1) % 3]]);
-                sides.push((pair(ends.map(|v| place[v as usize])), pair(ends), 3 * face as u32 + side as u32));
+                let (ends, _) = along_line(&representative, [corners[side], corners[(side + 1) % 3]]);
+                sides.push((pair(ends.map(|v| representative[v as usize])), pair(ends), 3 * face as u32 + side as u32));
             }
         }
         sides.sort_unstable();
         let mut face_lines = vec![[0; 3]; model.faces.len()];
         let (mut curves, mut lines) = (Vec::with_capacity(sides.len() / 2), Vec::with_capacity(sides.len() / 2));
         for at_edge in sides.chunk_by(|a, b| a.0 == b.0) {
-            let [low, high] = unpair(at_edge[0].0).map(|place| model.positions[place].as_dvec3());
+            let [low, high] = unpair(at_edge[0].0).map(|vertex| model.positions[vertex].as_dvec3());
             let normals_at = |end: usize| at_edge.iter().map(move |side| normals[unpair(side.1)[end]]);
             curves.push([handle(high - low, normals_at(0)), handle(low - high, normals_at(1))]);
             for at_line in at_edge.chunk_by(|a, b| a.1 == b.1) {
@@ -228,12 +231,12 @@ impl Network {
                 lines.push(Line { curve: curves.len() as u32 - 1, first: UNNUMBERED });
             }
         }
-        Self { place, curves, lines, face_lines }
+        Self { representative, curves, lines, face_lines }
     }
 
-    /// A side of a face; the vertices on it are added to `fine` if no face has met them before.
+    /// A side of a face. Its new vertices are added to `fine` unless another face has added them.
     fn side(&mut self, fine: &mut Model, normals: &[DVec3], segments: u32, ends: [u32; 2], line: u32) -> Side {
-        let (along, turned) = along_line(&self.place, ends);
+        let (along, turned) = along_line(&self.representative, ends);
         let line = &mut self.lines[line as usize];
         let handles = self.curves[line.curve as usize];
         if line.first == UNNUMBERED {
@@ -256,24 +259,25 @@ impl Network {
     }
 }
 
-/// The ends of a side in the direction that is the same for all faces, and whether the side runs against it.
-fn along_line(place: &[u32], [from, to]: [u32; 2]) -> ([u32; 2], bool) {
-    let turned = (place[from as usize], from) > (place[to as usize], to);
+/// The ends of a side in a direction that is common to all faces, and whether the side has the opposite direction.
+fn along_line(representative: &[u32], [from, to]: [u32; 2]) -> ([u32; 2], bool) {
+    let turned = (representative[from as usize], from) > (representative[to as usize], to);
     (if turned { [to, from] } else { [from, to] }, turned)
 }
 
-/// Sines of the angle between two normals: up to the first they are one but for their rounding and quantisation, from
-/// the second on they make a crease.
+/// Sines of the angle between two normals. Up to the first the normals count as equal up to quantisation; from the
+/// second on they form a crease.
 const SMOOTH_SINE: f64 = 0.1;
 const CREASE_SINE: f64 = 0.3;
 
-/// The inner control point of a curve, less its end, from the chord to the other end and the unit or zero normals here.
+/// The inner control point of a curve relative to its end, from the chord to the other end and the unit or zero
+/// normals.
 fn handle(chord: DVec3, normals: impl Iterator<Item = DVec3>) -> DVec3 {
     let mut normals = normals.filter(|&normal| normal != DVec3::ZERO);
     let Some(first) = normals.next() else {
         return chord / 3.0;
     };
-    // Which side of its plane a normal is on does not matter.
+    // The sign of a normal is irrelevant.
     let (cos, other) = normals.fold((1.0, first), |(least, other), normal| {
         let cos = first.dot(normal);
         if cos.abs() < f64::abs(least) { (cos, normal) } else { (least, other) }
@@ -283,7 +287,7 @@ fn handle(chord: DVec3, normals: impl Iterator<Item = DVec3>) -> DVec3 {
     let mut handle = chord - mean * chord.dot(mean);
     let sine = first.cross(other).length();
     if sine > SMOOTH_SINE {
-        // Perpendicular to the mean, and in one plane with it and both normals.
+        // Perpendicular to the mean, in the plane of both normals.
         let across = (first - other).normalize();
         let share = ((sine - SMOOTH_SINE) / (CREASE_SINE - SMOOTH_SINE)).min(1.0);
         handle -= across * (chord.dot(across) * share);
@@ -291,7 +295,7 @@ fn handle(chord: DVec3, normals: impl Iterator<Item = DVec3>) -> DVec3 {
     handle / 3.0
 }
 
-/// The paper's n110: the sum of both normals, mirrored in the plane that is perpendicular to the chord.
+/// The coefficient n110 of the paper: the sum of both normals, reflected in the plane perpendicular to the chord.
 fn middle_normal(chord: DVec3, a: DVec3, b: DVec3) -> DVec3 {
     let sum = a + b;
     let length_squared = chord.length_squared();
@@ -301,11 +305,11 @@ fn middle_normal(chord: DVec3, a: DVec3, b: DVec3) -> DVec3 {
     (sum - chord * (2.0 * chord.dot(sum) / length_squared)).normalize_or_zero()
 }
 
-/// A face's Bézier triangle.
+/// The Bézier triangle of a face.
 struct Patch {
     corners: [usize; 3],
     positions: [DVec3; 3],
-    /// Per side its inner control points, each less its end.
+    /// The inner control points of each side relative to their ends.
     handles: [[DVec3; 2]; 3],
     normals: [DVec3; 3],
     middle_normals: [DVec3; 3],
@@ -320,11 +324,11 @@ impl Patch {
         Self { corners, positions, handles, normals, middle_normals: [middle(0, 1), middle(1, 2), middle(2, 0)] }
     }
 
-    /// Adds the point with these shares of the second and of the third corner.
+    /// Adds the point with the barycentric weights u and v of the second and the third corner.
     fn push_point(&self, fine: &mut Model, [u, v]: [f64; 2]) {
         let w = 1.0 - u - v;
         let [p0, p1, p2] = self.positions;
-        // The paper's centre, E + (E - V) / 2, is V plus a quarter of all handles.
+        // The centre of the paper, E + (E - V) / 2, is V plus a quarter of the sum of all handles.
         let centre = 6.0 * u * v * w;
         let weight = |share: f64| share * share * (3.0 - 2.0 * share) + centre / 3.0;
         let mut position = p0 + (p1 - p0) * weight(u) + (p2 - p0) * weight(v);
@@ -339,7 +343,7 @@ impl Patch {
     }
 }
 
-/// Adds the texture coordinate and the colour that go with a new vertex. What all corners have in common stays exact.
+/// Adds the texture coordinate and the colour of a new vertex. Values that all corners share remain exact.
 fn push_linear(fine: &mut Model, [a, b, c]: [usize; 3], u: f64, v: f64) {
     let (u, v) = (u as f32, v as f32);
     if !fine.uvs.is_empty() {

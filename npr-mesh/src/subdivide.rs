@@ -1,19 +1,18 @@
-//! Finer meshes of the same shape.
+//! Midpoint subdivision.
 
 use glam::Vec3;
 
 use crate::Model;
 
-/// Each triangle cut into four at the midpoints of its edges; the shape stays.
+/// Splits each triangle into four at the midpoints of its edges. The shape is unchanged.
 ///
-/// Positions, texture coordinates and colours of the new vertices are means, normals are means of unit length (where
-/// two are opposite, one of them). Two faces that share both vertices of an edge share its midpoint too; across a seam
-/// the two midpoints stand at one position, to the last bit. The old vertices keep their numbers, the new ones follow
-/// in the order in which the faces meet them, and the four faces
-/// from face f are 4f to 4f + 3: at its corners, then the middle one. They belong to its polygon, and are polygons by
-/// themselves where [`Model::face_polygon`] is empty.
+/// Positions, texture coordinates and colours of new vertices are means. Normals are normalised means, or one of the
+/// two if they are opposite. Two faces that share both vertices of an edge share its midpoint; across a seam both
+/// midpoints have bitwise equal positions. Existing vertices keep their numbers, and new ones follow in the order in
+/// which the faces use them. The four faces of face f are 4f to 4f + 3, first those at its corners and then the
+/// middle one. They belong to its polygon, or are polygons of their own if [`Model::face_polygon`] is empty.
 pub fn subdivide_midpoint(model: &Model) -> Model {
-    // Sorted by edge; equal edges then stand together and get one vertex. Sorting beats hashing here.
+    // Sorted by edge, so that equal edges are adjacent and get one vertex. Sorting is faster than hashing here.
     let mut sides = Vec::with_capacity(model.faces.len() * 3);
     for (face, &[a, b, c]) in model.faces.iter().enumerate() {
         for (side, (from, to)) in [(a, b), (b, c), (c, a)].into_iter().enumerate() {
@@ -28,7 +27,7 @@ pub fn subdivide_midpoint(model: &Model) -> Model {
             midpoints[face as usize][side as usize] = number;
         }
     }
-    // Numbered as the faces meet them, so that what a face needs stands together in memory.
+    // Numbered in the order in which the faces use them, so that the vertices of a face are close in memory.
     let mut edges: Vec<[usize; 2]> = Vec::with_capacity(sides.len() / 2);
     let mut numbered = vec![u32::MAX; sides.len()];
     for (&[a, b, c], of_face) in model.faces.iter().zip(&mut midpoints) {

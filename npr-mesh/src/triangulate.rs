@@ -1,42 +1,41 @@
-//! Polygons to triangles.
+//! Triangulation of polygons.
 //!
-//! A polygon of n corners always becomes n − 2 triangles, whatever its shape, so that face counts do not depend on
-//! geometry. The triangles wind as the polygon does. What is flat is decided in the polygon's best-fit plane: the
-//! one through Newell's normal (I. Sutherland, R. Sproull, R. Schumacker, "A Characterization of Ten Hidden-Surface
-//! Algorithms", 1974, credit it to M. Newell), computed in f64.
+//! A polygon of n corners always becomes n − 2 triangles, for any shape, so that face counts do not depend on
+//! geometry. The triangles have the winding of the polygon. Planar decisions are made in the best-fit plane, that of
+//! Newell's normal (I. Sutherland, R. Sproull, R. Schumacker, "A Characterization of Ten Hidden-Surface Algorithms",
+//! 1974, credit it to M. Newell), computed in f64.
 //!
-//! | corners | how | time |
+//! | corners | method | time |
 //! | --- | --- | --- |
-//! | 3 | itself | constant |
-//! | 4 | the diagonal that lies inside; of two, the shorter, or the first where they are equal | constant |
-//! | 5 and more, convex | every other corner is cut off until none is left | O(n) |
-//! | 5 and more, else | constrained Delaunay (L. P. Chew, "Constrained Delaunay Triangulations", 1989) | O(n log n) |
-//! | where that fails | ear clipping (G. Meisters, "Polygons Have Ears", 1975), bounded | O(n²), below a second |
+//! | 3 | the triangle itself | constant |
+//! | 4 | the diagonal inside the quad; of two, the shorter, or the first if equal | constant |
+//! | 5 and more, convex | every other corner is cut off repeatedly | O(n) |
+//! | 5 and more, not convex | constrained Delaunay (L. P. Chew, "Constrained Delaunay Triangulations", 1989) | O(n log n) |
+//! | if that fails | ear clipping (G. Meisters, "Polygons Have Ears", 1975), bounded | O(n²), less than a second |
 //!
-//! A hole that is joined to the outline by an edge there and back (a keyhole) comes out right. Ear clipping is for
-//! what has no right answer: outlines that cross or touch themselves. A polygon without area, or with a corner
-//! that is not finite, becomes a fan.
+//! A hole that is connected to the outline by an edge in both directions (a keyhole) is handled correctly. Ear
+//! clipping handles outlines that intersect or touch themselves and have no correct triangulation. A polygon without
+//! area, or with a corner that is not finite, becomes a fan.
 
 use glam::{DVec2, DVec3, Vec3};
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
-/// Triangles of the polygon with these corners, as indices into `corners`: [`triangulate_into`] a fresh array.
+/// The triangles of a polygon as indices into `corners`: [`triangulate_into`] with a new array.
 pub fn triangulate(corners: &[Vec3]) -> Vec<[u32; 3]> {
     let mut triangles = Vec::with_capacity(corners.len().saturating_sub(2));
     triangulate_into(corners, &mut triangles);
     triangles
 }
 
-/// Replaces `triangles` by those of the polygon with these corners, as indices into `corners`.
+/// Replaces `triangles` by those of a polygon, as indices into `corners`.
 ///
-/// There are `corners.len() - 2` of them (none for fewer than 3 corners). Nothing is allocated for triangles and
-/// quads once `triangles` has room for two.
+/// There are `corners.len() - 2` triangles, none for fewer than 3 corners. Triangles and quads do not allocate if
+/// `triangles` has a capacity of two.
 pub fn triangulate_into(corners: &[Vec3], triangles: &mut Vec<[u32; 3]>) {
     triangulate_within(corners, triangles, &mut { EAR_TESTS });
 }
 
-/// [`triangulate_into`], with as many tests for ears as are left: for many polygons that need them, which take what is
-/// left together.
+/// [`triangulate_into`] with a shared budget of ear tests for many polygons.
 pub(crate) fn triangulate_within(corners: &[Vec3], triangles: &mut Vec<[u32; 3]>, ear_tests: &mut usize) {
     triangles.clear();
     match *corners {
@@ -51,7 +50,7 @@ pub(crate) fn triangulate_within(corners: &[Vec3], triangles: &mut Vec<[u32; 3]>
 fn quad(corners: [Vec3; 4]) -> [[u32; 3]; 2] {
     const FIRST: [[u32; 3]; 2] = [[0, 1, 2], [0, 2, 3]];
     const SECOND: [[u32; 3]; 2] = [[0, 1, 3], [1, 2, 3]];
-    // f32 coordinates to the fourth power neither overflow nor vanish in f64.
+    // Fourth powers of f32 coordinates neither overflow nor underflow in f64.
     let p = corners.map(|c| c.as_dvec3());
     // Newell's normal of a quad is the cross product of its diagonals.
     let diagonals = [p[2] - p[0], p[3] - p[1]];
@@ -105,8 +104,8 @@ fn simple(corners: &[Vec3], flat: &[DVec2], triangles: &mut Vec<[u32; 3]>, ear_t
     }
 }
 
-/// The corners without those that repeat the one before or after, or where the outline turns straight back. A
-/// triangle without area is added for each that is left out. Two corners are left where there is nothing else.
+/// The corners without spikes: corners that repeat a neighbour, or where the outline reverses its direction. A
+/// triangle of zero area is added for each removed corner. At least two corners remain.
 fn without_spikes(flat: &[DVec2], triangles: &mut Vec<[u32; 3]>) -> Vec<u32> {
     let is_spike = |a: u32, b: u32, c: u32| {
         let [a, b, c] = [a, b, c].map(|i| flat[i as usize]);
@@ -123,7 +122,7 @@ fn without_spikes(flat: &[DVec2], triangles: &mut Vec<[u32; 3]>) -> Vec<u32> {
             *kept.last_mut().unwrap_or(&mut 0) = c;
         }
     }
-    // The same across the seam.
+    // The same across the end of the outline.
     let mut begin = 0;
     while let [first, second, .., last] = kept[begin..] {
         let before_last = kept[kept.len() - 2];
@@ -141,14 +140,14 @@ fn without_spikes(flat: &[DVec2], triangles: &mut Vec<[u32; 3]>) -> Vec<u32> {
     kept
 }
 
-/// The corners in the best-fit plane, counter-clockwise, the larger side of their box from −1 to 1. `None` without
-/// an area or with a corner that is not finite.
+/// The corners in the best-fit plane in counter-clockwise order, scaled so that the larger side of their bounding box
+/// is −1 to 1. `None` if there is no area or if a corner is not finite.
 fn project(corners: &[Vec3]) -> Option<Vec<DVec2>> {
     let (low, high) = corners
         .iter()
         .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), c| (low.min(c.as_dvec3()), high.max(c.as_dvec3())));
     let half_extent = (high - low).max_element() * 0.5;
-    // `min` and `max` pass over NaN: it is looked for by itself.
+    // `min` and `max` ignore NaN, so it is checked separately.
     if !(half_extent > 0.0 && half_extent.is_finite()) || corners.iter().any(|c| !c.is_finite()) {
         return None;
     }
@@ -161,7 +160,7 @@ fn project(corners: &[Vec3]) -> Option<Vec<DVec2>> {
         normal += before.cross(p);
         before = p;
     }
-    // Below this, the area is rounding of the products above.
+    // Below this bound the area consists of rounding errors.
     if normal.length() <= 1e-15 * corners.len() as f64 {
         return None;
     }
@@ -172,7 +171,7 @@ fn project(corners: &[Vec3]) -> Option<Vec<DVec2>> {
             .iter()
             .map(|c| {
                 let p = scaled(c);
-                // spade refuses numbers that are tiny but not zero.
+                // spade rejects tiny non-zero numbers.
                 let flush = |x: f64| if x.abs() < 1e-30 { 0.0 } else { x };
                 DVec2::new(flush(p.dot(u)), flush(p.dot(v)))
             })
@@ -193,13 +192,14 @@ fn is_strictly_convex(flat: &[DVec2]) -> bool {
         if turn(a, b, c) <= 1e-14 {
             return false;
         }
-        // An outline that only turns left is convex if it goes round once: to the right once, to the left once.
+        // An outline that only turns left is convex if it turns once in total, and then changes its horizontal
+        // direction twice.
         direction_changes += usize::from((b.x > a.x) != (c.x > b.x));
     }
     direction_changes == 2
 }
 
-/// Cuts off corners 1, 3, 5 … and then again every other one of those that are left.
+/// Cuts off corners 1, 3, 5, …, and then repeatedly every other remaining corner.
 fn halve(n: usize, triangles: &mut Vec<[u32; 3]>) {
     let mut step = 1;
     while step < n {
@@ -215,13 +215,15 @@ fn halve(n: usize, triangles: &mut Vec<[u32; 3]>) {
     }
 }
 
-/// How often the outline runs along an edge from its lower to its higher vertex, less how often it runs back.
+/// The number of times the outline traverses an edge from its lower to its higher vertex minus the number of times it
+/// traverses it back.
 type Runs = i32;
 
-/// Whether there is a constrained Delaunay triangulation with as many triangles as wanted; then it is in `triangles`.
+/// Computes a constrained Delaunay triangulation into `triangles`. Returns whether it has the expected number of
+/// triangles.
 fn delaunay(corners: &[Vec3], flat: &[DVec2], triangles: &mut Vec<[u32; 3]>) -> bool {
     let n = flat.len();
-    // Corners at one place become one vertex; the first of them stands for all.
+    // Corners at one position become one vertex, represented by the first of them.
     let mut order: Vec<u32> = (0..n as u32).collect();
     order.sort_unstable_by(|&a, &b| {
         let (p, q) = (flat[a as usize], flat[b as usize]);
@@ -234,7 +236,7 @@ fn delaunay(corners: &[Vec3], flat: &[DVec2], triangles: &mut Vec<[u32; 3]>) -> 
         let p = flat[i as usize];
         let repeated = vertices.last().is_some_and(|last| last.x == p.x && last.y == p.y);
         if repeated {
-            // One above the other is not one place.
+            // The positions coincide only in the projection.
             if corners[corner_of[corner_of.len() - 1] as usize] != corners[i as usize] {
                 return false;
             }
@@ -265,7 +267,7 @@ fn delaunay(corners: &[Vec3], flat: &[DVec2], triangles: &mut Vec<[u32; 3]>) -> 
     else {
         return false;
     };
-    // Fewer constraints or more: the outline crosses itself, or runs through one of its corners.
+    // Other numbers mean that the outline intersects itself or passes through one of its corners.
     if conflicts > 0 || cdt.num_vertices() != vertex_count || cdt.num_constraints() != edge_count {
         return false;
     }
@@ -281,7 +283,7 @@ fn delaunay(corners: &[Vec3], flat: &[DVec2], triangles: &mut Vec<[u32; 3]>) -> 
         *cdt.undirected_edge_data_mut(edge).data_mut() += if from < to { 1 } else { -1 };
     }
 
-    // Winding numbers spread from the unbounded face inwards: to the left of an edge that the outline runs along
+    // Winding numbers are propagated from the outer face inwards. To the left of an edge that the outline traverses
     // the number is one higher than to its right.
     let mut winding: Vec<Option<Runs>> = vec![None; cdt.num_all_faces()];
     let mut open = vec![cdt.outer_face().fix()];
@@ -315,15 +317,15 @@ fn delaunay(corners: &[Vec3], flat: &[DVec2], triangles: &mut Vec<[u32; 3]>) -> 
     triangles.len() == n - 2
 }
 
-/// How many corners may be compared with ears, for a time of some tenths of a second.
+/// The maximum number of corners that are tested against ears, for a time of some tenths of a second.
 const EAR_TESTS: usize = 20_000_000;
 
-/// The same for all polygons of a file: some seconds.
+/// The maximum for all polygons of a file, for a time of some seconds.
 #[cfg(feature = "obj")]
 pub(crate) const EAR_TESTS_OF_A_FILE: usize = 10 * EAR_TESTS;
 
-/// Cuts corners off until three are left: one whose triangle is empty while there is one, else a corner without
-/// area, else the next convex one, else any.
+/// Cuts off corners until three are left: an ear if there is one, else a corner without area, else the next convex
+/// corner, else any corner.
 fn clip_ears(flat: &[DVec2], triangles: &mut Vec<[u32; 3]>, tests_left: &mut usize) {
     let n = flat.len();
     let mut next: Vec<u32> = (1..n as u32).chain([0]).collect();
@@ -331,7 +333,7 @@ fn clip_ears(flat: &[DVec2], triangles: &mut Vec<[u32; 3]>, tests_left: &mut usi
     let mut left = n;
     let mut corner = 0u32;
     let mut looked_at = 0;
-    // The best that there is if no corner turns out to be an ear: 2 without area, 1 convex, 0 any.
+    // The best corner if there is no ear, with its rank: 2 without area, 1 convex, 0 any.
     let mut spare = (0, corner);
     while left > 3 {
         let (a, c) = (before[corner as usize], next[corner as usize]);
@@ -356,19 +358,19 @@ fn clip_ears(flat: &[DVec2], triangles: &mut Vec<[u32; 3]>, tests_left: &mut usi
         before[c as usize] = a;
         left -= 1;
         looked_at = 0;
-        // Going on behind the cut spreads the triangles instead of fanning them out from one corner.
+        // Continuing behind the removed corner avoids a fan of triangles around one corner.
         corner = next[c as usize];
     }
     triangles.push([before[corner as usize], corner, next[corner as usize]]);
 }
 
-/// Whether no other corner lies in a counter-clockwise ear or on its border, those at its own corners aside.
+/// Whether no other corner is inside a counter-clockwise ear or on its border, except at the ear's own corners.
 fn is_empty(flat: &[DVec2], next: &[u32], ear: [u32; 3], tests_left: &mut usize) -> bool {
     let [a, b, c] = ear.map(|i| flat[i as usize]);
     let (low, high) = (a.min(b).min(c), a.max(b).max(c));
     let mut i = next[ear[2] as usize];
     while i != ear[0] {
-        // Nobody knows: it is not cut off as an ear.
+        // The budget is exhausted: it does not count as an ear.
         if *tests_left == 0 {
             return false;
         }

@@ -1,21 +1,21 @@
-//! Vertices at one place, found.
+//! Finds vertices at equal positions.
 //!
-//! Files split vertices at seams of texture coordinates and normals, and exporters write one point several
-//! times; an edge search that takes such vertices for different ones finds boundaries where there are none.
+//! Files split vertices at seams of texture coordinates and normals, and exporters may write a point several times.
+//! An edge search without welding would find spurious boundaries there.
 
 use glam::Vec3;
 
-/// For each vertex the lowest-numbered vertex at exactly the same position.
+/// Per vertex the lowest-numbered vertex at exactly the same position.
 ///
-/// Positions are compared by value, so −0.0 and 0.0 are one place. A NaN equals itself bit for bit only.
+/// Positions are compared by value, so −0.0 equals 0.0. A NaN equals only a NaN with the same bits.
 ///
-/// Most vertices of most files are alone at their place, and a bit for each hash value tells so without a look at any
-/// other position: only vertices that share a bit go into a table. Memory: at most 8 bytes a vertex besides the
-/// result, 24 where many share a place. Expected time is linear. On half a million vertices of which a thousand are
-/// doubled this takes half of the time of putting all into the table.
+/// Most vertices usually have unique positions. A bit set over hash values finds candidates for duplicates without
+/// comparing positions; only vertices that share a bit enter a hash table. On half a million vertices with a thousand
+/// duplicates this takes half the time of entering all vertices. Memory: at most 8 bytes per vertex in addition to
+/// the result, or 24 bytes with many duplicates. The expected time is linear.
 pub fn weld_exact(positions: &[Vec3]) -> Vec<u32> {
     let mut representative: Vec<u32> = (0..positions.len() as u32).collect();
-    // At least eight bits for each vertex.
+    // At least eight bits per vertex.
     let bits = (8 * positions.len()).next_power_of_two().max(64);
     let shift = 64 - bits.trailing_zeros();
     let bit_of = |position: &Vec3| {
@@ -52,9 +52,9 @@ pub fn weld_exact(positions: &[Vec3]) -> Vec<u32> {
     representative
 }
 
-/// Finds the representatives of these vertices, ascending, among themselves.
+/// Finds the representatives of these vertices, given in ascending order, among themselves.
 ///
-/// Open addressing in a table of at most twice the next power of two above their number.
+/// A hash table with open addressing.
 fn weld_by_table(positions: &[Vec3], vertices: impl ExactSizeIterator<Item = u32>, representative: &mut [u32]) {
     const EMPTY: u32 = u32::MAX;
     // The table is at most two thirds full.
@@ -79,13 +79,14 @@ fn weld_by_table(positions: &[Vec3], vertices: impl ExactSizeIterator<Item = u32
     }
 }
 
-/// For each vertex a representative within `tolerance`, the lowest-numbered one that was met.
+/// Per vertex a representative within `tolerance`.
 ///
-/// A vertex joins the nearest representative within `tolerance` of itself, or becomes one; two vertices joined
-/// to one representative can be up to twice the tolerance apart. The result depends on the order of the vertices
-/// and on nothing else. A tolerance of 0 (or one that is not a positive number) is [`weld_exact`].
+/// Vertices are processed in order. A vertex joins the nearest representative within `tolerance`, the lowest-numbered
+/// of equally near ones, or else becomes a representative. Two vertices with one representative can be up to twice
+/// the tolerance apart. The result depends on nothing but the positions and their order. A tolerance that is 0,
+/// negative or NaN is [`weld_exact`].
 ///
-/// Time is linear while no more than a handful of representatives share a cube with sides of `tolerance`.
+/// The time is linear as long as only a few representatives share a cube with a side of `tolerance`.
 pub fn weld_within(positions: &[Vec3], tolerance: f32) -> Vec<u32> {
     if tolerance.is_nan() || tolerance <= 0.0 {
         return weld_exact(positions);
@@ -123,12 +124,12 @@ pub fn weld_within(positions: &[Vec3], tolerance: f32) -> Vec<u32> {
     representative
 }
 
-/// The position's bits with −0.0 turned into 0.0.
+/// The bits of a position with −0.0 replaced by 0.0.
 fn value_bits(position: Vec3) -> [u32; 3] {
     (position + Vec3::ZERO).to_array().map(f32::to_bits)
 }
 
-/// A multiplicative hash whose upper bits are good.
+/// A multiplicative hash; its upper bits are well distributed.
 fn hash([x, y, z]: [u32; 3]) -> u64 {
     const ODD: u64 = 0x9e37_79b9_7f4a_7c15;
     let first = (u64::from(x) | u64::from(y) << 32).wrapping_mul(ODD);
@@ -161,7 +162,7 @@ mod tests {
 
     #[test]
     fn a_tolerance_joins_across_every_border_of_a_cell_from_both_sides() {
-        // One end at each side of a corner that eight cells share, in the middle of the grid and at 0.
+        // One vertex on each side of a corner that eight cells share, in the middle of the grid and at 0.
         for corner in [Vec3::ZERO, Vec3::ONE, Vec3::new(-3.0, 2.0, 5.0)] {
             for step in 0..27 {
                 let side = Vec3::new((step % 3) as f32, (step / 3 % 3) as f32, (step / 9) as f32) - 1.0;
@@ -177,7 +178,7 @@ mod tests {
             assert_eq!(weld_within(&[Vec3::ZERO, axis], 1.0), [0, 0], "{axis}");
             assert_eq!(weld_within(&[Vec3::ZERO, axis * 1.0f32.next_up()], 1.0), [0, 1], "{axis}");
         }
-        // The sides 3, 4 and 5 of a right triangle.
+        // A right triangle with the sides 3, 4 and 5.
         assert_eq!(weld_within(&[Vec3::ZERO, Vec3::new(0.0, -3.0, 4.0)], 5.0), [0, 0]);
         assert_eq!(weld_within(&[Vec3::ZERO, Vec3::new(0.0, -3.0, 4.0)], 5.0f32.next_down()), [0, 1]);
     }
@@ -186,7 +187,7 @@ mod tests {
     fn the_nearest_representative_wins_and_of_two_equally_near_ones_the_lower() {
         let weld_along = |axis: Vec3, at: [f32; 3]| weld_within(&at.map(|x| axis * x), 1.0);
         for axis in [Vec3::X, Vec3::Y, Vec3::Z] {
-            // Half way between two representatives in two cells, whichever of the cells comes first.
+            // Half-way between two representatives in two cells, in either order.
             assert_eq!(weld_along(axis, [0.0, 1.5, 0.75]), [0, 1, 0], "{axis}");
             assert_eq!(weld_along(axis, [1.5, 0.0, 0.75]), [0, 1, 0], "{axis}");
             assert_eq!(weld_along(axis, [0.0, 1.5, 1.0]), [0, 1, 1], "{axis}");

@@ -1,5 +1,4 @@
-//! The embedded models are closed where they should be, look outwards and have the sizes they claim; so are
-//! their subdivisions.
+//! The embedded models have the stated openings, outward faces and the stated sizes, and so do their subdivisions.
 
 use std::collections::{HashMap, HashSet};
 use std::f64::consts::PI;
@@ -10,11 +9,11 @@ use npr_mesh::subdivide::subdivide_midpoint;
 use npr_mesh::{Material, Model};
 
 struct Topology {
-    /// V - E + F, vertices at one position being one.
+    /// V - E + F with vertices at one position merged.
     euler: i64,
-    /// Edges with one face.
+    /// The number of edges with one face.
     open: usize,
-    /// Edges with more than two faces, or with two that run along it the same way.
+    /// The number of edges with more than two faces, or with two faces that traverse them in the same direction.
     wrong: usize,
 }
 
@@ -45,13 +44,13 @@ fn topology(model: &Model) -> Topology {
     }
 }
 
-/// Enclosed between the faces and `apex`.
+/// The volume between the faces and `apex`.
 fn volume(model: &Model, apex: DVec3) -> f64 {
     let corner = |v: u32| model.positions[v as usize].as_dvec3() - apex;
     model.faces.iter().map(|f| corner(f[0]).dot(corner(f[1]).cross(corner(f[2]))) / 6.0).sum()
 }
 
-/// Arrays fit, faces have an area, and the normals at their corners are of unit length and on their outer side.
+/// Array lengths match, faces have an area, and the normals at their corners are unit vectors on their front side.
 fn check(model: &Model) {
     assert_eq!(model.normals.len(), model.positions.len());
     assert_eq!(model.face_material.len(), model.faces.len());
@@ -106,7 +105,7 @@ fn fewest_segments() {
 #[test]
 fn sphere_tends_to_its_volume() {
     let error = |segments| 4.0 / 3.0 * PI - volume(&sphere(segments), DVec3::ZERO);
-    // Of second order: twice the segments, a quarter of the error.
+    // Second order: twice the segments, a quarter of the error.
     for segments in [16, 32, 64] {
         let ratio = error(segments) / error(2 * segments);
         assert!((3.8..4.2).contains(&ratio), "{ratio}");
@@ -138,9 +137,9 @@ fn teapot_has_no_cracks() {
         assert_eq!(model.faces.len(), (64 * n * n - 8 * n) as usize);
         let found = topology(&model);
         assert_eq!(found.wrong, 0);
-        // Six loops: rim and lid of four quarters, and four of two halves.
+        // Six boundary loops: rim and lid of four quarters each, and four of two halves each.
         assert_eq!(found.open, 16 * n as usize);
-        // Two discs (body, lid) and two tubes; the handle ends at a point where the body has a vertex.
+        // Two discs (body, lid) and two tubes; the handle ends at a position where the body has a vertex.
         assert_eq!(found.euler, 2 - 1);
         // Every vertex belongs to a face.
         let used: HashSet<u32> = model.faces.iter().flatten().copied().collect();
@@ -150,7 +149,7 @@ fn teapot_has_no_cracks() {
 
 #[test]
 fn teapot_looks_outwards() {
-    // Fewer segments cut off the spout's narrow lip.
+    // With fewer segments the narrow lip of the spout is cut off.
     for n in [10, 12, 33] {
         let model = teapot(n);
         check(&model);
@@ -170,11 +169,11 @@ fn teapot_normals_are_those_of_the_surface() {
         assert_eq!(found.len(), 1, "{p}");
         model.normals[found[0]]
     };
-    // The poles of lid and bottom, and a ring of the body where it is vertical.
+    // The poles of lid and bottom, and the ring of the body with a vertical tangent.
     assert_eq!(normal_at(Vec3::new(0.0, 3.15, 0.0)), Vec3::Y);
     assert_eq!(normal_at(Vec3::ZERO), Vec3::NEG_Y);
     assert_eq!(normal_at(Vec3::new(2.0, 0.9, 0.0)), Vec3::X);
-    // The faces' own normals tend to those of their vertices.
+    // Face normals converge to vertex normals.
     let widest = |n: u32| {
         let model = teapot(n);
         let angle = |face: &[u32; 3]| {
@@ -201,7 +200,7 @@ fn placing_keeps_outside_outside() {
     }
 }
 
-/// The corners of each material's faces.
+/// The corners of the faces of each material.
 fn objects(model: &Model) -> Vec<Vec<Vec3>> {
     let mut objects = vec![Vec::new(); model.materials.len()];
     for (face, &material) in model.faces.iter().zip(&model.face_material) {
@@ -224,7 +223,7 @@ fn still_life_stands_on_the_ground_and_apart() {
     for (i, a) in things.iter().enumerate() {
         let lowest = a.iter().map(|p| p.y).fold(f32::MAX, f32::min);
         assert!(lowest.abs() < 1e-6, "{} {lowest}", names[i]);
-        // Two things are apart if a vertical plane parts them.
+        // Two objects are disjoint if a vertical plane separates them.
         for (j, b) in things.iter().enumerate().take(i) {
             let gap = (0..64).map(|k| Vec2::from_angle(std::f32::consts::TAU * k as f32 / 64.0)).map(|direction| {
                 let along = |p: &Vec3| Vec2::new(p.x, p.z).dot(direction);
@@ -276,7 +275,7 @@ fn meshes_that_are_appended_stay_apart() {
     }
     let numbers = |of: u32| vec![of; count];
     assert_eq!(three.face_mesh, [numbers(0), numbers(1), numbers(2)].concat());
-    // A model of several meshes keeps them.
+    // A model of several meshes keeps its meshes.
     let mut four = cube();
     four.append(&three);
     assert_eq!(four.face_mesh, [numbers(0), numbers(1), numbers(2), numbers(3)].concat());
@@ -300,7 +299,7 @@ fn faces_without_material_get_one_beside_others_that_have_some() {
     neither.append(&without);
     assert!(neither.face_material.is_empty() && neither.materials.is_empty());
     assert_eq!(neither.material_of(0), None);
-    // Nothing appended to nothing needs no material.
+    // Appending an empty model to an empty model adds no material.
     let mut only = with.clone();
     only.append(&Model::default());
     assert_eq!((only.face_material, only.materials), (with.face_material, with.materials));

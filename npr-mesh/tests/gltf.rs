@@ -1,4 +1,4 @@
-//! glTF: small files made here, broken ones, and the shared models where there are some.
+//! glTF: small generated files, invalid files, and the shared test models if available.
 #![allow(clippy::print_stdout)]
 #![cfg(feature = "gltf")]
 
@@ -7,7 +7,7 @@ use npr_mesh::{AlphaMode, Limits, LoadError, LoadOptions, Loaded, Model, Wrap, l
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
-/// A folder of its own, gone when dropped.
+/// A temporary folder, which is removed when dropped.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -32,7 +32,7 @@ impl Drop for Folder {
     }
 }
 
-/// Accessors, each in a buffer view of its own, and their bytes.
+/// Accessors, each with its own buffer view, and their bytes.
 #[derive(Default)]
 struct Doc {
     bin: Vec<u8>,
@@ -86,7 +86,7 @@ impl Doc {
         load_bytes("m.glb", &glb(&self.json("", rest), &self.bin))
     }
 
-    /// One mesh under one node.
+    /// A file with one mesh in one node.
     fn mesh(&self, primitive: &str, node: &str, rest: &str) -> Result<Loaded, LoadError> {
         self.load(&format!(
             r#""meshes":[{{"primitives":[{{{primitive}}}]}}],"nodes":[{{"mesh":0{node}}}],"scenes":[{{"nodes":[0]}}],"scene":0{rest}"#
@@ -129,7 +129,7 @@ fn load_bytes(name: &str, bytes: &[u8]) -> Result<Loaded, LoadError> {
     load_with(name, bytes, Limits::default())
 }
 
-/// By face and not by vertex: making normals may split vertices.
+/// By face, since computing normals may split vertices.
 fn corners(model: &Model) -> Vec<[Vec3; 3]> {
     model.faces.iter().map(|f| f.map(|v| model.positions[v as usize])).collect()
 }
@@ -148,7 +148,7 @@ fn signed_volume(model: &Model) -> f32 {
     corners(model).iter().map(|[a, b, c]| a.dot(b.cross(*c)) / 6.0).sum()
 }
 
-/// Six times two faces, outside outwards.
+/// Six sides of two faces each, with outward winding.
 fn cube(doc: &mut Doc) -> String {
     let corner = |i: u8| [i & 1, i >> 1 & 1, i >> 2 & 1].map(|b| f32::from(b) * 2.0 - 1.0);
     let positions = doc.vec3s(&(0..8).map(corner).collect::<Vec<_>>());
@@ -171,7 +171,7 @@ fn translation_rotation_scale() {
     let mut doc = Doc::default();
     let primitive = triangle(&mut doc);
     let half = 0.5f32.sqrt();
-    // A quarter turn about Z; a rotation that is not of unit length counts as if it were.
+    // A quarter turn about Z; a rotation that is not a unit quaternion is normalised.
     let node = format!(r#","translation":[10,0,0],"rotation":[0,0,{},{}],"scale":[2,3,4]"#, half * 2., half * 2.);
     let loaded = doc.mesh(&primitive, &node, "").unwrap();
     assert_corners(&loaded.model, &[[[10., 0., 0.], [10., 2., 0.], [7., 0., 0.]]]);
@@ -200,7 +200,7 @@ fn matrices_down_a_chain_of_nodes() {
         r#""meshes":[{{"primitives":[{{{primitive}}}]}}],
         "nodes":[{{"mesh":0,"translation":[0,0,5]}},{{"children":[0],"matrix":[0,1,0,0,-1,0,0,0,0,0,1,0,1,2,3,1]}}]"#
     );
-    // No scene: all root nodes.
+    // Without a scene all root nodes are shown.
     assert_corners(&doc.load(&rest).unwrap().model, &[[[1., 2., 8.], [1., 3., 8.], [0., 2., 8.]]]);
 }
 
@@ -220,7 +220,7 @@ fn a_deep_chain_and_an_instanced_mesh() {
     let faces = corners(&model);
     assert_eq!((faces.len(), model.materials.len()), (2, 1));
     assert_eq!((faces[0][0].x, faces[1][0].x), (depth as f32, 0.0));
-    // Two nodes show one mesh of the file: two meshes.
+    // Two nodes with one mesh of the file are two meshes.
     assert_eq!(model.face_mesh, [0, 1]);
 }
 
@@ -324,7 +324,7 @@ fn morph_targets_at_their_default_weights() {
     assert!(model.normals.iter().all(|n| n.distance(Vec3::new(1., 0., 1.).normalize()) < 1e-6));
 }
 
-/// Joint 0 stays, joint 1 stands at y = 1 and is turned by a quarter about Z.
+/// Joint 0 is fixed; joint 1 is at y = 1 and rotated by a quarter turn about Z.
 fn skinned(doc: &mut Doc, weights: [[f32; 4]; 3], joint: u8, root: &str) -> Result<Loaded, LoadError> {
     let positions = doc.vec3s(&[[0., 0., 0.], [1., 0., 0.], [0., 2., 0.]]);
     let normals = doc.vec3s(&[[0., 1., 0.]; 3]);
@@ -351,7 +351,7 @@ fn a_skin_with_two_joints() {
     for (n, e) in model.normals.iter().zip([Vec3::Y, Vec3::new(-1., 1., 0.).normalize(), Vec3::NEG_X]) {
         assert!(n.distance(e) < 1e-6, "{n}, expected {e}");
     }
-    // Weights that do not sum up to one are as if they did; none at all is the first joint.
+    // Weights are normalised; without weights a vertex follows its first joint.
     let twice = [[2., 0., 0., 0.], [0.2, 0.2, 0., 0.], [0., 7., 0., 0.]];
     assert_corners(&skinned(&mut Doc::default(), twice, 1, "").unwrap().model, &expected);
     let none = [[0.; 4], [0.5, 0.5, 0., 0.], [0., 1., 0., 0.]];
@@ -403,7 +403,7 @@ fn optional_arrays_are_filled_up() {
     assert_eq!(model.colors, [[Vec4::ONE; 3], [Vec4::splat(0.5); 3], [Vec4::ONE; 3]].concat());
 }
 
-/// Two by one texels, red and green.
+/// 2 × 1 texels, red and green.
 const PNG: &[u8] = &[
     137, 80, 78, 71, 13, 10, 26, 10, 0, 0, 0, 13, 73, 72, 68, 82, 0, 0, 0, 2, 0, 0, 0, 1, 8, 2, 0, 0, 0, 123, 64, 232,
     221, 0, 0, 0, 15, 73, 68, 65, 84, 120, 156, 99, 248, 207, 192, 192, 240, 159, 1, 0, 7, 255, 1, 255, 1, 127, 137,
@@ -422,7 +422,7 @@ fn textures_samplers_and_the_texture_transform() {
     let material = |texture: usize, more: &str| {
         format!(r#"{{"pbrMetallicRoughness":{{"baseColorTexture":{{"index":{texture}{more}}}}}}}"#)
     };
-    // The extension's own example: the lower left quadrant, turned by a quarter.
+    // The example of the extension: the lower left quadrant, rotated by a quarter turn.
     let turn = r#","extensions":{"KHR_texture_transform":{"offset":[0,1],"rotation":1.57079632679,"scale":[0.5,0.5],"texCoord":1}}"#;
     let materials = [material(0, turn), material(1, ""), material(2, r#","texCoord":1"#)].join(",");
     let primitives = [0, 1, 2].map(|m| format!(r#"{{{primitive},"material":{m}}}"#)).join(",");
@@ -611,7 +611,7 @@ fn broken_files() {
         let error = load_bytes("m.glb", &whole[..length]).expect_err("cut off");
         assert!(error.to_string().contains("m.glb: "), "{error}");
     }
-    // Whatever a header says, and whatever is in the JSON's place.
+    // Random bytes in the header and in place of the JSON.
     for at in 0..28 {
         for value in [0, 1, 11, 0x7F, 0xFF] {
             let mut file = whole.clone();
@@ -651,7 +651,7 @@ fn shared(name: &str) -> Option<PathBuf> {
 
 fn shared_model(name: &str) -> Option<Model> {
     let loaded = load(&shared(name)?, &LoadOptions::default()).unwrap();
-    // One model has no normals, one has faces without area: nothing else is to be said of them.
+    // One of the models has no normals, and one has faces of zero area; there are no other warnings.
     let told = ["no normals: they are made from the faces", "11160 of 121496 faces have no area"];
     assert!(loaded.warnings.iter().all(|w| told.contains(&w.text.as_str())), "{name}: {:?}", loaded.warnings);
     let model = loaded.model;

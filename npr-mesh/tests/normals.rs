@@ -1,4 +1,4 @@
-//! Normals that are made where a file has none.
+//! Computation of missing normals.
 
 use glam::{Vec2, Vec3, Vec4};
 use npr_mesh::Model;
@@ -80,7 +80,7 @@ fn splitting_copies_what_goes_with_a_vertex() {
     }
 }
 
-/// A sphere of `rows` by `2 * rows` quads, every quad with vertices of its own.
+/// A sphere of `rows` by `2 * rows` quads, each with its own vertices.
 fn sphere(rows: u32) -> Model {
     let at = |row: u32, column: u32| {
         let (polar, azimuth) = (
@@ -129,7 +129,7 @@ fn equal_positions_share_one_normal_whatever_the_sign_of_zero() {
     assert!(tent.normals[0].x.abs() < 1e-6);
 }
 
-/// A fold along the z axis that is flat at z = 0 and sharp at z = 4, as on a part whose crease fades.
+/// A fold along the z axis that is flat at z = 0 and sharp at z = 4, as on a part with a fading crease.
 fn wedge() -> Model {
     let mut positions = Vec::new();
     let mut faces = Vec::new();
@@ -196,7 +196,7 @@ fn a_face_turned_over_gets_the_surface_s_normal_on_its_own_side() {
 
 #[test]
 fn a_face_without_area_changes_nothing_and_keeps_no_faces_apart() {
-    // Two quads that meet along x = 1; the right one's side has a corner in its middle, and a face without area
+    // Two quads that meet along x = 1. The side of the right one has a vertex in its middle, and a face of zero area
     // fills the gap.
     let positions = [
         Vec3::new(0.0, 0.0, 0.0),
@@ -212,7 +212,7 @@ fn a_face_without_area_changes_nothing_and_keeps_no_faces_apart() {
     assert!(mesh.normals[1].x < -0.01 && mesh.normals[1].z > 0.9, "{}", mesh.normals[1]);
     assert!(mesh.normals[4].z > 0.9);
 
-    // Nothing but faces without area, one of them at one point.
+    // Only faces of zero area, one of them degenerated to a point.
     let flat = filled(model(&[Vec3::ZERO, Vec3::X, Vec3::X * 2.0], &[[0, 1, 2], [0, 0, 0], [1, 1, 2]]));
     assert_eq!(flat.positions.len(), 3);
 }
@@ -231,7 +231,7 @@ fn given_normals_stay_and_are_made_unit() {
 
 #[test]
 fn unit_normals_are_kept_bit_for_bit() {
-    // Unit up to the rounding of f32: to normalise these once more moves the last bit of many.
+    // Unit vectors up to f32 rounding: normalising these again would change the last bit of many.
     let normals: Vec<Vec3> = (0..1000)
         .map(|i| {
             let (sin, cos) = (2.4 * i as f32).sin_cos();
@@ -246,7 +246,7 @@ fn unit_normals_are_kept_bit_for_bit() {
 
 #[test]
 fn a_normal_is_missing_only_if_it_is_zero_or_not_finite() {
-    // Each given normal is made unit, whatever its length; each missing one, at a vertex of no face, points up.
+    // Every given normal is normalised, whatever its length; every missing one at a vertex without faces is +Y.
     let tiny = f32::from_bits(1);
     let cases = [
         (Vec3::new(tiny, 0.0, 0.0), Vec3::X),
@@ -289,7 +289,7 @@ fn triangles_of_one_polygon_are_never_parted() {
 
 #[test]
 fn every_corner_of_a_polygon_has_the_polygon_s_normal_and_not_its_triangle_s() {
-    // Pentagons that are not flat, triangles and quads, none of which touch: 120 faces, more than are measured at a time.
+    // Disjoint non-planar pentagons, triangles and quads: 120 faces, more than one block.
     let corners =
         [(0.0, 0.0, 0.0), (2.0, 0.0, 0.5), (3.0, 1.0, 0.0), (1.0, 3.0, 1.0), (0.0, 2.0, 0.25)].map(Vec3::from);
     let (mut polygons, mut positions, mut faces) = (Vec::new(), Vec::new(), Vec::new());
@@ -321,7 +321,7 @@ fn every_corner_of_a_polygon_has_the_polygon_s_normal_and_not_its_triangle_s() {
 #[test]
 fn many_faces_at_one_position_and_at_one_edge_take_no_quadratic_time() {
     let n = 100_000u32;
-    // A fan around one position that crinkles sharply, and a book whose pages share their spine.
+    // A sharply pleated fan around one position, and a book whose pages share their spine.
     let rim: Vec<_> = (0..=n)
         .map(|i| {
             let angle = std::f32::consts::TAU * i as f32 / n as f32;

@@ -1,4 +1,4 @@
-//! OBJ files: read right, and bad ones refused clearly.
+//! OBJ files: valid files, and rejected files with clear messages.
 #![cfg(feature = "obj")]
 #![allow(clippy::print_stdout)] // A test that is skipped says so.
 
@@ -8,7 +8,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
-/// A folder of its own, gone when dropped.
+/// A temporary folder, which is removed when dropped.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -103,7 +103,7 @@ fn polygons_count_n_minus_2_faces_and_are_numbered() {
     let m = text("v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nv 3 1 0\nf 2 5 3\nf 1 2 3 4\nf 1 2 5 3 4\nf 1 1 1\n").model;
     assert_eq!(m.faces.len(), 1 + 2 + 3 + 1);
     assert_eq!(m.face_polygon, [0, 1, 1, 2, 2, 2, 3]);
-    // The numbering begins before the first polygon, in another material too.
+    // Polygons are numbered from the first face on, also across materials.
     let m = text(format!("{TRIANGLE}v 1 1 0\nf 1 2 3\nusemtl a\nf 2 4 3\nf 1 2 4 3\nusemtl b\nf 1 2 3\n")).model;
     assert_eq!(m.face_polygon, [0, 1, 2, 2, 3]);
 }
@@ -262,7 +262,7 @@ fn bad_files_are_refused_with_the_line() {
         let message = fault(try_text(body));
         assert!(message.contains(part), "{message:?} for {body:?}");
     }
-    // What no face uses may be anything that is a number.
+    // Vertices that no face uses may be any number.
     assert_eq!(text("v NaN inf 0\nv 0 0 0\nf 2 2 2\n").model.faces.len(), 1);
 }
 
@@ -320,7 +320,7 @@ fn limits_hold() {
 
 // ---- models that are not part of the repository ----
 
-/// `None`, said aloud, where the folder of test models is not there.
+/// `None`, with a message, if the folder of test models does not exist.
 fn shared(name: &str) -> Option<PathBuf> {
     let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/data"));
     if folder.is_dir() {

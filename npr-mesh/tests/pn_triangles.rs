@@ -1,4 +1,5 @@
-//! Curved PN triangles: closed where the mesh was, flat where it is flat, and near the surface that the normals mean.
+//! Curved PN triangles: closed meshes remain closed, flat faces remain flat, and the result is close to the surface
+//! that the normals describe.
 
 use std::collections::HashSet;
 
@@ -15,7 +16,7 @@ fn model(positions: Vec<Vec3>, normals: Vec<Vec3>, faces: Vec<[u32; 3]>) -> Mode
     Model { positions, normals, faces, face_material, materials, ..Model::default() }
 }
 
-/// On the unit sphere, with its normals, subdivided so often.
+/// A subdivided mesh on the unit sphere with the sphere's normals.
 fn icosahedron(times: u32) -> Model {
     let golden = (1.0 + 5.0_f64.sqrt()) / 2.0;
     let mut positions = Vec::new();
@@ -29,7 +30,7 @@ fn icosahedron(times: u32) -> Model {
     let mut faces = Vec::new();
     for [a, b, c] in (0..12 * 12 * 12).map(|i| [i / 144, i / 12 % 12, i % 12]) {
         let [p, q, r] = [a, b, c].map(|v| positions[v as usize]);
-        // The edges are 1.05 long, what is no edge 1.7.
+        // Edges have the length 1.05, other pairs at least 1.7.
         let near = [p.distance(q), q.distance(r), r.distance(p)].into_iter().all(|d| d > 0.0 && d < 1.1);
         if a < b && a < c && near && (q - p).cross(r - p).dot(p) > 0.0 {
             faces.push([a, b, c]);
@@ -45,7 +46,7 @@ fn icosahedron(times: u32) -> Model {
     mesh
 }
 
-/// In the unit sphere, with its normals.
+/// A mesh inscribed in the unit sphere with the sphere's normals.
 fn octahedron() -> Model {
     let ends = [Vec3::X, Vec3::Y, Vec3::Z, -Vec3::X, -Vec3::Y, -Vec3::Z];
     let faces = vec![[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]];
@@ -61,14 +62,14 @@ fn count(model: &Model, kind: EdgeKind) -> usize {
     find(model).edges.iter().filter(|edge| edge.kind() == kind).count()
 }
 
-/// Edges whose faces are at more than 30°.
+/// The number of edges with a dihedral angle above 30°.
 fn creases(model: &Model) -> Vec<[Vec3; 2]> {
     let found = find(model);
     let sharp = found.edges.iter().filter(|edge| found.dihedral_rad(edge) > Some(30.1_f32.to_radians()));
     sharp.map(|edge| edge.ends.map(|v| model.positions[v as usize])).collect()
 }
 
-/// Every face with vertices of its own.
+/// The model with separate vertices for each face.
 fn split(model: &Model) -> Model {
     let corners = || model.faces.iter().flatten().map(|&v| v as usize);
     Model {
@@ -79,12 +80,13 @@ fn split(model: &Model) -> Model {
     }
 }
 
-/// The distinct positions, by their bits but for the sign of zero.
+/// The distinct positions by their bits, except for the sign of zero.
 fn places(model: &Model) -> HashSet<[u32; 3]> {
     model.positions.iter().map(|p| (*p + Vec3::ZERO).to_array().map(f32::to_bits)).collect()
 }
 
-/// Largest distance from the unit sphere, and largest angle between a normal and the sphere's, in degrees.
+/// The maximum distance from the unit sphere, and the maximum angle between a normal and that of the sphere in
+/// degrees.
 fn sphere_errors(model: &Model) -> (f64, f64) {
     let errors = model.positions.iter().zip(&model.normals).map(|(p, n)| {
         let p = p.as_dvec3();
@@ -132,7 +134,8 @@ fn points_on_a_sphere_s_icosahedra_come_near_it_to_fourth_order_and_normals_to_t
 
 #[test]
 fn the_patch_is_that_of_the_paper() {
-    // By hand: b210 = (2 P1 + P2 - w12 N1) / 3 and so on, b111 = E + (E - V) / 2; the face's middle has all shares 1/3.
+    // By hand: b210 = (2 P1 + P2 - w12 N1) / 3 and so on, b111 = E + (E - V) / 2; all barycentric weights are 1/3 at
+    // the centre.
     let p = [DVec3::new(0.0, 0.0, 0.0), DVec3::new(3.0, 0.0, 0.5), DVec3::new(0.5, 2.0, -0.5)];
     let n = [DVec3::new(-0.4, -0.2, 1.0), DVec3::new(0.5, 0.1, 1.0), DVec3::new(0.0, 0.6, 1.0)].map(DVec3::normalize);
     let face = model(p.map(DVec3::as_vec3).to_vec(), n.map(DVec3::as_vec3).to_vec(), vec![[0, 1, 2]]);
@@ -146,7 +149,7 @@ fn the_patch_is_that_of_the_paper() {
     assert_eq!(fine.positions.len(), 10);
     assert!(fine.positions[3].as_dvec3().distance(third) < 1e-6, "{} {third}", fine.positions[3]);
     assert!(fine.positions[9].as_dvec3().distance(middle) < 1e-6, "{} {middle}", fine.positions[9]);
-    // n110 is the sum of the normals, mirrored.
+    // n110 is the reflected sum of the normals.
     let mirrored = |i: usize, j: usize| {
         let (chord, sum) = (p[j] - p[i], n[i] + n[j]);
         (sum - 2.0 * chord.dot(sum) / chord.length_squared() * chord).normalize()
@@ -171,7 +174,7 @@ fn old_vertices_keep_their_numbers_and_bits_and_the_new_ones_follow_face_by_face
     tent.materials.push(Material::default());
     let fine = tessellate(&tent, 3).unwrap();
     assert_eq!((fine.positions[..4].to_vec(), fine.normals[..4].to_vec()), (tent.positions.clone(), tent.normals));
-    // Two on each of 0-1, 1-2, 0-2, one inside; two on each of 2-3, 0-3, one inside.
+    // Two new vertices on each of 0-1, 1-2, 0-2 and one inside; two on each of 2-3, 0-3 and one inside.
     assert_eq!(fine.faces[..3], [[0, 4, 8], [4, 5, 10], [4, 10, 8]]);
     assert_eq!(fine.faces[3..9], [[8, 10, 9], [5, 1, 6], [5, 6, 10], [10, 6, 7], [10, 7, 9], [9, 7, 2]]);
     assert_eq!(fine.faces[9..12], [[0, 8, 13], [8, 9, 15], [8, 15, 13]]);
@@ -184,7 +187,7 @@ fn old_vertices_keep_their_numbers_and_bits_and_the_new_ones_follow_face_by_face
 
 #[test]
 fn a_contour_finds_edges_within_a_patch_and_a_former_diagonal_is_one() {
-    // An octahedron seen from afar: the contour runs through its patches, and of their edges it takes what it needs.
+    // A distant view of an octahedron: the contour runs through its patches along their new edges.
     let mut octahedron = octahedron();
     octahedron.face_polygon = vec![0, 0, 1, 1, 2, 2, 3, 3];
     let fine = tessellate(&octahedron, 8).unwrap();
@@ -215,14 +218,14 @@ fn a_cylinder_s_rims_become_round_and_its_lids_stay_flat() {
         p.x.hypot(p.z)
     });
     let (least, most) = radius.fold((2.0_f32, 0.0_f32), |(least, most), r| (least.min(r), most.max(r)));
-    // The chord's middle lies at cos 15°; the cubic makes of it cos 15° (1 + sin² 15° / 2).
+    // The middle of the chord is at cos 15°; on the cubic it is at cos 15° (1 + sin² 15° / 2).
     assert!((least - 0.998_28).abs() < 1e-5 && (most - 1.0).abs() < 1e-6, "{least} {most}");
     assert_eq!(count(&fine, EdgeKind::TwoFace), find(&fine).edges.len());
 }
 
 #[test]
 fn a_crease_runs_along_both_sides_tangent_planes_and_a_slight_difference_does_not_bend_it_sideways() {
-    // The edge from 0 to 1, and a face on either side with normals of its own.
+    // The edge from 0 to 1, with a face on either side that has its own normals.
     let chord = Vec3::new(2.0, 0.3, 0.0);
     let edge = |left: Vec3, right: Vec3| {
         let corners = [Vec3::ZERO, chord, Vec3::new(1.0, -2.0, 0.0), chord, Vec3::ZERO, Vec3::new(1.0, 2.0, 0.0)];
@@ -235,7 +238,7 @@ fn a_crease_runs_along_both_sides_tangent_planes_and_a_slight_difference_does_no
     assert!(edge(left, right).distance(tangent * tangent.dot(chord).signum()) < 2e-3);
     assert_eq!(edge(left, right), edge(right, left));
     assert_eq!(edge(left, right), edge(-left, right), "a face turned over bends the edge alike");
-    // As the rounding to 8 bits parts two normals.
+    // Normals that differ by 8-bit quantisation.
     let (near, nearer) = (Vec3::new(0.004, 0.0, 1.0), Vec3::new(-0.004, 0.0, 1.0));
     assert!(edge(near, nearer).distance(chord.normalize()) < 2e-3);
     assert!(edge(near, -nearer).distance(chord.normalize()) < 2e-3);
@@ -247,7 +250,7 @@ fn seams_meet_to_the_last_bit() {
     for whole in [icosahedron(1), torus(2.0, 0.7, 8, 6), teapot(4)] {
         let mut parts = split(&whole);
         parts.uvs = (0..parts.positions.len()).map(|v| Vec2::splat(v as f32)).collect();
-        // Half of the zeros negative, which are the same places.
+        // Half of the zeros are negative, which denotes the same positions.
         for position in parts.positions.iter_mut().step_by(2) {
             *position = position.map(|x| if x == 0.0 { -0.0 } else { x });
         }
@@ -288,12 +291,12 @@ fn faces_without_area_and_normals_without_direction_bend_nothing() {
     assert!(fine.normals[6..].iter().all(|&normal| normal == Vec3::ZERO));
     assert!(fine.positions[6].abs_diff_eq(Vec3::X * 0.25, 1e-7));
 
-    // One corner without a normal: straight at that end, and new normals from the others.
+    // One corner without a normal: the edge is straight at that end, and new normals come from the others.
     let mut one = model(positions[..3].to_vec(), vec![Vec3::new(0.6, 0.0, 0.8), Vec3::ZERO, Vec3::Z], vec![[0, 1, 2]]);
     let fine = tessellate(&one, 4).unwrap();
     assert!(fine.normals.iter().skip(3).all(|normal| (normal.length() - 1.0).abs() < 1e-6));
     assert!(fine.positions[3].z < -0.05 && fine.positions[5].z < 0.0);
-    // Opposite normals, at the middle of whose edge the sum is nothing.
+    // Opposite normals, whose sum is zero at the middle of the edge.
     one.normals = vec![Vec3::Z, -Vec3::Z, Vec3::Z];
     let fine = tessellate(&one, 4).unwrap();
     assert!(fine.normals.iter().all(|normal| (normal.length() - 1.0).abs() < 1e-6));

@@ -1,4 +1,4 @@
-//! Models of any size and far from the origin: what is computed is what it is at size 1.
+//! Models of any scale and far from the origin give the same results as at scale 1.
 
 use glam::{DVec3, Vec3};
 use npr_mesh::edges::{self, EdgeOptions};
@@ -7,7 +7,7 @@ use npr_mesh::{Model, embedded, normals, pn_triangles, subdivide, weld};
 
 const SIZES: [f32; 8] = [1e-36, 1e-30, 1e-20, 1e-10, 1e10, 1e20, 1e30, 1e36];
 
-/// Without its normals, so that they are made; scaled by a power of two near `size`, which rounds nothing.
+/// The model without normals, scaled by a power of two near `size`, which is exact.
 fn scaled(model: &Model, size: f32) -> Model {
     let factor = 2f32.powi(size.log2().round() as i32);
     Model {
@@ -30,7 +30,7 @@ fn normals_are_those_at_size_1() {
             let mut here = scaled(&model, size);
             normals::fill_missing(&mut here, 0.8);
             assert_eq!(here.faces, at_1.faces, "{size}");
-            // Coordinates that are rounding of zero vanish at the small end.
+            // Coordinates that are rounding errors of zero underflow at the small end.
             for (a, b) in here.normals.iter().zip(&at_1.normals) {
                 assert!(a.distance(*b) < 1e-5, "{size}: {a} {b}");
             }
@@ -102,7 +102,7 @@ fn finer_meshes_stay_finite() {
 
 #[test]
 fn a_small_model_far_from_the_origin_keeps_its_shape() {
-    // At 1e7 positions are whole numbers.
+    // At 1e7 positions are integers.
     let mut model = embedded::cube();
     let offset = Vec3::new(1e7, -1e7, 1e7);
     for position in &mut model.positions {

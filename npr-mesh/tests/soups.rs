@@ -1,4 +1,4 @@
-//! Random triangles and polygons: what must hold for any.
+//! Properties of random triangles and polygons.
 
 use glam::{DVec3, Vec3};
 use npr_mesh::edges::{self, EdgeKind, EdgeOptions, Edges, NO_FACE};
@@ -7,7 +7,7 @@ use npr_mesh::{Model, normals, weld};
 use proptest::prelude::*;
 use std::collections::BTreeMap;
 
-/// Corners on a coarse lattice coincide and lie in line often; others hardly ever do.
+/// Corners on a coarse lattice often coincide or are collinear; others rarely.
 fn positions() -> impl Strategy<Value = Vec<Vec3>> {
     let lattice = (-2i8..3, -2i8..3, -1i8..2).prop_map(|(x, y, z)| Vec3::new(x.into(), y.into(), z.into()));
     let anywhere = (-1f32..1.0, -1f32..1.0, -1f32..1.0).prop_map(Vec3::from);
@@ -19,7 +19,7 @@ fn positions() -> impl Strategy<Value = Vec<Vec3>> {
     prop_oneof![scaled(lattice.boxed(), exponent.clone()), scaled(anywhere.boxed(), exponent)]
 }
 
-/// Faces over them, some several times, turned or with a corner twice, and some of one polygon.
+/// Faces over these corners, some duplicated, reversed or with a repeated corner, and some in one polygon.
 fn soup() -> impl Strategy<Value = Model> {
     (positions(), prop::collection::vec((0u32..99, 0u32..99, 0u32..99, any::<bool>()), 1..60)).prop_map(
         |(positions, corners)| {
@@ -52,7 +52,7 @@ fn find(model: &Model, polygons: bool, skip_redundant: bool) -> Edges {
     edges::find(&model.positions, &model.faces, face_polygon, &model.face_material, &options)
 }
 
-/// Per edge its ends in ascending order and all of its faces.
+/// Per edge its ends in ascending order and all its faces.
 fn listed(found: &Edges) -> Vec<([u32; 2], Vec<u32>)> {
     let mut all: Vec<([u32; 2], Vec<u32>)> = found
         .edges
@@ -162,7 +162,8 @@ proptest! {
         let triangles = triangulate(&corners);
         prop_assert_eq!(triangles.len(), corners.len() - 2);
         prop_assert_eq!(&triangles, &triangulate(&corners));
-        // Along the outline each side has one triangle more in its direction than against it; elsewhere as many.
+        // Sides on the outline are traversed once more in the direction of the outline than against it, all others
+        // equally often.
         let mut runs = BTreeMap::<[u32; 2], i64>::new();
         let mut run = |from: u32, to: u32, times: i64| {
             if from != to {
@@ -181,7 +182,7 @@ proptest! {
         for i in 0..n {
             run(i as u32, ((i + 1) % n) as u32, -1);
         }
-        // By place: a corner that is there twice may be either.
+        // By position, since a repeated corner may be either of its indices.
         let mut by_place = BTreeMap::<[u32; 2], i64>::new();
         for ([from, to], times) in runs {
             let (from, to) = (place[from as usize], place[to as usize]);

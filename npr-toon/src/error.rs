@@ -166,7 +166,7 @@ pub enum ToonError {
         value: Vec3,
     },
     /// The direction of a light cannot be normalised in f32: the square of its length is below 1e-30, infinite or NaN.
-    #[error("light {index} has the direction {value}: its length must be between 1e-15 and 1e19")]
+    #[error("light {index} comes from the direction {value}: its length must be between 1e-15 and 1e19")]
     LightDirection {
         /// Index of the light.
         index: usize,

@@ -141,6 +141,12 @@ fn smooth_is_the_mean_over_the_pixel() {
 }
 
 #[test]
+fn a_border_of_the_minimum_width_is_hard() {
+    assert_eq!((toon_coverage(0.5, 0.5, MIN_WIDTH), toon_coverage(0.5, 0.5, MIN_WIDTH.next_up())), (1.0, 0.5));
+    assert_eq!(toon_coverage(0.5_f64.next_down(), 0.5, MIN_WIDTH), 0.0);
+}
+
+#[test]
 fn one_band_is_flat() {
     let bands = Bands { thresholds: vec![], tones: vec![Vec3::splat(0.5)], ..Bands::three_diffuse_bands() };
     assert_eq!(bands.validate(), Ok(()));

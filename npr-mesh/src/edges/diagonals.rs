@@ -1,12 +1,12 @@
-//! Diagonals that triangulation added, taken out again.
+//! Removes the diagonals that triangulation added.
 
 use super::unique::edge_of;
 use super::{Edge, EdgeKind, NO_FACE};
 
-/// Takes pairs of faces of one polygon out of each edge: between those, the edge is a diagonal. Two polygons side by
-/// side can be cut along the same one, which then has four faces and is still no line.
+/// Removes pairs of faces of one polygon from each edge; between these the edge is a diagonal. Two adjacent polygons
+/// can share a diagonal, which then has four faces and is still not an edge.
 ///
-/// `further_faces`: sorted by edge, and so left. Returns the diagonals, each with its two faces.
+/// `further_faces` is sorted by edge and remains sorted. Returns the diagonals, each with its two faces.
 pub(super) fn drop_diagonals(
     edges: &mut Vec<Edge>,
     further_faces: &mut Vec<(u32, u32)>,
@@ -54,19 +54,19 @@ pub(super) fn drop_diagonals(
     diagonals
 }
 
-/// Whether the face runs over the edge in this direction.
+/// Whether the face traverses the edge in this direction.
 fn runs_over(faces: &[[u32; 3]], representative: &[u32], face: u32, from: u32, to: u32) -> bool {
     let [a, b, c] = faces[face as usize].map(|v| representative[v as usize]);
     [(a, b), (b, c), (c, a)].contains(&(from, to))
 }
 
-/// What is left of ascending faces when two different ones of a polygon go, and again as long as there are two; and the
-/// pairs.
+/// Repeatedly removes pairs of different faces of one polygon from an ascending list of faces. Returns the remaining
+/// faces, and the pairs.
 fn without_pairs(faces: &[u32], polygon: impl Fn(u32) -> u32) -> (Vec<u32>, Vec<[u32; 2]>) {
     let (mut left, mut pairs) = (Vec::new(), Vec::new());
-    // A polygon's faces stand next to each other.
+    // The faces of a polygon are adjacent in the list.
     for of_polygon in faces.chunk_by(|&a, &b| polygon(a) == polygon(b)) {
-        // From here on one face, as often as it runs over the edge.
+        // From here on `left` holds a single face of this polygon, possibly repeated.
         let begin = left.len();
         for &face in of_polygon {
             if left.get(begin).is_some_and(|waiting| *waiting != face) {

@@ -1,15 +1,15 @@
-//! Polygons that are not flat.
+//! Folded polygons.
 
 use super::Edge;
 use super::triangle_normal;
 use glam::Vec3;
 use std::f32::consts::PI;
 
-/// Leaves of the diagonals of all polygons those of folded ones: of polygons that turn by more than `fold_rad` at one
-/// of theirs.
+/// Keeps only the diagonals of folded polygons: of polygons whose normals differ by more than `fold_rad` at one of
+/// their diagonals.
 ///
-/// A face of zero area has no normal and folds nothing. Where a flat outline crosses itself there are triangles with
-/// their backs up in the plane of the others: they fold nothing, either.
+/// Faces of zero area have no normal and are ignored. So are opposite triangles in one plane, which occur in flat
+/// outlines that intersect themselves.
 pub(super) fn keep_folded(
     diagonals: &mut Vec<Edge>,
     positions: &[Vec3],
@@ -19,7 +19,7 @@ pub(super) fn keep_folded(
 ) {
     let turns = |edge: &&Edge| {
         let [n0, n1] = edge.faces().map(|face| triangle_normal(positions, &faces[face as usize]));
-        // Well conditioned at any angle, and 0 where there is no normal.
+        // Well-conditioned at any angle, and 0 if a normal is zero.
         let turn_rad = n0.cross(n1).length().atan2(n0.dot(n1));
         turn_rad > fold_rad && turn_rad < PI - fold_rad
     };

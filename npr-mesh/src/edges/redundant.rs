@@ -1,9 +1,9 @@
-//! Faces that add nothing to be seen: which of those found to lie on others are left out.
+//! Selects the redundant faces to skip.
 
-/// Which faces to leave out; empty if none.
+/// Which faces to skip; empty if none.
 ///
-/// A triangle cut from a larger polygon may coincide with one cut from another without the polygons doing so; such
-/// polygons are left alone.
+/// A triangle of a larger polygon may coincide with a triangle of another polygon although the polygons differ, so
+/// triangles of larger polygons are kept.
 pub(super) fn skippable(redundant: &[u32], faces: usize, face_polygon: &[u32]) -> Vec<bool> {
     let is_cut = |face: usize| {
         !face_polygon.is_empty()

@@ -21,7 +21,7 @@ fn creases(edges: &Edges, degrees: f32) -> usize {
     edges.edges.iter().filter_map(|edge| edges.dihedral_rad(edge)).filter(|&angle| angle > degrees.to_radians()).count()
 }
 
-/// Corners numbered by bits x, y, z; faces wound counter-clockwise from outside.
+/// Corners numbered by the bits of x, y and z; faces are counter-clockwise from outside.
 fn cube() -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let positions = (0..8u32).map(|i| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32)).collect();
     let quads = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
@@ -67,14 +67,14 @@ fn the_diagonals_of_a_polygon_are_folds_where_it_is_warped() {
         found.folds.iter().map(|fold| (sorted(fold.ends), fold.faces())).collect::<Vec<_>>()
     };
     let quad = [[0, 1, 3], [1, 2, 3]];
-    // With the corner lifted by z the normals are Z and (-z, -z, 1).
+    // With the corner raised by z the normals are Z and (-z, -z, 1).
     let turn_rad = |z: f32| (z * 2f32.sqrt()).atan();
     for z in [0.01, 0.03, 0.4, 20.0] {
         assert_eq!(folds(&lifted(z), &quad, 1.01 * turn_rad(z)), [], "{z}");
         assert_eq!(folds(&lifted(z), &quad, 0.99 * turn_rad(z)), [([1, 3], [0, 1])], "{z}");
     }
     assert_eq!(folds(&lifted(0.0), &quad, 0.0), []);
-    // All of a polygon's, flat ones too.
+    // All diagonals of a folded polygon, including flat ones.
     let five = [lifted(0.4).as_slice(), &[Vec3::new(-1.0, 0.5, 0.0)]].concat();
     let faces = [[0, 1, 3], [1, 2, 3], [3, 4, 0]];
     assert_eq!(folds(&five, &faces, FOLD_RAD), [([0, 3], [0, 2]), ([1, 3], [0, 1])]);
@@ -82,7 +82,7 @@ fn the_diagonals_of_a_polygon_are_folds_where_it_is_warped() {
 
 #[test]
 fn a_flat_outline_that_crosses_itself_has_no_folds() {
-    // A bow: the second triangle lies with its back up.
+    // A bow tie: the second triangle faces the other way.
     let positions = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::new(0.8, 0.9, 0.0)];
     let found = find(&positions, &[[0, 1, 2], [0, 2, 3]], &[0, 0], &[], &EdgeOptions::default());
     let back = |face: &[u32; 3]| triangle_normal(&positions, face).z;
@@ -125,7 +125,7 @@ fn a_face_that_is_turned_round_makes_no_crease() {
     assert_eq!(alike.edges.iter().filter(|edge| edge.wound_oppositely()).count(), 0);
     assert_eq!(turned.edges.iter().filter(|edge| edge.wound_oppositely()).count(), 1);
     assert!(alike.warnings().is_empty());
-    assert_eq!(turned.warnings(), ["1 edges have faces wound oppositely: they make no crease"]);
+    assert_eq!(turned.warnings(), ["1 edges have faces of opposite winding: they are not creases"]);
 }
 
 #[test]
@@ -147,7 +147,7 @@ fn a_duplicate_face_is_counted_but_not_drawn() {
     let drawn = find_drawn(&positions, &faces);
     assert_eq!(count(&drawn, EdgeKind::TwoFace), 18);
     assert_eq!(drawn.skipped.iter().filter(|&&s| s).count(), 2);
-    assert!(matches!(&drawn.warnings()[..], [one] if one.starts_with("2 faces lie on another one")));
+    assert!(matches!(&drawn.warnings()[..], [one] if one.starts_with("2 faces are duplicates")));
     assert!(drawn.skipped[12] && drawn.skipped[13]);
 }
 
@@ -168,7 +168,7 @@ fn a_collapsed_face_does_not_part_its_neighbours() {
 
 #[test]
 fn a_face_of_zero_area_makes_no_crease() {
-    // A sliver with all corners on one line stands between two faces at a right angle.
+    // A sliver with collinear corners between two faces at a right angle.
     let positions = [Vec3::ZERO, Vec3::X, Vec3::X * 0.5, Vec3::Y, Vec3::Z];
     let edges = find_all(&positions, &[[0, 1, 3], [1, 0, 2], [0, 2, 4], [2, 1, 4]]);
     assert_eq!(edges.face_normals[1], Vec3::ZERO);
@@ -201,14 +201,14 @@ fn many_polygons_at_one_edge_take_no_quadratic_time() {
     let start = std::time::Instant::now();
     let edges = find(&positions, &faces, &polygons, &[], &EdgeOptions::default());
     assert!(start.elapsed().as_secs() < 5, "took {:?}", start.elapsed());
-    // Four sides of as many squares; the diagonals pair off within their polygons.
+    // Four sides of as many squares; the diagonals form pairs within their polygons.
     assert_eq!((edges.edges.len(), squares as usize), (4, edges.further_faces.len() / 4 + 2));
     assert_eq!(count(&edges, EdgeKind::NonManifold), 4);
 }
 
 #[test]
 fn a_fan_around_one_vertex_is_found_in_linear_time() {
-    // The hub is the lowest-numbered end of half of all edges: with it as their home, the search is quadratic.
+    // The hub is the lower end of half of all edges, so a search per vertex would be quadratic.
     let rim = 300_000u32;
     let mut positions = vec![Vec3::Y];
     positions.extend((0..rim).map(|i| {
@@ -216,7 +216,7 @@ fn a_fan_around_one_vertex_is_found_in_linear_time() {
         Vec3::new(angle.cos() as f32, 0.0, angle.sin() as f32)
     }));
     let faces: Vec<[u32; 3]> = (0..rim).map(|i| [0, 1 + (i + 1) % rim, 1 + i]).collect();
-    // Every other face first: then as many separate patches wait at the hub as there are faces.
+    // Every other face first, so that there are as many separate patches at the hub as faces.
     let alternating: Vec<[u32; 3]> = faces.iter().step_by(2).chain(faces[1..].iter().step_by(2)).copied().collect();
     for faces in [faces, alternating] {
         let start = std::time::Instant::now();
@@ -229,7 +229,7 @@ fn a_fan_around_one_vertex_is_found_in_linear_time() {
 
 #[test]
 fn an_edge_of_four_faces_is_one_edge_though_each_two_of_them_fit() {
-    // Two tents over one ridge, one finished before the other begins: each gives the ridge both directions.
+    // Two tents over one ridge, one completed before the other begins, each with both directions of the ridge.
     let positions = [Vec3::ZERO, Vec3::X, Vec3::Y, -Vec3::Y, Vec3::Z, -Vec3::Z];
     let edges = find_all(&positions, &[[0, 1, 2], [1, 0, 3], [0, 1, 4], [1, 0, 5]]);
     assert_eq!(edges.edges.len(), 9);
@@ -239,7 +239,7 @@ fn an_edge_of_four_faces_is_one_edge_though_each_two_of_them_fit() {
 
 #[test]
 fn edges_begun_twice_are_found_at_vertices_with_many() {
-    // More upper ends than there are fingerprints, and the doubled ones far apart.
+    // Many upper ends, with the duplicates far apart.
     let mut positions = vec![Vec3::ZERO];
     positions.extend((0..40).map(|i| Vec3::new((0.1 * i as f32).cos(), (0.1 * i as f32).sin(), 0.0)));
     positions.extend([Vec3::Z, -Vec3::Z]);
@@ -264,13 +264,14 @@ fn no_faces_have_no_edges() {
 }
 
 proptest! {
-    /// Against a map filled the plain way, on soups with few vertices, so that every irregularity occurs.
+    /// Compared with a map filled in the obvious way, on random faces over few vertices, so that every irregularity
+    /// occurs.
     #[test]
     fn any_soup_gives_the_edges_of_a_plain_map(
         faces in prop::collection::vec([0u32..12, 0u32..12, 0u32..12], 0..60)
     ) {
         let positions: Vec<Vec3> = (0..12u32).map(|i| {
-            // Two pairs share a place.
+            // Two pairs of vertices share positions.
             let i = if i >= 10 { i - 10 } else { i };
             Vec3::new((i * 7 % 5) as f32, (i * i % 11) as f32, i as f32)
         }).collect();
@@ -308,7 +309,7 @@ proptest! {
         }
     }
 
-    /// The order of faces changes the order of edges and nothing else.
+    /// The order of faces affects only the order of edges.
     #[test]
     fn kinds_do_not_depend_on_the_order_of_faces(
         faces in prop::collection::vec([0u32..9, 0u32..9, 0u32..9], 1..40),

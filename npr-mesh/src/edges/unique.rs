@@ -1,19 +1,12 @@
-//! The sides of every edge brought together.
+//! Groups the sides of faces by edge.
 //!
-//! A counting sort by the lower end (Knuth, The Art of Computer Programming 3, section 5.2, algorithm D) puts all sides
-//! of all edges that begin upwards at a vertex in one place, usually twice as many as edges, in the order of the faces.
-//! A small sort by the upper end brings the sides of each edge together. Nothing can be missed this way, so that
-//! surfaces of any topology take the same way; only where an edge has not exactly two sides, or a vertex more than
-//! six edges, a slower one is taken for that vertex.
+//! A counting sort by the lower vertex (Knuth, The Art of Computer Programming 3, section 5.2, algorithm D) collects
+//! all sides of the edges whose lower end is a vertex, in the order of the faces; usually there are twice as many
+//! sides as edges. A small sort by the upper vertex then groups them by edge. This is correct for any topology. A
+//! slower path handles vertices with more than six such edges or with edges that do not have exactly two sides.
 //!
-//! Of a face two of three sides have the same lower end, its lowest corner: two places to write to, not three. Nothing
-//! depends on an outcome that a processor would have to predict but the number of a vertex's sides: sorting networks
-//! bring them in order.
-//!
-//! What stood here before went through the faces once, with chains of edges that waited for their second side at each
-//! vertex, and then had to prove that no edge was begun twice. This takes 0.65 of its time on the bunny, 1.05 to 1.15 on
-//! the bunny subdivided twice (whose faces come in strips and whose vertices have six edges upwards or two), and 0.65 on
-//! that with its faces shuffled, weld and normals included.
+//! Two of the three sides of a face have the same lower vertex, the lowest corner, so that each face writes to two
+//! memory locations. Sorting networks avoid unpredictable branches except on the number of sides of a vertex.
 
 mod networks;
 
@@ -21,23 +14,23 @@ use super::{Edge, FACE, NON_MANIFOLD, WOUND_OPPOSITELY};
 use bytemuck::Zeroable;
 use networks::sort_few;
 
-/// What one search finds.
+/// The result of the search.
 pub(super) struct Unique {
-    /// By their lower ends, and those of one by their upper ends; an edge's faces come in ascending order.
+    /// Sorted by lower and then by upper vertex. The faces of an edge are in ascending order.
     pub edges: Vec<Edge>,
     /// (edge, face) for third and further faces, sorted by edge.
     pub further_faces: Vec<(u32, u32)>,
-    /// Faces that lie on an earlier one or have two corners at one place; some several times.
+    /// Duplicates of earlier faces, and faces with two corners at one position; possibly repeated.
     pub redundant: Vec<u32>,
 }
 
 /// Finds the unique edges of the faces that are not skipped.
 ///
-/// - `representative`: per vertex the one at its place that stands for it; every face's corners are below its length.
+/// - `representative`: per vertex the representative of its position; the corners of all faces are below its length.
 /// - `skipped`: empty, or per face.
 ///
-/// On the way 24 bytes a face and 4 a vertex. Linear in the faces and vertices; n log n in the sides at a vertex that
-/// has many.
+/// It temporarily takes 24 bytes per face and 4 bytes per vertex. The time is linear in faces and vertices, and n log
+/// n in the number of sides at a vertex.
 pub(super) fn unique(faces: &[[u32; 3]], representative: &[u32], skipped: &[bool]) -> Unique {
     let corners = |face: [u32; 3]| face.map(|vertex| representative[vertex as usize]);
     if skipped.is_empty() {
@@ -47,8 +40,9 @@ pub(super) fn unique(faces: &[[u32; 3]], representative: &[u32], skipped: &[bool
     }
 }
 
-/// A face's side of an edge, seen from the edge's lower end: the upper end in the upper half, below it the face and
-/// whether it runs upwards. A number, since memory for those comes zeroed without being written.
+/// A side of a face, seen from the lower vertex of its edge: the upper vertex in the upper 32 bits, the face in the
+/// next 31 bits, and in the lowest bit whether the face traverses it upwards. An integer, since large arrays of zeros
+/// need no initialisation.
 type Side = u64;
 
 fn side(high: u32, face: u32, up: bool) -> Side {
@@ -67,15 +61,15 @@ fn is_up(side: Side) -> bool {
     side & 1 != 0
 }
 
-/// `corners`: the welded corners of a face, from its own corners.
+/// `corners` maps the corners of a face to their representatives.
 fn search(
     faces: &[[u32; 3]],
     vertices: usize,
     skipped: impl Fn(u32) -> bool,
     corners: impl Fn([u32; 3]) -> [u32; 3],
 ) -> Unique {
-    // How many sides have each vertex as their lower end, then where those begin, in the end where those of the next
-    // vertex do.
+    // First the number of sides with each vertex as their lower end, then the start of its range, and finally the
+    // end.
     let mut starts = vec![0u32; vertices];
     for (number, &face) in (0u32..).zip(faces) {
         if !skipped(number) {
@@ -99,7 +93,7 @@ fn search(
         if low == middle || middle == high {
             redundant.push(number);
         }
-        // Whether it runs from the lowest corner to the middle one and on to the highest.
+        // Whether the face traverses its corners in the order lowest, middle, highest.
         let up = u32::from(a < b) + u32::from(b < c) + u32::from(c < a) == 2;
         let start = &mut starts[low as usize];
         let at = *start as usize;
@@ -110,7 +104,7 @@ fn search(
         *start += 1;
     }
 
-    // A closed surface has three edges for two faces.
+    // A closed surface has three edges per two faces.
     let edges = Vec::with_capacity(faces.len() + faces.len() / 2 + faces.len() / 32 + 16);
     let mut found = Unique { edges, further_faces: Vec::new(), redundant };
     let mut begin = 0;
@@ -130,8 +124,8 @@ fn ascending([a, b, c]: [u32; 3]) -> [u32; 3] {
     [low, ba.min(rest), ba.max(rest)]
 }
 
-/// Finds the edges of a vertex's sides if each has two of its own, as on any closed surface, and they are few. If not,
-/// finds none and says so.
+/// Finds the edges of a vertex if there are few and each has exactly two sides, as on closed surfaces. Otherwise adds
+/// nothing and returns `false`.
 #[inline(always)]
 fn pair(low: u32, sides: &[Side], found: &mut Unique) -> bool {
     match sides.len() {
@@ -150,7 +144,7 @@ fn pair(low: u32, sides: &[Side], found: &mut Unique) -> bool {
 fn pair_few<const SIDES: usize, const EDGES: usize>(low: u32, sides: &[Side], found: &mut Unique) -> bool {
     let Ok(sides) = <[Side; SIDES]>::try_from(sides) else { return false };
     let sides = sort_few(sides);
-    // A side from a vertex to itself, of a face with two corners at one place, comes first.
+    // A side from a vertex to itself, of a face with two corners at one position, is sorted first.
     let mut before = low;
     let mut fits = true;
     let mut twins = false;
@@ -164,7 +158,7 @@ fn pair_few<const SIDES: usize, const EDGES: usize>(low: u32, sides: &[Side], fo
         let oppositely = if (first ^ second) & 1 == 0 { WOUND_OPPOSITELY } else { 0 };
         let packed = [face_of(first), face_of(second) | oppositely];
         edges[i] = Edge { ends, packed };
-        // Two faces with two edges in common have all corners in common.
+        // Two faces with two common edges have all corners in common.
         for other in &edges[..i] {
             twins |= (other.packed[0] == packed[0]) & ((other.packed[1] ^ packed[1]) & FACE == 0);
         }
@@ -176,16 +170,16 @@ fn pair_few<const SIDES: usize, const EDGES: usize>(low: u32, sides: &[Side], fo
     true
 }
 
-/// Finds the edges of a vertex's sides, however many each has.
+/// Finds the edges of a vertex for any number of sides.
 ///
-/// `corners`: of a face, welded.
+/// `corners` returns the representatives of a face's corners.
 fn gather(low: u32, sides: &mut [Side], found: &mut Unique, corners: impl Fn(u32) -> [u32; 3]) {
     sides.sort_unstable();
     let mut met = Vec::new();
-    let mut crowd = Vec::new();
+    let mut duplicates = Vec::new();
     for of_edge in sides.chunk_by(|&a, &b| high_of(a) == high_of(b)) {
         let high = high_of(of_edge[0]);
-        // From a vertex to itself.
+        // A side from the vertex to itself.
         if high == low {
             continue;
         }
@@ -195,12 +189,12 @@ fn gather(low: u32, sides: &mut [Side], found: &mut Unique, corners: impl Fn(u32
         found.edges.push(edge_of(low, high, &met));
         found.further_faces.extend(met.iter().skip(2).map(|&(face, _)| (number, face)));
         if met.len() > 1 {
-            // Of each set of corners at an edge, all faces but the first are redundant; and a face that is there twice, which
-            // has two corners at one place.
-            crowd.clear();
-            crowd.extend(met.iter().map(|&(face, _)| (ascending(corners(face)), face)));
-            crowd.sort_unstable();
-            let twins = crowd.windows(2).filter(|pair| pair[0].0 == pair[1].0);
+            // Of faces with the same corners at an edge, all but the first are redundant, and so is a face that
+            // occurs twice because two of its corners are at one position.
+            duplicates.clear();
+            duplicates.extend(met.iter().map(|&(face, _)| (ascending(corners(face)), face)));
+            duplicates.sort_unstable();
+            let twins = duplicates.windows(2).filter(|pair| pair[0].0 == pair[1].0);
             found.redundant.extend(twins.map(|pair| pair[1].1));
         }
     }

@@ -1,7 +1,7 @@
-//! Models that need no file: the Utah teapot, a few solids, and a still life made of them.
+//! Built-in models: the Utah teapot, simple solids, and a still life made of them.
 //!
-//! Right-handed, Y up, without texture coordinates. Each solid comes with one default [`Material`](crate::Material);
-//! [`placed`] moves it and gives it another.
+//! Right-handed, Y up, without texture coordinates. Each solid has one default [`Material`](crate::Material);
+//! [`placed`] transforms it and assigns another material.
 
 mod scene;
 mod solids;

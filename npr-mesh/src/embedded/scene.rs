@@ -1,18 +1,19 @@
-//! A still life for first pictures and for tests.
+//! A still life for examples and tests.
 
 use glam::{Mat4, Vec3, Vec4};
 
 use super::{cone, cube, ground, placed, sphere, teapot, torus};
 use crate::{Material, Model};
 
-/// Below the things that stand at y = 0, so that none of their faces lies in the ground's plane; far less than a pixel
-/// in any picture that shows the whole scene.
+/// Slightly below the objects that stand at y = 0, so that none of their faces is coplanar with the ground. The
+/// offset is far below a pixel in any picture of the whole scene.
 const GROUND_Y: f32 = -0.001;
 
-/// A teapot amid a cube (front left), a torus (front), a sphere (front right) and a cone (right), on a disc.
+/// A teapot with a cube (front left), a torus (front), a sphere (front right) and a cone (right) on a disc.
 ///
-/// Made to be seen from the side of +Z and a little above, from about (3, 6, 13) towards (0, 1, 0.5). The disc's radius
-/// is 8, the teapot 3.15 high. One material each, in the order teapot, cube, torus, sphere, cone, ground.
+/// It is designed for a view from +Z and slightly above, such as from (3, 6, 13) towards (0, 1, 0.5). The disc has a
+/// radius of 8, the teapot a height of 3.15. Each object has one material, in the order teapot, cube, torus, sphere,
+/// cone, ground.
 pub fn scene() -> Model {
     let at = |x: f32, y: f32, z: f32| Mat4::from_translation(Vec3::new(x, y, z));
     let turned = |degrees: f32| Mat4::from_rotation_y(degrees.to_radians());
@@ -23,7 +24,7 @@ pub fn scene() -> Model {
             Material { name: name.into(), base_color: linear(srgb), double_sided: true, ..Material::default() };
         scene.append(&placed(model, transform, material));
     };
-    // The spout comes a little towards the viewer.
+    // Rotated so that the spout points slightly towards the viewer.
     add(teapot(12), turned(-20.0), "teapot", [0xd9, 0x6b, 0x43]);
     add(cube(), at(-3.4, 0.8, 3.3) * turned(-30.0) * scaled(0.8, 0.8, 0.8), "cube", [0x4f, 0x86, 0xb5]);
     add(torus(0.85, 0.3, 64, 32), at(0.2, 0.3, 4.1), "torus", [0x6f, 0xa8, 0x6a]);
@@ -33,7 +34,7 @@ pub fn scene() -> Model {
     scene
 }
 
-/// An opaque colour from a picker, linear.
+/// An opaque sRGB colour in linear values.
 fn linear(srgb: [u8; 3]) -> Vec4 {
     let decode = |byte: u8| {
         let encoded = f32::from(byte) / 255.0;

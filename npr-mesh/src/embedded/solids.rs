@@ -1,4 +1,4 @@
-//! Simple solids, and how to place them.
+//! Simple solids, and their transformation.
 
 use std::f64::consts::TAU;
 
@@ -6,11 +6,11 @@ use glam::{DVec3, Mat3, Mat4, Vec3};
 
 use crate::{Material, Model};
 
-/// The cube from -1 to 1, six square polygons with normals of their own.
+/// The cube from -1 to 1: six square polygons with flat normals.
 pub fn cube() -> Model {
     let mut shape = Shape::default();
     for normal in [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z] {
-        // Any two axes that make a right-handed system with the normal.
+        // Two axes that form a right-handed system with the normal.
         let right = DVec3::new(normal.z, normal.x, normal.y);
         let up = normal.cross(right);
         let corners = [-right - up, right - up, right + up, up - right];
@@ -19,7 +19,7 @@ pub fn cube() -> Model {
     shape.finish()
 }
 
-/// The sphere of radius 1 around the origin: `segments` (at least 3) meridians, half as many bands (at least 2), and one
+/// The unit sphere around the origin with `segments` (at least 3) meridians, half as many bands (at least 2), and one
 /// vertex at each pole.
 pub fn sphere(segments: u32) -> Model {
     let segments = segments.max(3);
@@ -45,8 +45,8 @@ pub fn sphere(segments: u32) -> Model {
     shape.finish()
 }
 
-/// The cylinder of radius 1 around the Y axis from y = -1 to 1, with `segments` (at least 3) flat sides that are
-/// shaded as round, and hard rims.
+/// The cylinder of radius 1 around the Y axis from y = -1 to 1, with `segments` (at least 3) flat sides with smooth
+/// normals, and hard edges at the caps.
 pub fn cylinder(segments: u32) -> Model {
     let segments = segments.max(3);
     let mut shape = Shape::default();
@@ -59,12 +59,12 @@ pub fn cylinder(segments: u32) -> Model {
     shape.finish()
 }
 
-/// The cone around the Y axis with its base, of radius 1, at y = -1 and its tip at y = 1; `segments` as in
-/// [`cylinder`]. A side has a tip of its own, whose normal is that of the side's middle.
+/// The cone around the Y axis with a base of radius 1 at y = -1 and its apex at y = 1; `segments` as in [`cylinder`].
+/// Each side has its own apex vertex with the normal at the middle of the side.
 pub fn cone(segments: u32) -> Model {
     let segments = segments.max(3);
     let mut shape = Shape::default();
-    // Perpendicular to a slope that falls by 2 over 1.
+    // Perpendicular to the slope, which falls by 2 over a distance of 1.
     let slanted = |outwards: DVec3| (2.0 * outwards + DVec3::Y).normalize();
     let base: Vec<_> =
         (0..segments).map(|i| around(i, segments)).map(|p| shape.vertex(p - DVec3::Y, slanted(p))).collect();
@@ -76,8 +76,8 @@ pub fn cone(segments: u32) -> Model {
     shape.finish()
 }
 
-/// The torus around the Y axis: `major` from the axis to the tube's centre, `minor` the tube's radius, `around_axis` and
-/// `around_tube` segments (at least 3 of each).
+/// The torus around the Y axis: `major` is the radius of the tube's centre line, `minor` the radius of the tube, with
+/// `around_axis` and `around_tube` segments (at least 3 of each).
 pub fn torus(major: f32, minor: f32, around_axis: u32, around_tube: u32) -> Model {
     let (around_axis, around_tube) = (around_axis.max(3), around_tube.max(3));
     let (major, minor) = (f64::from(major), f64::from(minor));
@@ -100,22 +100,22 @@ pub fn torus(major: f32, minor: f32, around_axis: u32, around_tube: u32) -> Mode
     shape.finish()
 }
 
-/// A disc of radius `half_size` at y = 0 that looks up, one polygon of 128 corners.
+/// A disc of radius `half_size` at y = 0 with the normal +Y: one polygon of 128 corners.
 pub fn ground(half_size: f32) -> Model {
     let mut shape = Shape::default();
     shape.cap(128, f64::from(half_size), DVec3::Y);
-    // The cap of a unit cylinder lies at y = 1.
+    // The cap of a unit cylinder is at y = 1.
     shape.model.positions.iter_mut().for_each(|p| p.y = 0.0);
     shape.finish()
 }
 
-/// `model`, moved by `transform` (affine; mirroring turns the faces so that they still look outwards), with
-/// `material` as its only one and without textures.
+/// `model` transformed by an affine `transform`, with `material` as its only material and without textures. A
+/// mirroring transform also reverses the winding of faces, so that they still face outwards.
 pub fn placed(model: Model, transform: Mat4, material: Material) -> Model {
     let mut model = model;
     let linear = Mat3::from_mat4(transform);
     let mirrored = linear.determinant() < 0.0;
-    // Cofactors take normals to normals, as the inverse's transpose does, and exist for every matrix.
+    // The cofactor matrix transforms normals like the inverse transpose, but exists for every matrix.
     let cofactors = Mat3::from_cols(
         linear.y_axis.cross(linear.z_axis),
         linear.z_axis.cross(linear.x_axis),
@@ -136,7 +136,7 @@ pub fn placed(model: Model, transform: Mat4, material: Material) -> Model {
     model
 }
 
-/// Step `i` of `n` around a circle; step n is step 0 to the last bit.
+/// Step `i` of `n` around a circle; step n is bitwise equal to step 0.
 fn angle(i: u32, n: u32) -> f64 {
     TAU * f64::from(i % n) / f64::from(n)
 }
@@ -147,7 +147,7 @@ fn around(i: u32, n: u32) -> DVec3 {
     DVec3::new(cos, 0.0, -sin)
 }
 
-/// A model in the making.
+/// A model under construction.
 #[derive(Default)]
 struct Shape {
     model: Model,
@@ -170,7 +170,7 @@ impl Shape {
         self.polygons += 1;
     }
 
-    /// A polygon with vertices of its own.
+    /// A polygon with its own vertices and a flat normal.
     fn facet(&mut self, corners: &[DVec3], normal: DVec3) {
         let corners: Vec<_> = corners.iter().map(|&corner| self.vertex(corner, normal)).collect();
         self.polygon(&corners);
@@ -185,7 +185,7 @@ impl Shape {
                 self.vertex(around(i, segments) * radius + normal, normal)
             })
             .collect();
-        // Around a vertex in the middle, as a fan from the rim would be all slivers.
+        // A fan around a vertex in the centre, since a fan from the rim would consist of slivers.
         for (i, &corner) in rim.iter().enumerate() {
             self.model.faces.push([centre, corner, rim[(i + 1) % rim.len()]]);
             self.model.face_polygon.push(self.polygons);
@@ -201,8 +201,8 @@ impl Shape {
         }
     }
 
-    /// As [`Shape::quads`], of a curved surface: every triangle is a polygon by itself. Where one of the rings is a
-    /// single point, only one triangle is left of each quad.
+    /// Like [`Shape::quads`], for curved surfaces: every triangle is a polygon of its own. Where one of the rings is
+    /// a single point, each quad is reduced to one triangle.
     fn band(&mut self, below: &[u32], above: &[u32]) {
         for i in 0..below.len() {
             let next = (i + 1) % below.len();

@@ -63,12 +63,12 @@ const SPOUT: [[f64; 5]; 7] = [
 
 type Patch = [[DVec3; 4]; 4];
 
-/// The Utah teapot: 32 bicubic patches, each cut into `segments_per_patch` squared quads of two triangles. Fewer than 2
-/// count as 2: one quad a patch would press handle and spout flat.
+/// The Utah teapot: 32 bicubic patches, each tessellated into `segments_per_patch` squared quads of two triangles.
+/// Values below 2 count as 2, since one quad per patch would flatten handle and spout.
 ///
-/// It stands on y = 0 around the Y axis in Newell's own size, 3.15 high, the spout towards +X. Normals are those of
-/// the Bézier surface. The four parts (body, lid, handle, spout) are closed surfaces but for six openings: the rim, the
-/// lid's lower edge and both ends of handle and spout, which reach into the body.
+/// It stands on y = 0 around the Y axis in Newell's original size, 3.15 high, with the spout towards +X. Normals are
+/// those of the Bézier surface. The four parts (body, lid, handle, spout) are closed surfaces except for six
+/// openings: the rim, the lower edge of the lid, and both ends of handle and spout, which extend into the body.
 pub fn teapot(segments_per_patch: u32) -> Model {
     let segments = segments_per_patch.max(2);
     let mut model = Model { materials: vec![Material::default()], ..Model::default() };
@@ -86,8 +86,8 @@ pub fn teapot(segments_per_patch: u32) -> Model {
     model
 }
 
-/// Adds the patches of one part, once for each of `mirrors`, the factors of x and y. Patches meet smoothly
-/// everywhere within a part, so what stands at one position is one vertex; two parts never share one.
+/// Adds the patches of one part, once for each of `mirrors`, the factors of x and y. Patches of a part join smoothly,
+/// so vertices at one position are merged; parts share no vertices.
 fn add_part(model: &mut Model, rows: &[[DVec3; 4]], mirrors: &[[f64; 2]], segments: u32) {
     let mut at_position = HashMap::new();
     for first_row in (0..rows.len() - 1).step_by(3) {
@@ -99,8 +99,8 @@ fn add_part(model: &mut Model, rows: &[[DVec3; 4]], mirrors: &[[f64; 2]], segmen
                 for column in 0..=segments {
                     let (u, v) = (f64::from(column) / f64::from(segments), f64::from(row) / f64::from(segments));
                     let (position, normal) = surface(&patch, u, v);
-                    // Y up. Negation is exact and 0 is made positive, so the border that two patches share, which
-                    // lies in the mirror or has the same control points, is the same to the last bit.
+                    // Y up. Negation is exact and -0 becomes 0, so that border vertices of two patches, which lie in
+                    // the mirror plane or have the same control points, are bitwise equal.
                     let position = y_up(position * mirror);
                     let key = position.as_vec3().to_array().map(f32::to_bits);
                     grid.push(*at_position.entry(key).or_insert_with(|| {

@@ -1,7 +1,7 @@
-//! Files that a model names.
+//! Files that a model refers to.
 //!
-//! They are read on the model's word alone, so they may only lie in its own folder, or in one that the caller allows:
-//! a picture of a stranger's model must not show what else is on the disk.
+//! Their names come from untrusted files, so they may only be in the model's own folder or in a folder that the
+//! caller allows. Otherwise a model could expose other files on the disk.
 
 use super::read_file;
 use crate::{Limits, LoadError, LoadOptions};
@@ -11,15 +11,16 @@ use std::fs;
 use std::io;
 use std::path::{Component, Path, PathBuf};
 
-/// As many files a model may name. Each costs a few questions to the system, whether it is there or not.
+/// The maximum number of files that a model may refer to. Each requires several system calls, whether it exists or
+/// not.
 const MOST_FILES: u64 = 10_000;
 
-/// Where the files that one model names may be.
+/// The folders that may contain the files of a model.
 pub(super) struct External<'a> {
     pub model: &'a Path,
     pub limits: &'a Limits,
     asset_root: Option<&'a Path>,
-    /// The folders: as typed, and where that is.
+    /// The folders, as given and in canonical form.
     roots: OnceCell<Vec<(PathBuf, PathBuf)>>,
     asked: Cell<u64>,
     bytes: Cell<u64>,
@@ -38,15 +39,15 @@ impl<'a> External<'a> {
         }
     }
 
-    /// The first of some names under which there is a file, in the model's folder before the asset root.
+    /// The first of several names for which there is a file, in the model's folder or else in the asset root.
     ///
-    /// Names are relative to either, or absolute, and then within one of them. They are resolved without a look at the
-    /// disk, so that one that leads elsewhere is refused before anything there is touched; then symbolic links are
-    /// followed, and must end within too.
+    /// Names are relative to one of these folders, or absolute and within one of them. They are first resolved
+    /// lexically, so that names outside are rejected without accessing them; then symbolic links are followed, whose
+    /// targets must be within the folders as well.
     ///
     /// # Errors
-    /// [`LoadError::Outside`], or [`LoadError::Read`] where there is nothing, both about the first name.
-    /// [`LoadError::TooLarge`] after more than [`MOST_FILES`] questions.
+    /// [`LoadError::Outside`], or [`LoadError::Read`] if there is no such file, both with the first name.
+    /// [`LoadError::TooLarge`] for more than [`MOST_FILES`] calls.
     pub fn find(&self, names: &[PathBuf]) -> Result<PathBuf, LoadError> {
         self.asked.set(self.asked.get() + 1);
         if self.asked.get() > MOST_FILES {
@@ -83,7 +84,7 @@ impl<'a> External<'a> {
         })
     }
 
-    /// The same names where they are relative to the folder of another file that was found, and as they are.
+    /// The names relative to the folder of another file, followed by the names themselves.
     #[cfg(feature = "obj")]
     pub fn beside(&self, file: &Path, names: Vec<PathBuf>) -> Vec<PathBuf> {
         let own = self.roots().ok().and_then(|roots| roots.first());
@@ -113,7 +114,7 @@ impl<'a> External<'a> {
         Ok(self.roots.get_or_init(|| roots))
     }
 
-    /// The bytes of a file that was [found](Self::find). All files together may have [`Limits::file_bytes`].
+    /// Reads a file that was [found](Self::find). The total size of all files is limited by [`Limits::file_bytes`].
     pub fn read(&self, file: &Path) -> Result<Vec<u8>, LoadError> {
         let left = self.limits.file_bytes.saturating_sub(self.bytes.get());
         let bytes = read_file(file, &Limits { file_bytes: left, ..*self.limits })?;
@@ -137,10 +138,10 @@ fn folded(path: &Path) -> Option<PathBuf> {
     folded.is_absolute().then_some(folded)
 }
 
-/// The names under which a file could be meant by its name in another file.
+/// The file names that a name in another file may mean.
 ///
-/// A backslash may be a separator. Of an absolute name, which comes from someone else's machine as a rule, the last part
-/// alone may do. `None` for what names no file.
+/// A backslash may be a separator. Absolute names usually come from another machine, so their last component alone is
+/// tried as well. `None` if the name cannot be that of a file.
 pub(super) fn meanings(name: &str) -> Option<Vec<PathBuf>> {
     let slashed = name.replace('\\', "/");
     let is_absolute = slashed.starts_with('/') || slashed.as_bytes().get(1) == Some(&b':');
@@ -155,7 +156,7 @@ pub(super) fn meanings(name: &str) -> Option<Vec<PathBuf>> {
     (!meanings.is_empty() && !name.contains('\0')).then_some(meanings)
 }
 
-/// A name from a file, for messages: on one line, and no longer than that.
+/// A name from a file for messages: on one line, and shortened.
 pub(super) fn shortened(name: &str) -> String {
     const MOST: usize = 80;
     let mut text: String = name.chars().take(MOST).flat_map(char::escape_debug).collect();

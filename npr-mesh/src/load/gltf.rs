@@ -1,15 +1,14 @@
-//! glTF 2.0, `.gltf` and `.glb`, flattened into one posed [`Model`](crate::Model).
+//! Loads glTF 2.0, `.gltf` and `.glb`, and flattens it into one posed [`Model`](crate::Model).
 //!
-//! The `gltf` crate turns the JSON into typed structures and does nothing else here, of what [`parse`] gives it. Its
-//! validation is not run: it
-//! panics where a POSITION attribute names an accessor that does not exist, it lets cycles of nodes and accessors
-//! beyond their buffers pass, and it refuses files that can be drawn (a POSITION accessor without bounds). So every
-//! index is looked up with a check, and vertex data goes through [`accessor`], which checks its bounds.
+//! The `gltf` crate only converts the JSON prepared by [`parse`] to typed structures. Its validation is not used: it
+//! panics on a POSITION attribute with a missing accessor, accepts cycles of nodes and accessors beyond their
+//! buffers, and rejects files that can be drawn (a POSITION accessor without bounds). Every index is therefore
+//! checked here, and vertex data is read through [`accessor`], which checks bounds.
 //!
-//! What of a file counts: the meshes of its default scene (or the first one, or all nodes where there is no scene)
-//! with node transforms, skins and morph targets in the pose that the file states, no animation; base colour,
-//! alpha mode, sidedness and vertex colours. Extensions: `KHR_texture_transform` (base colour texture),
-//! `KHR_mesh_quantization`, and `KHR_materials_unlit`, which changes nothing that is kept.
+//! The model consists of the meshes of the default scene (or of the first scene, or of all nodes if there is no
+//! scene) with node transforms, skins and morph targets in the pose that the file states, without animation; and of
+//! base colour, alpha mode, sidedness and vertex colours. Supported extensions: `KHR_texture_transform` (base colour
+//! texture), `KHR_mesh_quantization`, and `KHR_materials_unlit`, which has no effect here.
 
 mod accessor;
 mod files;
@@ -29,15 +28,15 @@ use std::path::Path;
 const QUANTIZATION: &str = "KHR_mesh_quantization";
 const EXTENSIONS: [&str; 3] = ["KHR_materials_unlit", QUANTIZATION, "KHR_texture_transform"];
 
-/// A parsed file and the bytes that it refers to.
+/// A parsed file and the data that it refers to.
 struct Document<'a> {
     path: &'a Path,
     limits: &'a Limits,
     external: &'a External<'a>,
     root: Root,
-    /// One for each buffer, as long as the file says.
+    /// The buffers, with the lengths that the file states.
     buffers: Vec<Bytes<'a>>,
-    /// Of the file and its buffers.
+    /// The total size of the file and its buffers in bytes.
     bytes: u64,
     /// Whether attributes may have the types of `KHR_mesh_quantization`.
     quantized: bool,
@@ -57,10 +56,10 @@ fn malformed(path: &Path, fault: impl Into<String>) -> LoadError {
     LoadError::Malformed { path: path.to_owned(), fault: fault.into() }
 }
 
-/// Reads a file. Normals that it does not have are zero; the model may be empty.
+/// Loads a file. Missing normals are zero, and the model may be empty.
 ///
 /// # Errors
-/// [`LoadError`], which names the file and the fault.
+/// [`LoadError`] with the file and the fault.
 pub(super) fn load(external: &External) -> Result<Parsed, LoadError> {
     let (path, limits) = (external.model, external.limits);
     let file = read_file(path, limits)?;
@@ -81,7 +80,7 @@ pub(super) fn load(external: &External) -> Result<Parsed, LoadError> {
     Ok(Parsed { model, warnings })
 }
 
-/// The version (glTF 2.0, 3.2 "Asset") and the extensions (3.12 "Specifying Extensions").
+/// Checks the version (glTF 2.0, 3.2 "Asset") and the extensions (3.12 "Specifying Extensions").
 fn check_requirements(path: &Path, root: &Root, warnings: &mut Vec<String>) -> Result<(), LoadError> {
     let unsupported = |feature: String| Err(LoadError::Unsupported { path: path.to_owned(), feature });
     let version = |text: &str| {
@@ -89,7 +88,7 @@ fn check_requirements(path: &Path, root: &Root, warnings: &mut Vec<String>) -> R
         let number = |digits: &str| digits.bytes().all(|b| b.is_ascii_digit()).then(|| digits.parse::<u32>().ok())?;
         Some((number(major)?, number(minor)?))
     };
-    // `minVersion` is what a file needs; without it, any 2.x may be read as 2.0.
+    // `minVersion` is the required version. Without it, any version 2.x is read as 2.0.
     let asset = &root.asset;
     if let Some(needed) = asset.min_version.as_deref()
         && version(needed).is_none_or(|needed| needed > (2, 0))

@@ -1,4 +1,4 @@
-//! PNG and JPEG bytes to RGBA8.
+//! Decodes PNG and JPEG to RGBA8.
 
 use crate::{Limits, LoadError};
 use image::error::ImageFormatHint;
@@ -6,14 +6,14 @@ use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader};
 use std::io::Cursor;
 use std::path::Path;
 
-/// Width, height and `width * height * 4` bytes, rows from the top, of a PNG or JPEG file in memory.
+/// Decodes a PNG or JPEG file in memory: width, height and `width * height * 4` bytes, rows from the top.
 ///
-/// The kind is told by the first bytes, not by a file ending. The size that the header states is compared with
-/// [`Limits::texels`] and, added to `so_far`, with [`Limits::texels_in_all`] before memory is reserved for it. 16-bit
-/// samples are rounded to 8; colour profiles and Exif orientation are ignored, as glTF 2.0 prescribes (3.8.2).
+/// The format is determined by the first bytes, not by the file extension. The size in the header is checked against
+/// [`Limits::texels`] and, added to `so_far`, against [`Limits::texels_in_all`] before memory is allocated. 16-bit
+/// samples are rounded to 8 bits. Colour profiles and Exif orientation are ignored, as glTF 2.0 requires (3.8.2).
 ///
 /// # Errors
-/// [`LoadError::TooLarge`] and [`LoadError::Malformed`] with `path`, the second naming the image as `name`.
+/// [`LoadError::TooLarge`] and [`LoadError::Malformed`] with `path`; the latter with the name of the image.
 pub(super) fn decode(
     bytes: &[u8],
     name: &str,
@@ -24,18 +24,18 @@ pub(super) fn decode(
     let malformed = |why: String| LoadError::Malformed { path: path.to_owned(), fault: format!("image {name}: {why}") };
     let mut reader =
         ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| malformed(e.to_string()))?;
-    // Another crate of the same build may have turned on more of `image`'s formats.
+    // Another crate in the build may enable more formats of `image`.
     if let Some(other) = reader.format().filter(|format| !matches!(format, ImageFormat::Png | ImageFormat::Jpeg)) {
         return Err(malformed(ImageError::Unsupported(ImageFormatHint::Exact(other).into()).to_string()));
     }
-    // Eight bytes per texel are the most that a format here stores; the rest is room for the decoders' own tables.
+    // The formats store at most eight bytes per texel; the rest is for the tables of the decoders.
     let mut decoder_limits = image::Limits::default();
     decoder_limits.max_alloc = Some(limits.texels.saturating_mul(16).saturating_add(64 << 20));
     reader.limits(decoder_limits);
     let decoder = reader.into_decoder().map_err(|e| malformed(e.to_string()))?;
     let (width, height) = decoder.dimensions();
     let texels = u64::from(width) * u64::from(height);
-    // Also those of an image that turns out to be broken: finding that out takes its time.
+    // Broken images count as well, since decoding them takes time.
     *so_far = so_far.saturating_add(texels);
     for (what, count, limit) in
         [("texels in an image", texels, limits.texels), ("texels in all images", *so_far, limits.texels_in_all)]

@@ -1,7 +1,7 @@
-//! One guarded way in for each file format.
+//! Loaders for each file format.
 //!
-//! A loader parses with the format's crate, checks everything that is then trusted (indices, lengths, finite
-//! numbers, [`Limits`]), and only then converts.
+//! A loader parses a file with the crate of its format, checks everything that is used afterwards (indices, lengths,
+//! finite numbers, [`Limits`]), and then converts it.
 
 mod external;
 #[cfg(feature = "gltf")]
@@ -20,16 +20,17 @@ use std::fs;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
-/// How a file is to be read.
+/// Options of [`load`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoadOptions {
-    /// Bounds on what is accepted.
+    /// Limits on what is accepted.
     pub limits: Limits,
-    /// A folder in which files that the model names (textures, materials, buffers) may lie besides the model's own. A
-    /// relative name that is not found beside the model is looked for in this folder. Without it, nothing outside of the
-    /// model's folder is read.
+    /// An additional folder for files that the model refers to (textures, materials, buffers). A relative name that
+    /// is not found beside the model is searched for in this folder. Without it, nothing outside the model's folder
+    /// is read.
     pub asset_root: Option<PathBuf>,
-    /// Where the file has no normals, they are made, and split between faces that meet at more than this angle.
+    /// The crease angle in radians, 0..=π, for missing normals: they are split between faces that meet at more than
+    /// this angle.
     pub normal_crease_angle_rad: f32,
 }
 
@@ -39,28 +40,28 @@ impl Default for LoadOptions {
     }
 }
 
-/// A model, and what had to be repaired or left out to get it.
+/// A model, and the warnings of its loading.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Loaded {
-    /// The triangles, every normal present.
+    /// The triangles; all normals are present.
     pub model: Model,
-    /// Different ones, in the order in which they first came up.
+    /// Distinct warnings in the order of their first occurrence.
     pub warnings: Vec<Warning>,
 }
 
-/// What the loader of a format returns: normals may be missing, faces too.
+/// The result of a format's loader: normals may be missing, and there may be no faces.
 struct Parsed {
     model: Model,
-    /// As they came up, the same one any number of times.
+    /// In the order of occurrence, with repetitions.
     warnings: Vec<String>,
 }
 
-/// Reads a model by its file's ending (`.obj`, `.gltf`, `.glb`, in any case).
+/// Loads a model file. The format is determined by the file extension (`.obj`, `.gltf`, `.glb`, in any case).
 ///
 /// # Errors
-/// [`LoadError`], which names the file and the fault.
+/// [`LoadError`] with the file and the fault.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, LoadError> {
-    // Said here: as a folder in which nothing is found it would be a warning for each file.
+    // Checked here, since a missing folder would otherwise give a warning for each file.
     if let Some(root) = &options.asset_root {
         let failed = |source| LoadError::Read { path: root.clone(), source };
         if !fs::metadata(root).map_err(failed)?.is_dir() {
@@ -87,7 +88,7 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, LoadError> {
     Ok(Loaded { model, warnings })
 }
 
-/// What of a model is repaired whatever its format: normals that are not there, faces that cannot be seen.
+/// Warns about missing normals and degenerate faces, for any format.
 fn report(model: &Model, warnings: &mut Vec<String>) {
     let mut used = vec![false; model.positions.len()];
     model.faces.iter().flatten().for_each(|&vertex| used[vertex as usize] = true);
@@ -106,7 +107,7 @@ fn report(model: &Model, warnings: &mut Vec<String>) {
     }
 }
 
-/// All of a regular file that is within [`Limits::file_bytes`].
+/// Reads a regular file within [`Limits::file_bytes`].
 fn read_file(path: &Path, limits: &Limits) -> Result<Vec<u8>, LoadError> {
     let failed = |source: io::Error| LoadError::Read { path: path.to_owned(), source };
     let too_large = |count| LoadError::TooLarge {
@@ -115,7 +116,7 @@ fn read_file(path: &Path, limits: &Limits) -> Result<Vec<u8>, LoadError> {
         count,
         limit: limits.file_bytes,
     };
-    // Asked before opening: to open a pipe may wait for ever.
+    // Checked before opening, since opening a pipe may block.
     let metadata = fs::metadata(path).map_err(failed)?;
     if !metadata.is_file() {
         return Err(failed(io::Error::other("not a regular file")));
@@ -125,7 +126,7 @@ fn read_file(path: &Path, limits: &Limits) -> Result<Vec<u8>, LoadError> {
     }
     let mut bytes = Vec::with_capacity(usize::try_from(metadata.len()).unwrap_or(0));
     let file = fs::File::open(path).map_err(failed)?;
-    // A file may grow between the question and the reading.
+    // The file may grow after its length was read.
     file.take(limits.file_bytes.saturating_add(1)).read_to_end(&mut bytes).map_err(failed)?;
     if bytes.len() as u64 > limits.file_bytes {
         return Err(too_large(bytes.len() as u64));

@@ -1,10 +1,10 @@
 //! Wavefront OBJ and MTL.
 //!
-//! tobj parses; what it would misread, choke on or run away with is put right or refused before ([`prepare`]):
-//! it takes polylines of three points and more for faces, refuses a file for a comment that is not UTF-8, a
-//! byte-order mark or a continued line, gives colours to the wrong vertices where only some have one, replaces an
-//! absent normal by the one before, panics on some indices and on a `Kd` of two numbers, and reads material files
-//! of any size. Materials are therefore read here ([`mtl`]); tobj learns their names only.
+//! tobj parses the file. What it would misread or cannot handle is corrected or rejected before ([`prepare`]): it
+//! treats polylines of three and more points as faces, rejects files with a comment that is not UTF-8, a byte-order
+//! mark or a continued line, assigns colours to the wrong vertices if only some have one, replaces a missing normal
+//! by the preceding one, panics on some indices and on a `Kd` of two numbers, and reads material files of any size.
+//! Materials are therefore read in [`mtl`]; tobj only gets their names.
 
 mod builder;
 mod faults;
@@ -22,19 +22,21 @@ use mtl::{Library, Names, linear_from_srgb, move_materials};
 use prepare::prepare;
 use std::io::Read;
 
-/// Reads an OBJ file, the `.mtl` files that it names and their textures.
+/// Loads an OBJ file, its `.mtl` files and their textures.
 ///
-/// - Vertices without a normal have a zero one. Texture coordinates are turned upside down to [`Model::uvs`]'s
-///   convention. Normals that are not finite count as absent, such texture coordinates as 0.
-/// - `Kd` and vertex colours (`v x y z r g b`) are taken as sRGB-encoded and converted. Materials are double-sided.
-/// - Faces without a material, or with one that no file defines, get [`Material::default`] as material 0.
-/// - Groups and smoothing groups are passed over; points, lines, curves and surfaces are too, with a warning.
-/// - Materials may be used before the line that names their file. Of several by one name the first counts.
-/// - A missing or broken material file or texture is a warning. Textures of unused materials are not read.
+/// - Missing normals are zero. Texture coordinates are flipped vertically to the convention of [`Model::uvs`].
+///   Normals that are not finite count as missing, and such texture coordinates become 0.
+/// - `Kd` and vertex colours (`v x y z r g b`) are taken as sRGB-encoded and converted to linear values. Materials
+///   are double-sided.
+/// - Faces without a material, or with an undefined one, get [`Material::default`] as material 0.
+/// - Smoothing groups are ignored. Points, lines, curves and surfaces are skipped with a warning.
+/// - Materials may be used before the line that names their file. Of several materials with one name the first is
+///   used.
+/// - A missing or invalid material file or texture gives a warning. Textures of unused materials are not read.
 ///
 /// # Errors
-/// [`LoadError`] for what cannot be read, is no OBJ, refers to vertices that are not there or not finite, or is
-/// over a limit. A file without faces is no error here.
+/// [`LoadError`] if the file cannot be read, is invalid, refers to missing or non-finite vertices, or exceeds a
+/// limit. A file without faces is not an error here.
 pub(super) fn load(external: &External) -> Result<Parsed, LoadError> {
     let (path, limits) = (external.model, external.limits);
     let bytes = read_file(path, limits)?;
@@ -64,10 +66,10 @@ pub(super) fn load(external: &External) -> Result<Parsed, LoadError> {
     }
     warnings.extend(without_definition(&undefined));
 
-    // Two copies of a large file are one too many: tobj's own arrays come on top.
+    // The text is released as early as possible, since tobj allocates its own arrays.
     let text = prepared.text;
     let options = tobj::LoadOptions { ignore_lines: true, ignore_points: true, ..tobj::LoadOptions::default() };
-    // What a file uses before the line that names its material file is defined too.
+    // Materials may be used before the line that names their file.
     let mut reader = (&b"mtllib all\n"[..]).chain(text.as_slice());
     let (meshes, _) = tobj::load_obj_buf(&mut reader, &options, |_| {
         Ok((vec![tobj::Material::default(); library.materials.len()], material_of.iter().cloned().collect()))
@@ -111,7 +113,7 @@ pub(super) fn load(external: &External) -> Result<Parsed, LoadError> {
         warnings.push(format!("{} texture coordinates or colours are not finite", builder.repaired));
     }
     let mut model = builder.model;
-    // Files say 0..=255 at times.
+    // Some files have colours in 0..=255.
     if model.colors.iter().any(|c| c.max_element() > 1.0) {
         warnings.push("vertex colours above 1 are taken as 0..=255".to_owned());
         for color in &mut model.colors {
@@ -128,7 +130,7 @@ pub(super) fn load(external: &External) -> Result<Parsed, LoadError> {
     Ok(Parsed { model, warnings })
 }
 
-/// One warning, however many materials a missing file would have defined.
+/// A single warning for all undefined materials.
 fn without_definition(names: &[&str]) -> Option<String> {
     const MOST: usize = 3;
     if let [name] = names {
@@ -146,12 +148,12 @@ fn without_definition(names: &[&str]) -> Option<String> {
     ))
 }
 
-/// Numbers meshes from 0 in the order of their first faces, without gaps; empty if there is one.
+/// Renumbers meshes from 0 in the order of their first faces, without gaps. Empty if there is a single mesh.
 fn renumber(face_mesh: &mut Vec<u32>) {
     let mut count = 0;
     let mut last = None;
     for mesh in face_mesh.iter_mut() {
-        // An object that is gone back to is another: it has another line.
+        // An object that is continued later in the file counts as another object.
         if last.is_some_and(|last| last != *mesh) {
             count += 1;
         }

@@ -1,31 +1,32 @@
-//! What was repaired or left out, counted.
+//! Warnings, counted.
 
 use std::collections::HashMap;
 use std::fmt;
 
-/// So many different ones describe a file well enough.
+/// The maximum number of different warnings.
 const MOST: usize = 100;
 
-/// Something that was repaired or left out, and how many times.
+/// Something that was repaired or skipped, and the number of occurrences.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Warning {
-    /// One line, without the model's name.
+    /// A single line without the name of the model.
     pub text: String,
-    /// 1 or more.
+    /// At least 1.
     pub count: u64,
 }
 
 impl Warning {
-    /// Counts equal lines. Of more than [`MOST`] different ones the last says how many more there are.
+    /// Counts equal lines. If there are more than [`MOST`] different lines, the last one states how many were
+    /// omitted.
     pub(super) fn counted(lines: Vec<String>) -> Vec<Self> {
-        let mut place_of = HashMap::new();
+        let mut index_of = HashMap::new();
         let mut warnings: Vec<Self> = Vec::new();
         for line in lines {
-            let place = *place_of.entry(line).or_insert_with_key(|line| {
+            let index = *index_of.entry(line).or_insert_with_key(|line| {
                 warnings.push(Self { text: escaped(line), count: 0 });
                 warnings.len() - 1
             });
-            warnings[place].count += 1;
+            warnings[index].count += 1;
         }
         let more = warnings.len().saturating_sub(MOST);
         if more > 1 {
@@ -36,7 +37,7 @@ impl Warning {
     }
 }
 
-/// A file's names may hold anything; a warning stays one line.
+/// Names in files may contain control characters; a warning must remain a single line.
 fn escaped(line: &str) -> String {
     if !line.chars().any(char::is_control) {
         return line.to_owned();
@@ -50,7 +51,7 @@ impl From<String> for Warning {
     }
 }
 
-/// The line, and after it how many times, if more than once.
+/// The text, followed by the count if it is above 1.
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { text, count } = self;
@@ -74,11 +75,11 @@ mod tests {
     }
 
     #[test]
-    fn a_repeated_line_takes_no_place_of_another() {
+    fn a_repeated_line_does_not_displace_another() {
         let lines = (0..300).map(|number| if number < 200 { "often".to_owned() } else { number.to_string() });
         let warnings = Warning::counted(lines.collect());
         assert_eq!((warnings.len(), warnings[0].to_string()), (101, "often (200 times)".to_owned()));
-        assert_eq!(warnings[100].text, "299", "one more takes no more place than saying so");
+        assert_eq!(warnings[100].text, "299", "a single further warning is listed instead of counted");
         let many = Warning::counted((0..1000).map(|number| number.to_string()).collect());
         assert_eq!((many.len(), many[100].text.as_str()), (101, "and 900 more"));
     }

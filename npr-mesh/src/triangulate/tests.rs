@@ -13,7 +13,7 @@ fn triangle_normal(corners: &[Vec3], t: [u32; 3]) -> DVec3 {
     (b - a).cross(c - a)
 }
 
-/// n − 2 triangles, none turned over, together as large as the polygon.
+/// n − 2 triangles, none reversed, with the total area of the polygon.
 fn check(corners: &[Vec3]) -> Vec<[u32; 3]> {
     let triangles = triangulate(corners);
     assert_eq!(triangles.len(), corners.len() - 2);
@@ -176,7 +176,7 @@ fn corners_in_line_and_repeated_corners_keep_area_and_count() {
     check(&flat(&[(0.0, 0.0), (0.0, 0.0), (0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0)]));
     // A corner that touches an edge.
     check(&flat(&[(0.0, 0.0), (4.0, 0.0), (4.0, 3.0), (2.0, 0.0), (0.0, 3.0)]));
-    // A spike without width.
+    // A spike of zero width.
     check(&flat(&[(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (5.0, 1.0), (2.0, 1.0), (2.0, 2.0), (0.0, 2.0)]));
 }
 
@@ -200,7 +200,7 @@ fn what_has_no_area_still_gives_all_triangles() {
 
 #[test]
 fn an_outline_that_goes_round_and_round_ends() {
-    // Every corner is an ear: none of the others is elsewhere than at one of its corners.
+    // Every corner is an ear, since all corners are at three positions.
     let places = flat(&[(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)]);
     let corners: Vec<_> = (0..99_000).map(|i| places[i % 3]).collect();
     let start = std::time::Instant::now();
@@ -219,19 +219,19 @@ fn pentagram() -> Vec<Vec3> {
 
 #[test]
 fn polygons_that_are_clipped_share_one_budget_of_tests() {
-    // All corners are on a circle, so each is an ear. The first is compared with the two corners that are not its own,
-    // the next with the one that is left: 3 tests.
+    // All corners are on a circle, so each is an ear. The first is compared with the two other corners, the next with
+    // the remaining one: 3 tests.
     let mut triangles = Vec::new();
     let mut left = 10;
     for expected in [7, 4, 1, 0, 0] {
         triangulate_within(&pentagram(), &mut triangles, &mut left);
         assert_eq!((left, triangles.len()), (expected, 3));
     }
-    // And where there is more than one polygon may take.
+    // Also if the shared budget exceeds that of one polygon.
     let mut left = EAR_TESTS + 10;
     triangulate_within(&pentagram(), &mut triangles, &mut left);
     assert_eq!(left, EAR_TESTS + 7);
-    // What needs no ears takes none.
+    // Polygons that need no ear clipping use no tests.
     for corners in [ell(), star(5), flat(&[(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])] {
         triangulate_within(&corners, &mut triangles, &mut left);
         assert_eq!(left, EAR_TESTS + 7);
@@ -248,19 +248,19 @@ fn an_ear_is_empty_only_if_no_corner_is_inside_or_on_a_side() {
         assert_eq!(tests_left, 4);
         empty
     };
-    // In it, and in the middle of each side.
+    // Inside, and in the middle of each side.
     for (x, y) in [(1.5, 1.5), (3.5, 1.0), (1.0, 3.5), (0.5, 0.5), (2.0, 0.5), (2.5, 2.5), (0.5, 2.0)] {
         assert!(!is_empty_with(x, y), "{x} {y}");
     }
-    // Beyond each side, within the ear's box.
+    // Beyond each side, within the ear's bounding box.
     for (x, y) in [(2.0, 0.4), (3.5, 0.1), (2.6, 2.5), (3.5, 3.5), (0.4, 2.0), (0.1, 3.5)] {
         assert!(is_empty_with(x, y), "{x} {y}");
     }
-    // Beyond each side, out of the box, and at the ear's own corners.
+    // Outside the bounding box, and at the ear's own corners.
     for (x, y) in [(5.0, 1.0), (-1.0, 0.0), (1.0, 5.0), (1.0, -1.0), (0.0, 0.0), (4.0, 1.0), (1.0, 4.0)] {
         assert!(is_empty_with(x, y), "{x} {y}");
     }
-    // Without a test left nothing is known of the others.
+    // Without remaining tests nothing is known about the other corners.
     let with_another = [ear[0], ear[1], ear[2], DVec2::new(9.0, 9.0)];
     assert!(!is_empty(&with_another, &[1, 2, 3, 0], [0, 1, 2], &mut 0));
 }
@@ -287,9 +287,9 @@ fn clipped_ears_of_a_simple_outline_keep_its_area() {
 
 #[test]
 fn a_polygon_far_from_the_origin_is_projected_and_cut_as_at_the_origin() {
-    // 3 by 4: the longer side of the box is from -1 to 1, the shorter from -3/4 to 3/4.
+    // 3 by 4: the longer side of the box is scaled to -1..1, the shorter to -3/4..3/4.
     let (at_origin, triangles) = (project(&ell()).unwrap(), triangulate(&ell()));
-    // Whole numbers, which f32 holds exactly up to 2^24.
+    // Integers, which f32 represents exactly up to 2^24.
     for offset in [Vec3::ZERO, Vec3::new(1e6, -2e6, 3e6), Vec3::new(-8e6, 0.0, 0.0), Vec3::splat(1.6e7)] {
         let corners: Vec<Vec3> = ell().iter().map(|&corner| corner + offset).collect();
         let flat = project(&corners).unwrap();
@@ -318,7 +318,7 @@ fn a_large_tangle_ends() {
 
 #[test]
 fn one_tangle_does_not_take_what_other_polygons_of_its_file_need() {
-    // Far more corners than can all be compared with each other.
+    // Too many corners to compare all pairs.
     let (mut triangles, mut left) = (Vec::new(), 3 * EAR_TESTS);
     for expected in [2 * EAR_TESTS, EAR_TESTS, 0, 0] {
         triangulate_within(&tangle(12_000), &mut triangles, &mut left);
@@ -349,7 +349,7 @@ proptest! {
 
     #[test]
     fn any_corners_give_all_triangles(
-        // A coarse lattice: corners coincide, touch edges and lie in line often.
+        // A coarse lattice, on which corners often coincide, touch edges or are collinear.
         lattice in prop::collection::vec((-3i8..4, -3i8..4, 0i8..2), 3..14),
     ) {
         let corners: Vec<_> =

@@ -1,4 +1,4 @@
-//! One file, or a folder of them, and what is to come of it.
+//! A test case: files and the expected result.
 
 use npr_mesh::edges::{self, EdgeOptions};
 use npr_mesh::{LoadError, LoadOptions, Loaded, Model, load};
@@ -7,13 +7,13 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 pub struct Case {
-    /// Also the name of its folder.
+    /// The name of the case and of its folder.
     pub name: String,
-    /// By path relative to its folder. The first one is the model.
+    /// Files by path relative to the folder; the first is the model.
     pub files: Vec<(String, Vec<u8>)>,
-    /// Symbolic links, as path and target.
+    /// Symbolic links as path and target.
     pub links: Vec<(String, String)>,
-    /// A named pipe, if any.
+    /// The path of a named pipe.
     pub pipe: Option<String>,
     /// `asset_root` is relative to the case's folder.
     pub options: LoadOptions,
@@ -21,10 +21,10 @@ pub struct Case {
 }
 
 pub enum Expect {
-    /// So many faces, and exactly so many warnings, each with one of these parts. That there are no normals is not
-    /// counted.
+    /// The number of faces, and exactly as many warnings as parts, each of which contains one of these parts. The
+    /// warning about missing normals is ignored.
     Loads(usize, Vec<String>),
-    /// An error that has all of these parts.
+    /// An error whose message contains all of these parts.
     Fails(Vec<String>),
 }
 
@@ -63,7 +63,7 @@ impl Case {
         self
     }
 
-    /// Writes the files into a folder of the case's name, and returns the model.
+    /// Writes the files into a folder of the case's name, and returns the path of the model.
     pub fn write(&self, into: &Path) -> PathBuf {
         let folder = into.join(&self.name);
         for (name, bytes) in &self.files {
@@ -86,19 +86,19 @@ impl Case {
         folder.join(&self.files[0].0)
     }
 
-    /// Whether this system can make the files.
+    /// Whether this operating system supports the files.
     pub fn is_possible(&self) -> bool {
         cfg!(unix) || (self.links.is_empty() && self.pipe.is_none())
     }
 
-    /// Loads it, and tells what is not as it should be.
+    /// Loads the model, and returns the difference from the expectation.
     pub fn run(&self, folder: &Path) -> (Duration, Result<(), String>) {
         let model = self.write(folder);
         let mut options = self.options.clone();
         options.asset_root = options.asset_root.map(|root| folder.join(&self.name).join(root));
         let start = Instant::now();
         let result = load(&model, &options);
-        // With the search for edges that follows in any use.
+        // Followed by an edge search, as in any use.
         let outcome = self.compare(result);
         (start.elapsed(), outcome)
     }
@@ -142,7 +142,7 @@ impl Case {
     }
 }
 
-/// Everything that may be relied on once a model is loaded.
+/// Checks all guarantees for a loaded model.
 pub fn sound(model: &Model) -> Result<(), String> {
     let vertices = model.positions.len();
     let fits = |length: usize, of: usize| length == 0 || length == of;

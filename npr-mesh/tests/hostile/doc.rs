@@ -1,9 +1,9 @@
-//! glTF files in the making.
+//! A builder of glTF files.
 
 use crate::case::{Case, Expect};
 use serde_json::{Value, json};
 
-/// A file in the making.
+/// A glTF file under construction.
 #[derive(Clone)]
 pub struct Doc {
     pub json: Value,
@@ -43,7 +43,7 @@ impl Doc {
         doc
     }
 
-    /// A buffer view of these bytes, and its number.
+    /// Adds a buffer view of these bytes, and returns its index.
     pub fn view(&mut self, bytes: &[u8]) -> usize {
         self.bin.resize(self.bin.len().next_multiple_of(4), 0);
         let view = json!({"buffer": 0, "byteOffset": self.bin.len(), "byteLength": bytes.len()});
@@ -54,7 +54,7 @@ impl Doc {
         views.len() - 1
     }
 
-    /// An accessor over a view of its own, and its number.
+    /// Adds an accessor with its own view, and returns its index.
     pub fn add(&mut self, bytes: &[u8], mut accessor: Value) -> usize {
         accessor["bufferView"] = json!(self.view(bytes));
         let accessors = self.json["accessors"].as_array_mut().expect("accessors");
@@ -74,7 +74,7 @@ impl Doc {
         self.add(&bytes, json!({"componentType": 5126, "type": kind, "count": values.len() / lanes}))
     }
 
-    /// With something else at a JSON pointer; its parent is there.
+    /// Replaces or adds the value at a JSON pointer, whose parent must exist.
     pub fn set(mut self, pointer: &str, value: Value) -> Self {
         let (parent, key) = pointer.rsplit_once('/').expect("a pointer");
         let parent = self.json.pointer_mut(parent).expect(pointer);
@@ -92,7 +92,7 @@ impl Doc {
         self
     }
 
-    /// With these attributes of the only primitive.
+    /// Replaces the attributes of the only primitive.
     pub fn attribute(self, name: &str, accessor: usize) -> Self {
         self.set(&format!("{PRIMITIVE}/attributes/{name}"), json!(accessor))
     }
@@ -101,7 +101,7 @@ impl Doc {
         glb_of(self.json.to_string().as_bytes(), &self.bin)
     }
 
-    /// With the buffer as a `data:` URI.
+    /// Stores the buffer as a `data:` URI.
     pub fn text(&self) -> String {
         self.clone().set("/buffers/0/uri", json!(data_uri(&self.bin))).json.to_string()
     }

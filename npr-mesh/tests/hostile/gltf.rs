@@ -1,4 +1,4 @@
-//! glTF 2.0, as text and in its binary container.
+//! glTF 2.0 as JSON and in the binary container.
 
 use crate::case::{Case, Expect, fails, loads};
 use crate::doc::{Doc, PRIMITIVE, data_uri, glb_of};
@@ -512,7 +512,7 @@ fn externals() -> Vec<Case> {
 }
 
 impl Expect {
-    /// One warning, with the last of the parts.
+    /// Expects one warning with the last of the parts.
     fn last(self) -> Self {
         match self {
             Expect::Loads(faces, mut warnings) => Expect::Loads(faces, warnings.split_off(warnings.len() - 1)),

@@ -1,4 +1,4 @@
-//! Textures, of both formats.
+//! Textures of both formats.
 
 use crate::case::{Case, fails, loads};
 use crate::obj::TRIANGLE;
@@ -23,7 +23,7 @@ fn crc(bytes: &[u8]) -> u32 {
     })
 }
 
-/// A PNG file whose header says another size than it has.
+/// A PNG file whose header states another size.
 pub fn png_that_says(width: u32, height: u32) -> Vec<u8> {
     let mut png = picture(2, 2, ImageFormat::Png);
     png[16..20].copy_from_slice(&width.to_be_bytes());

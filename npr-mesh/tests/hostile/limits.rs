@@ -1,4 +1,4 @@
-//! Small files that ask for much.
+//! Small files that request large amounts of memory or time.
 
 use crate::case::{Case, fails, loads};
 use crate::doc::{Doc, PRIMITIVE, data_uri};
@@ -63,7 +63,7 @@ pub fn cases() -> Vec<Case> {
             .without("/scene")
     };
     let textures = |count: usize| {
-        // 2 MiB of texels in a few kB, for each of which a material asks.
+        // 2 MiB of texels in a few kB, used by many materials.
         let png = picture(1024, 512, ImageFormat::Png);
         let mut doc = square();
         let view = doc.view(&png);

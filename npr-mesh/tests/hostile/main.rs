@@ -1,6 +1,7 @@
-//! Broken, odd and hostile files, each with what is to come of it: a model and its warnings, or an error.
+//! Invalid, unusual and hostile files, each with its expected result: a model with warnings, or an error.
 //!
-//! To look at the files: `NPR_CORPUS=folder cargo test -p npr-mesh --test hostile -- --ignored write_the_corpus`.
+//! To write the files to a folder: `NPR_CORPUS=folder cargo test -p npr-mesh --test hostile -- --ignored
+//! write_the_corpus`.
 #![cfg(all(feature = "obj", feature = "gltf"))]
 #![allow(clippy::print_stdout)]
 
@@ -16,10 +17,10 @@ use case::Case;
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// For one file, on a machine that has other things to do.
+/// The time limit per file on a busy machine.
 const LONGEST: Duration = Duration::from_secs(20);
 
-/// A folder of its own, gone when dropped.
+/// A temporary folder, which is removed when dropped.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -60,7 +61,7 @@ fn every_file_has_the_outcome_stated() {
         if taken > LONGEST {
             wrong.push(format!("{}: took {taken:?}", case.name));
         }
-        // Some are large.
+        // Removed at once, since some cases are large.
         let _ = std::fs::remove_dir_all(folder.0.join(&case.name));
     }
     println!("{} files, the slowest {} in {:?}", cases.len(), slowest.1, slowest.0);
@@ -68,7 +69,8 @@ fn every_file_has_the_outcome_stated() {
     assert!(cases.len() >= 150, "{}", cases.len());
 }
 
-/// The corpus with bytes changed, taken out, put in and repeated. `NPR_MUTATIONS` says how many files; the seed is fixed.
+/// The corpus with bytes changed, removed, inserted and repeated. `NPR_MUTATIONS` is the number of files; the seed is
+/// fixed.
 #[test]
 fn broken_copies_give_a_sound_model_or_an_error() {
     let wanted = std::env::var("NPR_MUTATIONS").ok().and_then(|n| n.parse().ok()).unwrap_or(3000u32);

@@ -8,7 +8,7 @@ fn case(name: &str, text: impl Into<Vec<u8>>, expect: Expect) -> Case {
     Case::new(&format!("obj-{name}"), "m.obj", text, expect)
 }
 
-/// The triangle's vertices before a text.
+/// The vertices of the triangle followed by a text.
 fn after(text: &str) -> String {
     format!("{TRIANGLE}{text}")
 }

@@ -1,4 +1,4 @@
-//! One model, written in different ways, is one model.
+//! Different notations of one model give the same model.
 
 use crate::Folder;
 use crate::case::sound;
@@ -6,7 +6,7 @@ use npr_mesh::{LoadOptions, Loaded, Model, embedded, load};
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-/// In the order of the file.
+/// The faces in the order of the file.
 fn faces_of(model: &Model) -> Vec<[u32; 3]> {
     model.faces.clone()
 }
@@ -66,7 +66,7 @@ fn every_way_to_write_a_model_gives_the_same_model() {
 #[test]
 fn quads_have_the_triangles_and_the_edges_of_the_same_model_in_triangles() {
     let folder = Folder::new("quads");
-    // A sheet of flat squares, cut along the diagonal that the loader takes: their first one.
+    // A sheet of flat squares, split along the diagonal that the loader chooses: the first.
     let side = 9u32;
     let mut vertices = String::new();
     let (mut quads, mut triangles) = (String::new(), String::new());
@@ -103,7 +103,7 @@ fn quads_have_the_triangles_and_the_edges_of_the_same_model_in_triangles() {
     assert_eq!(found(&triangles).edges.len() - found(&quads).edges.len(), 81);
 }
 
-/// The models that are not part of the repository, where they are there: their text in other ways is the same model.
+/// Other notations of the shared test models, if available, give the same models.
 #[test]
 fn real_models_are_the_same_in_every_way_to_write_them() {
     let data = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/data"));
@@ -122,7 +122,7 @@ fn real_models_are_the_same_in_every_way_to_write_them() {
             text.lines().take(before).filter(|l| l.split_whitespace().next() == Some(kind)).count() as i64
         };
         let all = [counts("v", usize::MAX), counts("vt", usize::MAX), counts("vn", usize::MAX)];
-        // All vertices come before all faces in these.
+        // In these files all vertices precede all faces.
         let negative: String = text
             .lines()
             .map(|line| match line.strip_prefix("f ") {

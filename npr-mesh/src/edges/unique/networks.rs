@@ -1,7 +1,7 @@
-//! A few numbers brought in order without a branch.
+//! Sorting networks for a few numbers.
 //!
-//! K. E. Batcher's merge exchange (Knuth, The Art of Computer Programming 3, section 5.2.2, algorithm M): the same pairs
-//! are compared whatever the numbers are. With as many as the compiler knows they stay in registers.
+//! K. E. Batcher's merge exchange (Knuth, The Art of Computer Programming 3, section 5.2.2, algorithm M) compares the
+//! same pairs for any input. With a number of elements known at compile time they stay in registers.
 
 /// Sorts up to 12 numbers.
 #[inline(always)]
@@ -19,7 +19,7 @@ pub(super) fn sort_few<const N: usize>(numbers: [u64; N]) -> [u64; N] {
 const MOST: usize = 12;
 const MOST_PAIRS: usize = 41;
 
-/// The pairs for `n` numbers, and how many they are.
+/// The pairs for `n` numbers, and their count.
 const fn merge_exchange(n: usize) -> ([(usize, usize); MOST_PAIRS], usize) {
     let mut pairs = [(0, 0); MOST_PAIRS];
     let mut count = 0;
@@ -50,7 +50,7 @@ const fn merge_exchange(n: usize) -> ([(usize, usize); MOST_PAIRS], usize) {
 mod tests {
     use super::*;
 
-    /// What sorts all sequences of zeros and ones sorts everything (Knuth, theorem Z).
+    /// A network that sorts all sequences of zeros and ones sorts every sequence (Knuth, theorem Z).
     fn all_zeros_and_ones<const N: usize>() {
         for bits in 0..1u64 << N {
             let numbers: [u64; N] = std::array::from_fn(|i| bits >> i & 1);

@@ -1,47 +1,46 @@
-//! Numbers out of buffers, every bound checked (glTF 2.0, 3.6.2 "Accessors").
+//! Reads numbers from buffers with bounds checks (glTF 2.0, 3.6.2 "Accessors").
 
 use super::{Document, QUANTIZATION, files};
 use gltf::json::accessor::{ComponentType, Type, sparse};
 use gltf::json::validation::Checked;
 use gltf::json::{self, Index};
 
-/// An accessor whose elements are known to lie within their buffers.
+/// An accessor whose elements are within their buffers.
 ///
-/// One without a buffer view is all zeros, and then nothing bounds its count but what the caller asks of it
-/// before reading.
+/// Without a buffer view all elements are zero; the caller must then limit their number before reading.
 pub(super) struct Accessor<'d> {
     number: usize,
-    /// Elements.
+    /// The number of elements.
     pub count: u64,
-    /// Elements that there are by the file.
+    /// The number of elements stated in the file.
     stated: u64,
-    /// Whether there is a buffer view behind it.
+    /// Whether the accessor has a buffer view.
     pub stored: bool,
-    /// Numbers in an element.
+    /// The number of components of an element.
     pub lanes: usize,
     component: ComponentType,
     normalized: bool,
     bytes: &'d [u8],
-    /// Bytes from one element to the next.
+    /// The distance between elements in bytes.
     stride: usize,
     sparse: Option<Sparse<'d>>,
 }
 
-/// Elements that replace some of the others.
+/// Sparse elements, which replace others.
 struct Sparse<'d> {
     indices: &'d [u8],
     index_type: ComponentType,
     values: &'d [u8],
 }
 
-/// What an accessor is for, as far as that says which component types it may have (glTF 2.0, 3.7.2.1 "Overview", 3.7.3.1
+/// The use of an accessor, which determines the allowed component types (glTF 2.0, 3.7.2.1 "Overview", 3.7.3.1
 /// "Skins", and `KHR_mesh_quantization`).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Purpose {
     Position,
     Normal,
     TexCoord,
-    /// Also weights of joints.
+    /// Colours and joint weights.
     Fraction,
     Displacement,
     Joints,
@@ -50,7 +49,7 @@ pub(super) enum Purpose {
 }
 
 impl Purpose {
-    /// Whether the component type is allowed, and whether only by `KHR_mesh_quantization`.
+    /// Whether the component type is allowed, and whether it requires `KHR_mesh_quantization`.
     fn allows(self, component: ComponentType, normalized: bool) -> (bool, bool) {
         use ComponentType::{F32, I8, I16, U8, U16, U32};
         let unsigned = matches!(component, U8 | U16);
@@ -60,7 +59,7 @@ impl Purpose {
             Purpose::Normal => (component == F32 || (signed && normalized), component != F32),
             Purpose::Displacement => (component == F32 || signed, component != F32),
             Purpose::TexCoord => (component != U32, !(component == F32 || (unsigned && normalized))),
-            // Some files forget to say that they are normalised: there is nothing else that they could be.
+            // Some files omit the normalised flag, although no other meaning is allowed.
             Purpose::Fraction => (component == F32 || unsigned, false),
             Purpose::Joints => (unsigned, false),
             Purpose::Indices => (unsigned || component == U32, false),
@@ -69,20 +68,20 @@ impl Purpose {
     }
 }
 
-/// How integers become fractions.
+/// The conversion of integers to floats.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Integers {
-    /// As the accessor says.
+    /// As stated by the accessor.
     AsStated,
-    /// All of them are normalised: for attributes that allow no others, in files that forget to say so.
+    /// Always normalised, for attributes that allow nothing else in files that omit the flag.
     Normalized,
 }
 
 impl<'d> Accessor<'d> {
-    /// Looks an accessor up and checks its extent.
+    /// Looks up an accessor and checks its bounds.
     ///
     /// # Errors
-    /// The fault, naming the accessor.
+    /// The fault with the index of the accessor.
     pub fn new(document: &'d Document, index: Index<json::Accessor>, purpose: Purpose) -> Result<Self, String> {
         let number = index.value();
         let accessor = document.root.get(index).ok_or_else(|| format!("accessor {number} does not exist"))?;
@@ -91,7 +90,7 @@ impl<'d> Accessor<'d> {
             return Err(fail("unknown component type".to_owned()));
         };
         let Checked::Valid(kind) = accessor.type_ else { return Err(fail("unknown type".to_owned())) };
-        // Matrices of small components have padded columns; the only matrices that are read here are of floats.
+        // Small matrices have padded columns. The only matrices that are read here consist of floats.
         if matches!(kind, Type::Mat2 | Type::Mat3) {
             return Err(fail("a 2x2 or 3x3 matrix, which no attribute is".to_owned()));
         }
@@ -148,7 +147,7 @@ impl<'d> Accessor<'d> {
         Ok(found)
     }
 
-    /// Leaves out all elements but the first `count`.
+    /// Truncates the accessor to the first `count` elements.
     pub fn first(mut self, count: u64) -> Self {
         if count < self.count {
             self.bytes = &self.bytes[..self.bytes.len().min(count as usize * self.stride)];
@@ -157,10 +156,10 @@ impl<'d> Accessor<'d> {
         self
     }
 
-    /// All elements as floats, `N` to an element.
+    /// All elements as `N` floats each.
     ///
     /// # Errors
-    /// Another number of them, or a component type that no attribute has.
+    /// Another number of components, or a component type that is not allowed for attributes.
     pub fn floats<const N: usize>(&self, integers: Integers) -> Result<Vec<[f32; N]>, String> {
         let normalized = self.normalized || integers == Integers::Normalized;
         match (self.component, normalized) {
@@ -177,10 +176,10 @@ impl<'d> Accessor<'d> {
         }
     }
 
-    /// All elements as unsigned integers, `N` to an element.
+    /// All elements as `N` unsigned integers each.
     ///
     /// # Errors
-    /// Another number of them, or another component type.
+    /// Another number of components, or another component type.
     pub fn integers<const N: usize>(&self) -> Result<Vec<[u32; N]>, String> {
         match self.component {
             ComponentType::U8 => self.elements(|[b]| u32::from(b)),
@@ -208,7 +207,7 @@ impl<'d> Accessor<'d> {
         } else if self.stride == element {
             self.bytes.chunks_exact(element).map(read).collect()
         } else {
-            // The last element ends the slice, however wide the stride.
+            // The last element may be shorter than the stride.
             self.bytes.chunks(self.stride).map(|bytes| read(&bytes[..element])).collect()
         };
         if let Some(sparse) = &self.sparse {

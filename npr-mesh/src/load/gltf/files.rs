@@ -1,4 +1,4 @@
-//! Bytes: the binary container, buffers, and what URIs refer to.
+//! Raw data: the binary container, buffers, and URIs.
 
 use super::Document;
 use crate::LoadError;
@@ -11,13 +11,13 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 use std::rc::Rc;
 
-/// The data of one buffer.
+/// The content of a buffer.
 pub(super) enum Bytes<'a> {
-    /// The binary chunk of the file itself.
+    /// The binary chunk of the file.
     Chunk(&'a [u8]),
-    /// From a URI, with the length that the buffer states; two buffers may share a file.
+    /// The content of a URI and the length of the buffer; buffers may share a file.
     Resource(Rc<Vec<u8>>, usize),
-    /// Not to be had, and why: a fault only where something shown needs it.
+    /// Unavailable, with the reason. It is an error only if a shown mesh needs the buffer.
     Missing(String),
 }
 
@@ -31,10 +31,10 @@ impl Bytes<'_> {
     }
 }
 
-/// The JSON text and, of a GLB file, the binary chunk (glTF 2.0, 4.4 "Binary glTF Layout").
+/// Splits a file into the JSON text and, for a GLB file, the binary chunk (glTF 2.0, 4.4 "Binary glTF Layout").
 ///
-/// Our own, since the `gltf` crate's subtracts the header's length without a check and refuses files with chunks
-/// of other kinds, which the specification has readers skip.
+/// The parser of the `gltf` crate subtracts the length of the header without a check, and rejects files with chunks
+/// of unknown types, which the specification requires readers to skip.
 pub(super) fn split_container<'a>(
     bytes: &'a [u8],
     warnings: &mut Vec<String>,
@@ -63,7 +63,7 @@ pub(super) fn split_container<'a>(
     }
     let mut rest = bytes.get(HEADER..length).ok_or_else(|| format!("GLB length {length} in its header"))?;
     let mut chunks = Vec::new();
-    // JSON comes first and the binary chunk second; whatever follows is for extensions.
+    // The first chunk is JSON, the second the binary chunk; further chunks belong to extensions.
     while chunks.len() < 2 && !rest.is_empty() {
         let cut_off = || format!("GLB chunk {} cut off", chunks.len());
         let (head, body) = rest.split_first_chunk::<8>().ok_or_else(cut_off)?;
@@ -81,10 +81,11 @@ pub(super) fn split_container<'a>(
     Ok((without_mark(text), chunks.next().filter(|(kind, _)| kind == b"BIN\0").map(|(_, body)| body)))
 }
 
-/// The data of all buffers, and how many bytes were read for them. A file that several of them name is read once.
+/// The content of all buffers, and the number of bytes read for them. A file is read once even if several buffers
+/// refer to it.
 ///
 /// # Errors
-/// Only a limit that is exceeded: a buffer that is not there may not be needed either.
+/// Only exceeded limits, since an unavailable buffer may be unused.
 pub(super) fn buffers<'a>(
     external: &External,
     root: &Root,
@@ -138,7 +139,7 @@ fn resource(
     Ok(bytes)
 }
 
-/// The bytes of a buffer view and its stride, if it states one.
+/// The bytes of a buffer view, and its stride if stated.
 pub(super) fn view<'d>(
     document: &'d Document,
     index: Index<buffer::View>,
@@ -162,7 +163,7 @@ pub(super) fn view<'d>(
     Ok((slice, view.byte_stride.map(|stride| stride.0)))
 }
 
-/// `length` bytes from `offset`, where there are so many.
+/// `length` bytes from `offset`, or `None` if out of range.
 pub(super) fn slice(bytes: &[u8], offset: u64, length: u64) -> Option<&[u8]> {
     let end = usize::try_from(offset.checked_add(length)?).ok()?;
     bytes.get(usize::try_from(offset).ok()?..end)
@@ -209,11 +210,11 @@ fn percent_decoded(text: &str) -> Result<Cow<'_, [u8]>, String> {
 pub(super) fn names(uri: &str) -> Result<Vec<PathBuf>, String> {
     let refused = |why: &str| format!("URI \"{}\" {why}", shortened(uri));
     let local = uri.get(..7).filter(|scheme| scheme.eq_ignore_ascii_case("file://")).map(|_| &uri[7..]);
-    // A host would go before the path.
+    // The host precedes the path.
     let local = local.map(|rest| rest.strip_prefix("localhost").unwrap_or(rest));
     let name = percent_decoded(local.unwrap_or(uri)).map_err(|fault| refused(&format!("({fault})")))?;
     let name = std::str::from_utf8(&name).map_err(|_| refused("is not UTF-8"))?;
-    // Drive letters and schemes have a colon.
+    // Drive letters and URI schemes contain a colon.
     if name.contains([':', '\0']) || local.is_some_and(|path| !path.starts_with('/')) {
         return Err(refused("is not a relative path"));
     }

@@ -1,4 +1,4 @@
-//! Materials, their textures, and which texture coordinates they want.
+//! Materials, their textures, and the texture coordinates that they use.
 
 use super::{Document, files};
 use crate::load::external::shortened;
@@ -10,38 +10,39 @@ use gltf::json::validation::Checked;
 use gltf::json::{self, Index, material};
 use std::collections::HashMap;
 
-/// Materials and images, converted when a primitive first asks for them.
+/// Materials and images, converted on first use by a primitive.
 #[derive(Default)]
 pub(super) struct Materials {
     converted: HashMap<Option<usize>, (u32, UvSource)>,
-    /// By image and the look-up that its sampler asks for.
+    /// Textures by image and sampler settings.
     textures: HashMap<(usize, [WrapKey; 2], bool), u32>,
-    /// By image: the first texture made of it, or `None` if it cannot be decoded.
+    /// By image the first texture, or `None` if the image cannot be decoded.
     images: HashMap<usize, Option<u32>>,
-    /// Of all textures so far.
+    /// The number of texels of all textures so far.
     texels: u64,
 }
 
 type WrapKey = u8;
 
-/// What the `gltf` crate has for the source of a texture that has none: extensions have images of other formats.
+/// The value of the `gltf` crate for the source of a texture without source. Such textures have images of other
+/// formats in extensions.
 const NO_SOURCE: usize = u32::MAX as usize;
 
-/// Where the texture coordinates of a primitive come from.
+/// The source of a primitive's texture coordinates.
 #[derive(Clone, Copy)]
 pub(super) struct UvSource {
     /// The `n` of `TEXCOORD_n`.
     pub set: u32,
-    /// Whether a texture wants them.
+    /// Whether a texture uses them.
     pub wanted: bool,
-    /// The columns of the matrix and the offset that `KHR_texture_transform` applies.
+    /// The columns of the matrix and the offset of `KHR_texture_transform`.
     transform: Option<[Vec2; 3]>,
 }
 
 impl UvSource {
     const DEFAULT: Self = Self { set: 0, wanted: false, transform: None };
 
-    /// The coordinate that the texture is looked up at.
+    /// The coordinate at which the texture is sampled.
     pub fn apply(&self, uv: Vec2) -> Vec2 {
         match self.transform {
             Some([u, v, offset]) => u * uv.x + v * uv.y + offset,
@@ -51,11 +52,11 @@ impl UvSource {
 }
 
 impl Materials {
-    /// The number of a material within the model; `None` is glTF's default one, white and single-sided
-    /// (glTF 2.0, 3.9.6 "Default Material").
+    /// The index of a material in the model. `None` is the default material of glTF, white and single-sided (glTF
+    /// 2.0, 3.9.6 "Default Material").
     ///
     /// # Errors
-    /// An index that leads nowhere, a number that is not finite, or an image beyond a limit.
+    /// An invalid index, a number that is not finite, or an image that exceeds a limit.
     pub fn get(
         &mut self,
         document: &Document,
@@ -151,7 +152,7 @@ impl Materials {
                 Err(error @ LoadError::TooLarge { .. }) => return Err(error),
                 Err(error) => {
                     let why = match error {
-                        // Warnings are without the model's name.
+                        // Warnings do not contain the name of the model.
                         LoadError::Malformed { path, fault } if path == document.path => fault,
                         LoadError::Outside { name, .. } => format!("URI \"{name}\" leads out of the model's folder"),
                         other => other.to_string(),
@@ -170,7 +171,7 @@ impl Materials {
     }
 }
 
-/// An image from a buffer view, a `data:` URI or a file beside the model, as it is without a sampler.
+/// Decodes an image from a buffer view, a `data:` URI or a file, with default sampling.
 fn decode(document: &Document, number: usize, texels: &mut u64) -> Result<Texture, LoadError> {
     let fail = |fault: String| document.malformed(fault);
     let image = document.root.images.get(number).ok_or_else(|| fail("does not exist".to_owned()))?;
@@ -211,15 +212,16 @@ fn wrap(mode: &Checked<WrappingMode>) -> Wrap {
     match mode {
         Checked::Valid(WrappingMode::ClampToEdge) => Wrap::Clamp,
         Checked::Valid(WrappingMode::MirroredRepeat) => Wrap::Mirror,
-        // What is unknown is as if it were not stated.
+        // Unknown modes are treated as absent.
         Checked::Valid(WrappingMode::Repeat) | Checked::Invalid => Wrap::Repeat,
     }
 }
 
-/// `None` for a transform that is not finite.
+/// `None` if the transform is not finite.
 ///
-/// The extension says "counter-clockwise", with v downwards, and that its example of a quarter turn shows the lower
-/// left quadrant: the turn takes u towards -v. (Its matrix, read as GLSL's columns, turns the other way.)
+/// The extension specifies a counter-clockwise rotation with v downwards, and its example of a quarter turn shows the
+/// lower left quadrant: the rotation maps u to -v. The matrix printed there, read as GLSL columns, rotates the other
+/// way.
 fn uv_source(info: &Info) -> Option<UvSource> {
     let mut source = UvSource { set: info.tex_coord, wanted: true, transform: None };
     if let Some(transform) = info.extensions.as_ref().and_then(|e| e.texture_transform.as_ref()) {

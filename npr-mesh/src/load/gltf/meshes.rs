@@ -1,4 +1,4 @@
-//! Mesh instances into one model.
+//! Flattens mesh instances into one model.
 
 use super::Document;
 use super::accessor::{Accessor, Integers, Purpose};
@@ -14,13 +14,13 @@ use gltf::json::{self, Index, Node};
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
-/// The most that a channel of a vertex colour may be.
+/// The maximum of a channel of a vertex colour.
 const BRIGHTEST: f32 = 1000.0;
 
-/// All meshes that the nodes show, in the order of the nodes.
+/// All meshes of the shown nodes, in the order of the nodes.
 ///
 /// # Errors
-/// [`LoadError`] for whatever a shown mesh refers to that is not as it should be, and beyond the limits.
+/// [`LoadError`] for invalid data that a shown mesh refers to, and for exceeded limits.
 pub(super) fn flatten(document: &Document, nodes: &Nodes, warnings: &mut Vec<String>) -> Result<Model, LoadError> {
     let mut flattener = Flattener {
         document,
@@ -68,18 +68,18 @@ pub(super) fn flatten(document: &Document, nodes: &Nodes, warnings: &mut Vec<Str
 
 struct Flattener<'a> {
     document: &'a Document<'a>,
-    /// Texture coordinates and colours may end before the positions do: they are filled up when some are added.
+    /// Texture coordinates and colours may be shorter than the positions: they are filled up when some are added.
     model: Model,
     warnings: &'a mut Vec<String>,
     materials: Materials,
-    /// Meshes that were added before, whose warnings need no second line.
+    /// Meshes that were added before, whose warnings are not repeated.
     seen: Vec<bool>,
-    /// Primitives so far, and displacements and weights that were read for them.
+    /// The number of primitives so far, and of displacements and weights that were read for them.
     instances: u64,
     displacements: u64,
 }
 
-/// A primitive and how messages call it.
+/// A primitive and its name in messages.
 struct Part<'a> {
     name: String,
     primitive: &'a Primitive,
@@ -106,7 +106,7 @@ impl Flattener<'_> {
                 self.document.malformed(format!("node {node_number}: its mesh {number} does not exist"))
             })?;
         let first_time = !std::mem::replace(&mut self.seen[number], true);
-        // The node's weights take the place of the mesh's.
+        // The node's weights override those of the mesh.
         let weights = node.weights.as_deref().or(mesh.weights.as_deref()).unwrap_or(&[]);
         for (at, primitive) in mesh.primitives.iter().enumerate() {
             let part = Part { name: format!("mesh {number} primitive {at}"), primitive, first_time };
@@ -135,7 +135,7 @@ impl Flattener<'_> {
             return Ok(());
         };
 
-        // Everything is counted before memory is asked for.
+        // All sizes are checked before memory is allocated.
         let accessor = Accessor::new(document, position_accessor, Purpose::Position)
             .map_err(|f| fail(format!("POSITION: {f}")))?;
         let first_vertex = self.model.positions.len();
@@ -173,7 +173,7 @@ impl Flattener<'_> {
             Placement::Skinned(_) => Influences::read(document, part.primitive, vertices).map_err(fail)?,
         };
         let target = (&mut self.model.positions, &mut self.model.normals);
-        let mirrored = pose::place(placement, influences.as_ref(), &positions, &normals, target).map_err(fail)?;
+        let mirrored = pose::transform(placement, influences.as_ref(), &positions, &normals, target).map_err(fail)?;
 
         let corners = match indices {
             None => None,
@@ -193,7 +193,7 @@ impl Flattener<'_> {
         }
     }
 
-    /// `more` as a length, if so many more are within the limit and can still be numbered.
+    /// Checks that `more` additional elements are within the limits, and returns their number.
     fn fits(&self, what: &'static str, so_far: usize, more: u64, limit: u64) -> Result<usize, LoadError> {
         let limit = limit.min(u32::MAX.into());
         let count = (so_far as u64).saturating_add(more);
@@ -209,7 +209,7 @@ impl Flattener<'_> {
         Ok(more)
     }
 
-    /// An attribute, if the primitive has it.
+    /// Reads an attribute if the primitive has it.
     fn read<T>(
         &self,
         part: &Part,
@@ -232,7 +232,7 @@ impl Flattener<'_> {
     fn corners(&self, part: &Part, accessor: &Accessor, vertices: usize) -> Result<Vec<u32>, LoadError> {
         let fail = |fault: String| self.document.malformed(format!("{}: indices: {fault}", part.name));
         let corners = accessor.integers::<1>().map_err(fail)?.into_flattened();
-        // The largest number of each type would restart a strip in some graphics interfaces; glTF forbids it.
+        // The largest value of each type would restart a strip in some graphics APIs; glTF forbids it.
         let largest = corners.iter().copied().max().unwrap_or(0);
         if !corners.is_empty() && largest as usize >= vertices {
             let at = corners.iter().position(|&c| c == largest).unwrap_or(0);
@@ -246,7 +246,7 @@ impl Flattener<'_> {
         match self.read(part, semantic, Purpose::TexCoord, vertices, |a| a.floats::<2>(Integers::AsStated))? {
             Some(uvs) => {
                 self.model.uvs.resize(first, Vec2::ZERO);
-                // What is not finite has no place in a texture.
+                // Texture coordinates that are not finite become zero.
                 let finite = |uv: Vec2| if uv.is_finite() { uv } else { Vec2::ZERO };
                 self.model.uvs.extend(uvs.into_iter().map(|uv| finite(source.apply(Vec2::from_array(uv)))));
             }
@@ -270,7 +270,7 @@ impl Flattener<'_> {
         if let Some(colors) = self.read(part, Semantic::Colors(0), Purpose::Fraction, vertices, read)? {
             self.model.colors.resize(first, Vec4::ONE);
             let limit = |c: Vec4| {
-                // Brighter than white is no fault, but its products must stay finite.
+                // Values above 1 are allowed, but are limited so that products remain finite.
                 let c = c.clamp(Vec4::ZERO, Vec4::splat(BRIGHTEST));
                 c.truncate().extend(c.w.min(1.0))
             };
@@ -283,7 +283,7 @@ impl Flattener<'_> {
         Ok(())
     }
 
-    /// Cuts a primitive into triangles (glTF 2.0, 3.7.2.1 "Overview"), all corners being within it.
+    /// Assembles the triangles of a primitive (glTF 2.0, 3.7.2.1 "Overview"). All corners are in range.
     fn faces(&mut self, mode: Mode, first: usize, vertices: usize, corners: Option<&[u32]>, mirrored: &Mirrored) {
         let all: Vec<u32>;
         let corners = match corners {
@@ -294,26 +294,25 @@ impl Flattener<'_> {
             }
         };
         let first = first as u32;
-        let placed = |[a, b, c]: [u32; 3]| {
+        let wound = |[a, b, c]: [u32; 3]| {
             let [b, c] = if mirrored.face(a) { [c, b] } else { [b, c] };
             [first + a, first + b, first + c]
         };
         let faces = &mut self.model.faces;
         match mode {
             Mode::TriangleStrip => faces.extend(corners.windows(3).enumerate().map(|(i, w)| {
-                // Every other triangle of a strip is the other way round.
-                placed(if i % 2 == 0 { [w[0], w[1], w[2]] } else { [w[0], w[2], w[1]] })
+                // Every other triangle of a strip has the opposite winding.
+                wound(if i % 2 == 0 { [w[0], w[1], w[2]] } else { [w[0], w[2], w[1]] })
             })),
             Mode::TriangleFan => {
                 let around = corners.get(1..).unwrap_or(&[]);
-                faces.extend(around.windows(2).map(|w| placed([w[0], w[1], corners[0]])));
+                faces.extend(around.windows(2).map(|w| wound([w[0], w[1], corners[0]])));
             }
-            _ => faces.extend(corners.as_chunks::<3>().0.iter().map(|&face| placed(face))),
+            _ => faces.extend(corners.as_chunks::<3>().0.iter().map(|&face| wound(face))),
         }
     }
 
-    /// A position that is not finite is an error where a face of the last `faces` uses it, and of no meaning
-    /// elsewhere.
+    /// A position that is not finite is an error if one of the last `faces` faces uses it, and is replaced otherwise.
     fn check_positions(&mut self, part: &Part, first: usize, faces: usize) -> Result<(), LoadError> {
         let positions = &mut self.model.positions;
         if positions[first..].iter().all(|p| p.is_finite()) {

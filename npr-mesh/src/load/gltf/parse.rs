@@ -1,29 +1,29 @@
-//! JSON that the `gltf` crate takes.
+//! Parses the JSON, and repairs what the `gltf` crate does not accept.
 //!
-//! Its structures refuse some of what the specification allows (`extras` that are no object, a scene without nodes, an
-//! animation whose target an extension names) and all of what can be understood although it is not allowed.
+//! Its structures reject some valid files (`extras` that are not an object, a scene without nodes, an animation whose
+//! target is defined by an extension) and files with faults that can be repaired.
 
 use gltf::json::{self, Root};
 use serde_json::{Map, Value};
 
-/// The typed structure of a file.
+/// Parses the JSON into typed structures.
 ///
 /// # Errors
-/// What is wrong, with line and column where the text is not JSON.
+/// The fault, with line and column if the text is not JSON.
 pub(super) fn parse(text: &[u8], warnings: &mut Vec<String>) -> Result<Root, String> {
-    // As it is first: to repair costs a second copy, and nearly no file needs it.
+    // First without repairs, which need a second copy and are rarely necessary.
     let first = match json::deserialize::from_slice(text) {
         Ok(root) => return Ok(root),
         Err(error) => error.to_string(),
     };
-    // Of two values for one name, either could be meant.
+    // A duplicate field is ambiguous.
     if first.contains("duplicate field") {
         return Err(first);
     }
     let mut value: Value = serde_json::from_slice(text).map_err(|error| error.to_string())?;
     let mut repaired = Repaired::default();
     if let Value::Object(root) = &mut value {
-        // Nothing here is read from them.
+        // Unused parts of the file.
         root.remove("animations");
         root.remove("cameras");
         for scene in root.get_mut("scenes").and_then(Value::as_array_mut).into_iter().flatten() {
@@ -34,7 +34,7 @@ pub(super) fn parse(text: &[u8], warnings: &mut Vec<String>) -> Result<Root, Str
     }
     repaired.value(&mut value);
     let root = json::deserialize::from_value(value).map_err(|error| {
-        // The first message knows the line, if it is about the same thing.
+        // The first message contains the line, if it is about the same fault.
         let second = error.to_string();
         if first.starts_with(&second) { first } else { second }
     })?;
@@ -55,13 +55,13 @@ struct Repaired {
 }
 
 impl Repaired {
-    /// The parser has bounded the depth.
+    /// The recursion depth is limited by the parser.
     fn value(&mut self, value: &mut Value) {
         match value {
             Value::Object(members) => self.members(members),
             Value::Array(elements) => elements.iter_mut().for_each(|element| self.value(element)),
             Value::Number(number) if number.is_f64() => {
-                // Whole numbers up to here are exact.
+                // f64 represents integers up to this bound exactly.
                 let most = (1u64 << 53) as f64;
                 if let Some(whole) = number.as_f64().filter(|x| x.fract() == 0.0 && x.abs() <= most) {
                     *value = Value::from(whole as i64);

@@ -1,4 +1,4 @@
-//! Where the vertices of a mesh are: morph targets, then the skin or the node (glTF 2.0, 3.7).
+//! Transforms vertices: morph targets, then the skin or the node (glTF 2.0, 3.7).
 
 use super::Document;
 use super::accessor::{Accessor, Integers, Purpose};
@@ -8,20 +8,21 @@ use gltf::json::mesh::{Primitive, Semantic};
 use gltf::json::validation::Checked;
 use gltf::json::{self, Index};
 
-/// What takes a mesh to the world.
+/// The transform of a mesh to world space.
 pub(super) enum Placement<'a> {
-    /// One matrix for all of it.
+    /// One matrix for the whole mesh.
     Rigid(DMat4),
-    /// The matrices of a skin's joints, blended for each vertex. The transform of the node that has the mesh does
-    /// not count (3.7.3.3 "Skinned Mesh Attributes").
+    /// The joint matrices of a skin, blended per vertex. The transform of the mesh's node is ignored (3.7.3.3
+    /// "Skinned Mesh Attributes").
     Skinned(&'a [DMat4]),
 }
 
-/// Which faces a placement turns inside out, so that their winding is to be reversed (3.7.4 "Instantiation").
+/// The faces whose orientation a transform mirrors, so that their winding must be reversed (3.7.4 "Instantiation").
 pub(super) enum Mirrored {
-    /// All or none.
+    /// All faces, or none.
     All(bool),
-    /// By a face's first vertex: the matrices of a skin's joints may differ, and the specification is silent.
+    /// By the first vertex of a face. Joint matrices may differ in orientation; the specification does not cover this
+    /// case.
     ByVertex(Vec<bool>),
 }
 
@@ -34,10 +35,10 @@ impl Mirrored {
     }
 }
 
-/// The matrix of each joint: world from joint times the inverse of the binding pose.
+/// The joint matrices: the world transform of each joint times its inverse bind matrix.
 ///
 /// # Errors
-/// A joint or accessor that does not exist, or too few matrices.
+/// A missing joint or accessor, or too few matrices.
 pub(super) fn joint_matrices(
     document: &Document,
     nodes: &Nodes,
@@ -61,22 +62,22 @@ pub(super) fn joint_matrices(
         let joint = joint.value();
         let world =
             nodes.world_from_node.get(joint).ok_or_else(|| fail(format!("its joint {joint} does not exist")))?;
-        // Without the accessor, all of them are the identity.
+        // Without the accessor all inverse bind matrices are the identity.
         Ok(inverse_binds.get(at).map_or(*world, |bind| *world * DMat4::from_cols_array(&bind.map(f64::from))))
     };
     skin.joints.iter().enumerate().map(matrix).collect()
 }
 
-/// As many sets of four joints and weights a vertex may have.
+/// The maximum number of sets of four joints and weights per vertex.
 const MOST_INFLUENCE_SETS: u32 = 8;
 
-/// How many accessors [`morph`] reads.
+/// The number of accessors that [`morph`] reads.
 pub(super) fn targets_in_use(primitive: &Primitive, weights: &[f32]) -> u64 {
     let targets = primitive.targets.as_deref().unwrap_or(&[]);
     2 * targets.iter().zip(weights).filter(|(_, weight)| **weight != 0.0).count() as u64
 }
 
-/// How many accessors [`Influences::read`] reads.
+/// The number of accessors that [`Influences::read`] reads.
 pub(super) fn influence_sets(primitive: &Primitive) -> u64 {
     let is_influence =
         |semantic: &&Checked<Semantic>| matches!(semantic, Checked::Valid(Semantic::Joints(_) | Semantic::Weights(_)));
@@ -86,7 +87,7 @@ pub(super) fn influence_sets(primitive: &Primitive) -> u64 {
 /// Adds the displacements of the morph targets (3.7.2.2 "Morph Targets").
 ///
 /// # Errors
-/// An accessor that does not fit.
+/// An invalid accessor.
 pub(super) fn morph(
     document: &Document,
     primitive: &Primitive,
@@ -102,7 +103,7 @@ pub(super) fn morph(
         for (what, accessor, values) in
             [("POSITION", target.positions, &mut *positions), ("NORMAL", target.normals, &mut *normals)]
         {
-            // Without normals of its own, the mesh gets made ones, from the displaced positions.
+            // If the mesh has no normals, they are computed later from the displaced positions.
             let Some(accessor) = accessor.filter(|_| !values.is_empty()) else { continue };
             let fail = |fault: String| format!("{what} of morph target {number}: {fault}");
             let accessor = Accessor::new(document, accessor, Purpose::Displacement).map_err(fail)?;
@@ -120,22 +121,22 @@ pub(super) fn morph(
     Ok(())
 }
 
-/// Which joints move a vertex, and how much: the sets `JOINTS_n` and `WEIGHTS_n`.
+/// The joints that influence each vertex, and their weights: the sets `JOINTS_n` and `WEIGHTS_n`.
 pub(super) struct Influences {
     sets: Vec<InfluenceSet>,
 }
 
-/// Four joints for each vertex, with their weights.
+/// Four joints per vertex with their weights.
 struct InfluenceSet {
     joints: Vec<[u32; 4]>,
     weights: Vec<[f32; 4]>,
 }
 
 impl Influences {
-    /// `None` for a primitive without them.
+    /// `None` if the primitive has no joints and weights.
     ///
     /// # Errors
-    /// An accessor that does not fit, or joints without weights.
+    /// An invalid accessor, or joints without weights.
     pub fn read(document: &Document, primitive: &Primitive, vertices: usize) -> Result<Option<Self>, String> {
         let mut sets = Vec::new();
         for number in 0.. {
@@ -168,11 +169,11 @@ impl Influences {
         Ok((!sets.is_empty()).then_some(Self { sets }))
     }
 
-    /// The weighted mean of a vertex's joint matrices, whatever the weights sum up to. A vertex without any weight
-    /// follows its first joint. A joint of weight zero need not exist.
+    /// The weighted mean of a vertex's joint matrices, for any sum of weights. A vertex without weights follows its
+    /// first joint. A joint of weight zero need not exist.
     ///
     /// # Errors
-    /// A joint that the skin does not have, or a weight that is not a number.
+    /// A missing joint, or a weight that is not finite.
     fn blend(&self, vertex: usize, joints: &[DMat4]) -> Result<DMat4, String> {
         let (mut sum, mut blended) = (0.0, DMat4::ZERO);
         let find = |joint: u32| {
@@ -193,17 +194,17 @@ impl Influences {
         if sum == 0.0 {
             return find(self.sets[0].joints[vertex][0]).copied();
         }
-        // Division would cost the last digit of positions whose weights are in order.
+        // Dividing by 1 would add a rounding error.
         Ok(if sum == 1.0 { blended } else { blended * (1.0 / sum) })
     }
 }
 
-/// Moves positions and normals (empty, or as many) to the world and appends them; normals that are absent or have no
-/// direction become zero.
+/// Transforms positions and normals (empty, or as many) to world space and appends them. Missing normals, and those
+/// without a direction, become zero.
 ///
 /// # Errors
-/// A vertex whose joints do not exist.
-pub(super) fn place(
+/// A vertex with a missing joint.
+pub(super) fn transform(
     placement: &Placement,
     influences: Option<&Influences>,
     positions: &[[f32; 3]],
@@ -241,9 +242,9 @@ fn moved(matrix: &DMat4, position: &[f32; 3]) -> Vec3 {
     matrix.transform_point3(DVec3::from_array(position.map(f64::from))).as_vec3()
 }
 
-/// What a matrix does to directions.
+/// The effect of a matrix on directions.
 struct Turn {
-    /// The inverse transpose times a positive number, or zero where there is no inverse.
+    /// The inverse transpose times a positive number, or zero if the matrix is singular.
     world_from_normal: DMat3,
     mirrors: bool,
 }

@@ -5,18 +5,18 @@ use crate::LoadError;
 use glam::{DMat4, DQuat, DVec3};
 use gltf::json::Node;
 
-/// Where the nodes are, and which are shown.
+/// The world transforms of the nodes, and the shown nodes.
 pub(super) struct Nodes {
-    /// For every node of the file, shown or not: a joint may lie outside the scene.
+    /// For every node of the file, since joints may be outside the scene.
     pub world_from_node: Vec<DMat4>,
-    /// Nodes of the scene, parents before their children, each once.
+    /// The nodes of the scene, each once, parents before their children.
     pub shown: Vec<usize>,
 }
 
-/// Composes the transforms of all nodes.
+/// Computes the world transforms of all nodes.
 ///
 /// # Errors
-/// A child that does not exist or has two parents, a cycle, more nodes than the limit.
+/// A missing child, a child with two parents, a cycle, or more nodes than the limit.
 pub(super) fn pose(document: &Document) -> Result<Nodes, LoadError> {
     let nodes = &document.root.nodes;
     if nodes.len() as u64 > document.limits.nodes {
@@ -42,7 +42,8 @@ pub(super) fn pose(document: &Document) -> Result<Nodes, LoadError> {
             .ok_or_else(|| document.malformed(format!("node {node}: its rotation has no length")))?;
         world_from_node[node] = parents[node].map_or(local, |parent| world_from_node[parent] * local);
     }
-    // With one parent each, what no root leads to hangs on a cycle: so many steps up end in it.
+    // Every node has at most one parent, so nodes that are unreachable from the roots descend from a cycle, in which
+    // this many steps upwards end.
     if order.len() < nodes.len() {
         let mut reached = vec![false; nodes.len()];
         order.iter().for_each(|&node| reached[node] = true);
@@ -77,8 +78,8 @@ fn children(node: &Node) -> impl DoubleEndedIterator<Item = usize> + '_ {
     node.children.iter().flatten().map(|child| child.value())
 }
 
-/// All nodes below and including `roots`, depth first in the file's order. With a stack of its own: a chain of
-/// nodes may be deeper than the thread's.
+/// All nodes below and including `roots`, depth first in the order of the file. An explicit stack is used, since a
+/// chain of nodes may exceed the call stack.
 fn descend(nodes: &[Node], roots: &[usize]) -> Vec<usize> {
     let mut order = Vec::new();
     let mut seen = vec![false; nodes.len()];
@@ -92,7 +93,7 @@ fn descend(nodes: &[Node], roots: &[usize]) -> Vec<usize> {
     order
 }
 
-/// `None` for a rotation that is no rotation.
+/// `None` if the rotation has no length.
 fn local_transform(node: &Node) -> Option<DMat4> {
     if let Some(matrix) = node.matrix {
         return Some(DMat4::from_cols_array(&matrix.map(f64::from)));
@@ -105,7 +106,7 @@ fn local_transform(node: &Node) -> Option<DMat4> {
     }
     Some(DMat4::from_scale_rotation_translation(
         node.scale.map_or(DVec3::ONE, vector),
-        // Unit length only up to the file's digits.
+        // The file's rotation has unit length only up to rounding.
         rotation / length,
         node.translation.map_or(DVec3::ZERO, vector),
     ))

@@ -1,4 +1,4 @@
-//! tobj's meshes in one [`Model`].
+//! Merges tobj's meshes into one [`Model`].
 
 use super::prepare::{Runs, runs_within};
 use crate::triangulate::triangulate_within;
@@ -11,19 +11,19 @@ use std::path::Path;
 
 const NONE: u32 = u32::MAX;
 
-/// Puts tobj's meshes together.
+/// Merges tobj's meshes.
 pub(super) struct Builder<'a> {
     pub model: Model,
     pub path: &'a Path,
     pub limits: &'a Limits,
-    /// Corners of the meshes already added.
+    /// The number of corners of the meshes added so far.
     pub corners_before: u64,
     pub absent: &'a [Runs; 2],
-    /// The corners with which an object or a group begins.
+    /// The corners at which an object or group begins.
     pub objects: &'a [u64],
-    /// What may still be spent on polygons that cross themselves.
+    /// The remaining budget of ear tests for polygons that intersect themselves.
     pub ear_tests: usize,
-    /// Texture coordinates and colours that were replaced.
+    /// The number of texture coordinates and colours that were replaced.
     pub repaired: u64,
 }
 
@@ -32,8 +32,8 @@ impl Builder<'_> {
         LoadError::Malformed { path: self.path.to_owned(), fault }
     }
 
-    /// Adds a mesh as tobj gives it without `single_index`: positions, known to be finite, and one index into each array
-    /// per corner.
+    /// Adds a mesh as returned by tobj without `single_index`: finite positions, and one index into each array per
+    /// corner.
     pub fn add(&mut self, mesh: &tobj::Mesh, material: u32) -> Result<(), LoadError> {
         let base = self.model.positions.len();
         let positions = mesh.positions.as_chunks::<3>().0;
@@ -56,7 +56,7 @@ impl Builder<'_> {
         };
         self.corners_before = range.end;
 
-        // Which position, texture coordinate and normal each vertex has, and which vertex each corner is.
+        // The position, texture coordinate and normal of each vertex, and the vertex of each corner.
         let split = (!uv_of.is_empty() || !normal_of.is_empty())
             .then(|| split_vertices(&mesh.indices, &uv_of, &normal_of, positions.len()));
         let (sources, vertex_of) = match &split {
@@ -120,7 +120,7 @@ impl Builder<'_> {
         first_corner: u64,
     ) -> Result<(), LoadError> {
         let objects = self.objects;
-        // Of one object only there is nothing to say.
+        // With a single object, the array stays empty.
         let object_of = |corner: usize| objects.partition_point(|&begin| begin <= first_corner + corner as u64) as u32;
         let model = &mut self.model;
         let first_face = model.faces.len();
@@ -173,13 +173,13 @@ impl Builder<'_> {
     }
 }
 
-/// One more polygon for each of `count` triangles.
+/// Adds one polygon for each of `count` triangles.
 fn extend_polygons(face_polygon: &mut Vec<u32>, count: usize) {
     let first = face_polygon.last().map_or(0, |last| last + 1);
     face_polygon.extend((0..count as u32).map(|i| first + i));
 }
 
-/// Per corner the index into an array, [`NONE`] for the corners in `absent`; nothing at all if no corner has one.
+/// Per corner the index into an array, [`NONE`] for the corners in `absent`, or an empty slice if no corner has one.
 /// `None` if an index is out of range.
 fn attribute_indices<'a>(
     indices: &'a [u32],
@@ -200,7 +200,7 @@ fn attribute_indices<'a>(
         Some(run) if *run == range => return Some(Cow::Borrowed(&[])),
         Some(_) => {}
     }
-    // tobj repeats an index that came before.
+    // tobj repeats a preceding index for these corners.
     let mut indices = indices.to_vec();
     for run in absent {
         indices[(run.start - range.start) as usize..(run.end - range.start) as usize].fill(NONE);
@@ -208,11 +208,11 @@ fn attribute_indices<'a>(
     Some(Cow::Owned(indices))
 }
 
-/// Beyond so many vertices at one position a hash table finds them.
+/// The number of vertices per position above which a hash table is used.
 const WALKED_PER_POSITION: u32 = 16;
 
-/// One vertex for each combination of position, texture coordinate and normal ([`NONE`] for none) in order of first
-/// use, and per corner its vertex. Either of the last two arrays may be empty.
+/// One vertex for each combination of position, texture coordinate and normal ([`NONE`] if missing) in the order of
+/// first use, and the vertex of each corner. The last two index arrays may be empty.
 fn split_vertices(
     position_of: &[u32],
     uv_of: &[u32],
@@ -221,10 +221,10 @@ fn split_vertices(
 ) -> (Vec<[u32; 3]>, Vec<u32>) {
     let mut sources: Vec<[u32; 3]> = Vec::with_capacity(positions);
     let mut vertex_of = Vec::with_capacity(position_of.len());
-    // The vertices of one position are chained.
+    // The vertices of a position form a linked list.
     let mut first = vec![NONE; positions];
     let mut next: Vec<u32> = Vec::with_capacity(positions);
-    let mut crowded: HashMap<[u32; 3], u32> = HashMap::new();
+    let mut overflow: HashMap<[u32; 3], u32> = HashMap::new();
     for (corner, &position) in position_of.iter().enumerate() {
         let key =
             [position, uv_of.get(corner).copied().unwrap_or(NONE), normal_of.get(corner).copied().unwrap_or(NONE)];
@@ -238,7 +238,7 @@ fn split_vertices(
         }
         let fresh = sources.len() as u32;
         if walked == WALKED_PER_POSITION {
-            vertex = *crowded.entry(key).or_insert(fresh);
+            vertex = *overflow.entry(key).or_insert(fresh);
         } else if vertex == NONE {
             vertex = fresh;
             match last {

@@ -1,8 +1,8 @@
-//! Which line a fault is in: tobj does not tell.
+//! Finds the line of a fault, which tobj does not report.
 
 use super::lines::{number, words_of};
 
-/// What is wrong with a prepared text that tobj does not take, and where.
+/// The fault in a prepared text that tobj rejects, and its line.
 pub(super) fn explain(text: &[u8], fault: tobj::LoadError) -> String {
     let found = (1u64..).zip(text.split(|b| *b == b'\n')).find_map(|(number, line)| Some((number, fault_in(line)?)));
     match found {
@@ -33,7 +33,7 @@ fn fault_in(line: &[u8]) -> Option<&'static str> {
     }
 }
 
-/// Where a vertex is that is not finite.
+/// A message with the line of a vertex that is not finite.
 pub(super) fn not_finite(text: &[u8], vertex: &[f32; 3]) -> String {
     let [x, y, z] = vertex;
     let is_it = |line: &[u8]| {

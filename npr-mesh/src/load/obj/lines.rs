@@ -1,8 +1,8 @@
-//! Lines of an OBJ file, read byte by byte.
+//! Parses lines of an OBJ file as bytes.
 
 use std::io::BufRead;
 
-/// The length, with its end, of a line of `v`, a space and three numbers.
+/// The length, including the line end, of a line that consists of `v` and three numbers, or `None`.
 pub(super) fn plain_vertex(bytes: &[u8]) -> Option<usize> {
     const OTHER: u8 = 0;
     const IN_NUMBER: u8 = 1;
@@ -35,12 +35,12 @@ pub(super) fn plain_vertex(bytes: &[u8]) -> Option<usize> {
     None
 }
 
-/// A line of `f` that has three corners and more, all with the same kinds of positive numbers, and nothing else.
+/// A line of `f` with three or more corners that have the same kinds of positive indices, and nothing else.
 pub(super) struct PlainFace {
-    /// With its end.
+    /// The length of the line including its end.
     pub length: usize,
     pub corners: u64,
-    /// Of vertex, texture coordinate and normal the highest number, 0 where the face has none.
+    /// The highest index of vertex, texture coordinate and normal; 0 if the face has none.
     pub highest: [u64; 3],
 }
 
@@ -60,7 +60,7 @@ pub(super) fn plain_face(bytes: &[u8]) -> Option<PlainFace> {
         loop {
             let mut value = 0u64;
             let mut digits = 0;
-            // Ten digits could be too large a number.
+            // Ten digits may overflow.
             while let [digit @ b'0'..=b'9', after @ ..] = rest
                 && digits < 10
             {
@@ -82,7 +82,7 @@ pub(super) fn plain_face(bytes: &[u8]) -> Option<PlainFace> {
                 _ => return None,
             }
         }
-        // The first corner says which kinds there are.
+        // The first corner determines the kinds of indices.
         if highest[kind + 1..].iter().any(|&highest| highest > 0) {
             return None;
         }
@@ -90,7 +90,7 @@ pub(super) fn plain_face(bytes: &[u8]) -> Option<PlainFace> {
     }
 }
 
-/// With the line end.
+/// The length of a line including its end.
 pub(super) fn line_length(mut bytes: &[u8]) -> usize {
     bytes.skip_until(b'\n').unwrap_or(0)
 }
@@ -99,7 +99,7 @@ pub(super) fn trim_end(line: &[u8]) -> &[u8] {
     line.trim_ascii_end()
 }
 
-/// How many words there are before a comment, and where that begins.
+/// The number of words before a comment, and the start of the comment.
 pub(super) fn count_words(line: &[u8]) -> (usize, usize) {
     let mut words = 0;
     let mut in_space = true;
@@ -126,13 +126,13 @@ pub(super) fn number(word: &[u8]) -> Option<f32> {
     std::str::from_utf8(word).ok()?.parse().ok()
 }
 
-/// The corners of an `f` line that are still to come; a comment in the end.
+/// The remaining corners of an `f` line, possibly followed by a comment.
 pub(super) struct Corners<'a> {
     pub rest: &'a [u8],
 }
 
 impl Corners<'_> {
-    /// Numbers of vertex, texture coordinate and normal as in the file, 0 where there is none.
+    /// The indices of vertex, texture coordinate and normal as in the file, 0 if missing.
     #[inline]
     pub fn next_corner(&mut self) -> Result<Option<[i64; 3]>, &'static str> {
         let mut bytes = self.rest;

@@ -7,14 +7,14 @@ use glam::Vec3;
 use std::collections::{BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 
-/// A material, and where its texture should be.
+/// A material and the name of its texture.
 pub(super) struct MtlMaterial {
     pub material: Material,
     texture: Option<TextureName>,
 }
 
 struct TextureName {
-    /// The names that may be meant, and as it is written.
+    /// The possible file names, and the name as written.
     names: Vec<PathBuf>,
     written: String,
     wrap: Wrap,
@@ -28,13 +28,13 @@ pub(super) struct Library {
 }
 
 impl Library {
-    /// Adds the materials of the files on a `mtllib` line; a file that cannot be read is a warning.
+    /// Adds the materials of the files on a `mtllib` line. A file that cannot be read gives a warning.
     ///
     /// # Errors
-    /// Only a limit that is exceeded.
+    /// Only exceeded limits.
     pub fn read(&mut self, external: &External, line: &str) -> Result<(), LoadError> {
         let line = line.trim();
-        // The line can list several files, and a file's name can have spaces; a comment may follow.
+        // The line may list several files, file names may contain spaces, and a comment may follow.
         let files = match find(external, line) {
             Ok(whole) => vec![Ok(whole)],
             Err(_) => {
@@ -44,7 +44,7 @@ impl Library {
         };
         for file in files {
             let bytes = file.and_then(|file| {
-                // An endless file of `mtllib` lines would otherwise read it as often.
+                // Each file is read once, however many `mtllib` lines name it.
                 Ok(if self.read.insert(file.clone()) { Some((external.read(&file)?, file)) } else { None })
             });
             match bytes {
@@ -69,10 +69,10 @@ impl Library {
     }
 }
 
-/// The numbers of materials by name; of several by one name, the first.
+/// The indices of materials by name; the first of several with one name.
 pub(super) struct Names {
     whole: HashMap<String, usize>,
-    /// Without the comment behind it.
+    /// By the name without a trailing comment.
     bare: HashMap<String, usize>,
 }
 
@@ -86,8 +86,8 @@ impl Names {
         names
     }
 
-    /// The material that a `usemtl` line names. A comment behind the name, there or where the material is defined, is
-    /// part of the name only where that is found.
+    /// The material that a `usemtl` line names. A comment after the name, in either file, is part of the name only if
+    /// that name is found.
     pub fn find(&self, name: &str) -> Option<usize> {
         let bare = without_comment(name);
         self.whole.get(name).or_else(|| self.whole.get(bare)).or_else(|| self.bare.get(bare)).copied()
@@ -98,7 +98,7 @@ fn without_comment(name: &str) -> &str {
     name.split_once(" # ").map_or(name, |(bare, _)| bare).trim_end()
 }
 
-/// An error as a line of warnings, which the name of the model goes before.
+/// An error as a warning, which does not repeat the name of the model.
 fn without_model(model: &Path, error: &LoadError) -> String {
     match error {
         LoadError::Outside { path, name } if path == model => format!("\"{name}\" leads out of the model's folder"),
@@ -111,10 +111,10 @@ fn find(external: &External, name: &str) -> Result<PathBuf, LoadError> {
     external.find(&meanings(name).unwrap_or_default())
 }
 
-/// Adds the materials of an MTL file: `newmtl`, `Kd`, `d`, `Tr` and `map_Kd`; the rest is for other light models.
+/// Adds the materials of an MTL file: `newmtl`, `Kd`, `d`, `Tr` and `map_Kd`. Other statements are ignored.
 fn read_materials(text: &str, materials: &mut Vec<MtlMaterial>, warnings: &mut Vec<String>) {
     let first = materials.len();
-    // Per material whether it has a `Kd` and a `d` of its own.
+    // Per material whether it has its own `Kd` and `d`.
     let mut given = Vec::new();
     for line in text.trim_start_matches('\u{feff}').split(['\n', '\r']) {
         let line = line.trim();
@@ -139,17 +139,17 @@ fn read_materials(text: &str, materials: &mut Vec<MtlMaterial>, warnings: &mut V
         let mut color = None;
         match keyword {
             "Kd" => match numbers().collect::<Vec<_>>()[..] {
-                // One number stands for all three.
+                // A single number is a gray.
                 [Some(grey)] => color = Some(Vec3::splat(grey)),
                 [Some(r), Some(g), Some(b), ..] => color = Some(Vec3::new(r, g, b)),
                 _ => warnings.push(format!("material \"{name}\": Kd \"{shown}\" is not understood")),
             },
-            // The number comes last; `-halo` may stand before it.
+            // The number is last; `-halo` may precede it.
             "d" => match numbers().next_back().flatten() {
                 Some(alpha) => (material.base_color.w, *has_dissolve) = (alpha.clamp(0.0, 1.0), true),
                 None => warnings.push(format!("material \"{name}\": d \"{shown}\" is not understood")),
             },
-            // Exporters disagree about `Tr`: where there is a `d` it is that which counts.
+            // Exporters disagree about `Tr`, so `d` has precedence.
             "Tr" if !*has_dissolve => match numbers().next_back().flatten() {
                 Some(clear) => material.base_color.w = (1.0 - clear).clamp(0.0, 1.0),
                 None => warnings.push(format!("material \"{name}\": Tr \"{shown}\" is not understood")),
@@ -176,7 +176,7 @@ fn read_materials(text: &str, materials: &mut Vec<MtlMaterial>, warnings: &mut V
     }
 }
 
-/// The file that a `map_…` line names behind its options.
+/// The file that a `map_…` line names after its options.
 fn texture_name(line: &str) -> Option<TextureName> {
     let mut rest = line.trim();
     let mut wrap = Wrap::Repeat;
@@ -187,7 +187,7 @@ fn texture_name(line: &str) -> Option<TextureName> {
             "-o" | "-s" | "-t" => (1, 3),
             "-mm" => (2, 2),
             "-blendu" | "-blendv" | "-cc" | "-clamp" | "-imfchan" | "-type" | "-texres" | "-boost" | "-bm" => (1, 1),
-            // A file's name can begin with a hyphen.
+            // The name of a file may begin with a hyphen.
             _ => {
                 rest = line[line.len() - after.len() - option.len() - 1..].trim();
                 break;
@@ -208,10 +208,10 @@ fn texture_name(line: &str) -> Option<TextureName> {
     meanings(name).map(|names| TextureName { names, written: shortened(name), wrap })
 }
 
-/// Moves the materials over, with the textures of those that are `used`, each file read once per way of wrapping.
+/// Moves the materials to the model and loads the textures of those that are `used`, each file once per wrap mode.
 ///
 /// # Errors
-/// Only a limit that is exceeded; a texture that is not there or broken is a warning.
+/// Only exceeded limits. A missing or invalid texture gives a warning.
 pub(super) fn move_materials(
     materials: Vec<MtlMaterial>,
     used: &[bool],

@@ -1,4 +1,4 @@
-//! A text that tobj reads as it is meant.
+//! Rewrites an OBJ text so that tobj reads it correctly.
 
 use super::lines::{
     Corners, count_words, first_words, line_length, number, plain_face, plain_vertex, trim_end, words_of,
@@ -12,23 +12,23 @@ use std::path::Path;
 
 #[derive(Default)]
 pub(super) struct Counts {
-    /// `v`, `vt` and `vn` lines.
+    /// The numbers of `v`, `vt` and `vn` lines.
     pub arrays: [u64; 3],
     pub colored: u64,
     pub corners: u64,
     pub triangles: u64,
 }
 
-/// What tobj can read safely, and what it would lose.
+/// A text that tobj reads correctly, and the information that it does not return.
 pub(super) struct Prepared {
     pub text: Vec<u8>,
     pub counts: Counts,
-    /// Corners without texture coordinate, and without normal, numbered through all faces that tobj is given.
+    /// The corners without texture coordinate, and without normal, numbered through all faces of the text.
     pub absent: [Runs; 2],
     pub materials_used: BTreeSet<String>,
-    /// What the `mtllib` lines name.
+    /// The operands of the `mtllib` lines.
     pub material_files: Vec<String>,
-    /// The corners with which an object or a group begins, numbered likewise, ascending.
+    /// The corners at which an object or group begins, numbered likewise, in ascending order.
     pub objects: Vec<u64>,
     pub warnings: Vec<String>,
 }
@@ -36,7 +36,7 @@ pub(super) struct Prepared {
 /// Ascending ranges of corners that neither touch nor overlap.
 pub(super) type Runs = Vec<Range<u64>>;
 
-/// Adds `count` corners from `start`, behind all that are there.
+/// Adds `count` corners from `start`, which is after all existing corners.
 fn add_run(runs: &mut Runs, start: u64, count: u64) {
     match runs.last_mut() {
         Some(last) if last.end == start => last.end += count,
@@ -44,7 +44,7 @@ fn add_run(runs: &mut Runs, start: u64, count: u64) {
     }
 }
 
-/// Takes the corners from `end` on out.
+/// Removes the corners from `end` on.
 fn cut_runs(runs: &mut Runs, end: u64) {
     while let Some(last) = runs.last_mut()
         && last.end > end
@@ -56,7 +56,7 @@ fn cut_runs(runs: &mut Runs, end: u64) {
     }
 }
 
-/// What of the runs is in a range.
+/// The intersection of the runs with a range.
 pub(super) fn runs_within(runs: &Runs, range: &Range<u64>) -> impl Iterator<Item = Range<u64>> {
     let (start, end) = (range.start, range.end);
     runs[runs.partition_point(|run| run.end <= start)..]
@@ -65,7 +65,7 @@ pub(super) fn runs_within(runs: &Runs, range: &Range<u64>) -> impl Iterator<Item
         .map(move |run| run.start.max(start)..run.end.min(end))
 }
 
-/// Keywords whose lines say nothing about the faces and their materials.
+/// Keywords of lines that do not affect faces or materials.
 const PASSED_OVER: [&[u8]; 28] = [
     b"s",
     b"mg",
@@ -99,8 +99,8 @@ const PASSED_OVER: [&[u8]; 28] = [
 
 const ARRAYS: [&str; 3] = ["vertex", "texture coordinate", "normal"];
 
-/// The `v`, `vt`, `vn`, `f` and `usemtl` lines, each in its place, in a form that tobj reads as it is meant, everything
-/// checked that it would not check.
+/// The `v`, `vt`, `vn`, `f` and `usemtl` lines, with their line numbers unchanged, in a form that tobj reads
+/// correctly. Everything that tobj does not check is checked here.
 pub(super) fn prepare(mut bytes: Vec<u8>, path: &Path, limits: &Limits) -> Result<Prepared, LoadError> {
     let malformed = |line: u64, fault: String| LoadError::Malformed {
         path: path.to_owned(),
@@ -110,12 +110,12 @@ pub(super) fn prepare(mut bytes: Vec<u8>, path: &Path, limits: &Limits) -> Resul
         return Err(malformed(0, "not a text file".to_owned()));
     }
     let mut repaired = Repaired::default();
-    // More than one where files were put together.
+    // Concatenated files may begin with several marks.
     while bytes[3 * repaired.marks as usize..].starts_with(b"\xef\xbb\xbf") {
         bytes[3 * repaired.marks as usize..][..3].fill(b' ');
         repaired.marks += 1;
     }
-    // Lines ended so before 2001, and do here and there in files put together since.
+    // Line ends of classic Mac OS, which also occur in concatenated files.
     let end = if bytes.contains(&b'\r') { bytes.len() } else { 0 };
     for at in 0..end {
         if bytes[at] == b'\r' && bytes.get(at + 1) != Some(&b'\n') {
@@ -129,14 +129,14 @@ pub(super) fn prepare(mut bytes: Vec<u8>, path: &Path, limits: &Limits) -> Resul
     let mut material_files = Vec::new();
     let mut material_files_known = BTreeSet::new();
     let mut objects = Vec::new();
-    // Per array the highest number that a face names, and that face's line.
+    // Per array the highest index of a face, and the line of that face.
     let mut highest = [(0u64, 0u64); 3];
     let mut edit = Edit { bytes: &bytes, out: Vec::new(), copied: 0 };
     let mut at = 0;
     let mut line_number = 0;
     let mut joined = Vec::new();
     while at < bytes.len() {
-        // Nearly all lines are of two kinds and need neither a change nor a closer look.
+        // A fast path for the two most frequent kinds of lines, which need no change.
         if let Some(length) = plain_vertex(&bytes[at..]) {
             line_number += 1;
             at += length;
@@ -186,7 +186,7 @@ pub(super) fn prepare(mut bytes: Vec<u8>, path: &Path, limits: &Limits) -> Resul
         }
         let bad = |fault: String| malformed(first_line_number, fault);
         let trimmed = line.trim_ascii_start();
-        // tobj takes names from where a line without indentation would have them.
+        // tobj finds names at fixed columns, so indentation is removed.
         rewritten |= trimmed.len() < line.len();
         line = trimmed;
         let word_length = line.iter().position(u8::is_ascii_whitespace).unwrap_or(line.len());
@@ -233,7 +233,7 @@ pub(super) fn prepare(mut bytes: Vec<u8>, path: &Path, limits: &Limits) -> Resul
                 }
             }
             b"vn" => counts.arrays[2] += 1,
-            // `fo` is what faces were in the format's first version.
+            // `fo` denotes faces in the first version of the format.
             b"f" | b"fo" => {
                 let mut corners = 0u64;
                 let corners_before = counts.corners;
@@ -291,7 +291,7 @@ pub(super) fn prepare(mut bytes: Vec<u8>, path: &Path, limits: &Limits) -> Resul
                 continue;
             }
             b"usemtl" => {
-                // Names can have any bytes; tobj takes UTF-8 only, and a single space before them.
+                // Names may contain any bytes; tobj accepts only UTF-8 after a single space.
                 let name = String::from_utf8_lossy(rest.trim_ascii());
                 if name.is_empty() {
                     repaired.nameless += 1;
@@ -306,7 +306,7 @@ pub(super) fn prepare(mut bytes: Vec<u8>, path: &Path, limits: &Limits) -> Resul
                     continue;
                 }
             }
-            // What would part the file into meshes that share no vertices.
+            // tobj would split the file into meshes that share no vertices.
             b"o" | b"g" => {
                 if objects.last() != Some(&counts.corners) {
                     objects.push(counts.corners);
@@ -314,7 +314,7 @@ pub(super) fn prepare(mut bytes: Vec<u8>, path: &Path, limits: &Limits) -> Resul
                 edit.replace(begin, at, b"");
                 continue;
             }
-            // Lines that would be parsed as faces, and what may not be UTF-8.
+            // Lines that tobj would parse as faces, and lines that may not be UTF-8.
             [] => continue,
             [b'#', ..] if line.is_ascii() => continue,
             _ => {
@@ -394,17 +394,17 @@ impl Repaired {
     }
 }
 
-/// A text in which lines are replaced; nothing is copied until one is.
+/// Replaces lines of a text. Nothing is copied before the first replacement.
 struct Edit<'a> {
     bytes: &'a [u8],
     out: Vec<u8>,
-    /// Up to here `bytes` is in `out`, edited.
+    /// The position in `bytes` up to which `out` is complete.
     copied: usize,
 }
 
 impl Edit<'_> {
-    /// The lines from `begin` up to `end`, with their line ends, become one line; empty ones behind it keep the numbers
-    /// of those that follow.
+    /// Replaces the lines from `begin` to `end`, including their line ends, by one line. Empty lines are added to
+    /// keep the numbers of the following lines.
     fn replace(&mut self, begin: usize, end: usize, line: &[u8]) {
         self.out.extend_from_slice(&self.bytes[self.copied..begin]);
         self.out.extend_from_slice(line);
@@ -421,7 +421,7 @@ impl Edit<'_> {
     }
 }
 
-/// White for the vertices without a colour.
+/// Adds white to vertices without a colour.
 fn color_all(text: &[u8]) -> Vec<u8> {
     let mut out = Vec::with_capacity(text.len() * 2);
     for line in text.split(|b| *b == b'\n') {
@@ -432,7 +432,7 @@ fn color_all(text: &[u8]) -> Vec<u8> {
         {
             let (words, _) = count_words(rest);
             if words == 4 {
-                // A weight cannot stand beside a colour. It is 1 wherever this has been met.
+                // A colour excludes a weight. The weight is removed; in known files it is 1.
                 let end = line.iter().rposition(u8::is_ascii_whitespace).unwrap_or(line.len());
                 out.truncate(out.len() - (line.len() - end));
             }
