@@ -15,7 +15,6 @@
 //! | copy of R8, R32, RG32, RGBA32 | 3.9, 5.9, 7.4, 8.5 | 15, 23, 27, 33 |
 //! | fused, one word, hard; soft | 25 (4.2); 28 (4.6) | 92 (3.9); 81 (3.5) |
 //! | fused, two words, hard; soft | 27 (3.7); 28 (3.7) | 64 (2.4); 106 (3.9) |
-//! | fused by strips, one word; two | 5.8 (0.97); 6.9 (0.93) | |
 //! | separate, three textures | 51 (6.0) | 178 (5.5) |
 //! | printed edges; inker | 18 (3.0); 13 (2.3) | 54 (2.3); 42 (1.8) |
 //! | step, diagonal; cross; 3 × 3 | 12 (3.1); 13 (3.2); 20 (5.2) | 34 (2.3); 38 (2.6); 79 (5.4) |
@@ -54,7 +53,6 @@ use npr_imagespace::morphology::flood::{disc_plan, flood};
 use npr_imagespace::morphology::{Kernel, Operation, ping_pong};
 use npr_imagespace::pass::disc::{DiscPass, DiscScratch};
 use npr_imagespace::pass::fused::{FusedPass, texel_format};
-use npr_imagespace::pass::fused_strips::{FusedStrips, STRIPS_FORMAT};
 use npr_imagespace::pass::lay::LayPass;
 use npr_imagespace::pass::printed::PrintedPass;
 use npr_imagespace::pass::separate::{SeparatePass, SeparateTextures};
@@ -271,7 +269,6 @@ fn bench(gpu: &Gpu, size: [u32; 2]) {
     let double_ink = view(&gpu.upload(INK_FORMAT, double_size, &vec![0; (double_size[0] * double_size[1]) as usize]));
     let [out, other] = [(); 2].map(|()| view(&gpu.texture(INK_FORMAT, size)));
     let picture = view(&gpu.texture(TextureFormat::Rgba8Unorm, size));
-    let stored = view(&gpu.storable(STRIPS_FORMAT, size));
     let scratch = DiscScratch::new(device, size);
     let composite = Composite::default();
     let onto_ink = Onto { view: &out, composite: &composite, area: None };
@@ -304,15 +301,6 @@ fn bench(gpu: &Gpu, size: [u32; 2]) {
         pass.record(device, encoder, &filter, &code(TexelLayout::Wide), wide, &onto_picture).expect("in range");
     };
     timed.add("fused, Wide, hard, over a picture", 8.0 + 8.0, run);
-    let stored = &stored;
-    for (layout, texels, bytes) in [(TexelLayout::Narrow, &narrow, 4.0), (TexelLayout::Wide, wide, 8.0)] {
-        let pass = FusedStrips::new(device, &filter, layout);
-        let run = move |encoder: &mut wgpu::CommandEncoder| {
-            let onto = Onto { view: stored, ..onto_picture };
-            pass.record(device, encoder, &filter, &code(layout), texels, &onto).expect("in range");
-        };
-        timed.add(&format!("fused by strips, {layout:?}, over a picture"), bytes + 4.0 * inked, run);
-    }
     let separate = SeparateFilter::default();
     let pass = SeparatePass::new(device, &separate, InkTarget::Ink);
     let run = move |encoder: &mut wgpu::CommandEncoder| {

@@ -2,7 +2,6 @@
 //!
 //! - [`fused`]: packed texels ([`crate::format::texel`]) to ink, or at once over a picture: nothing is written in
 //!   between.
-//! - [`fused_strips`]: the same, hard and opaque, by compute shaders, for software rasterisers.
 //! - [`separate`]: the same from textures of one's own: normals, depth, region numbers, any of them.
 //! - [`printed`]: the filters and the inker of 2002 over an RGBA8 target ([`crate::format::printed`]), on its bytes.
 //! - [`step`]: one step of dilation or erosion, hard and soft, from ink to ink.
@@ -10,7 +9,7 @@
 //! - [`lay`]: ink over a picture, also of another size.
 //!
 //! Each is a struct with `new(&device, ..)` and `record(&device, &mut encoder, ..)`; it holds pipelines and nothing of
-//! a frame. Each but [`fused_strips`] draws a triangle over its target, so that it needs nothing but render targets:
+//! a frame. Each draws a triangle over its target, so that it needs nothing but render targets:
 //! WebGL will do.
 //!
 //! # Targets
@@ -22,7 +21,6 @@
 pub mod disc;
 mod fullscreen;
 pub mod fused;
-pub mod fused_strips;
 pub mod lay;
 pub mod printed;
 pub mod separate;

@@ -10,8 +10,6 @@ mod device;
 mod discs;
 #[path = "gpu/fused.rs"]
 mod fused;
-#[path = "gpu/fused_strips.rs"]
-mod fused_strips;
 #[path = "gpu/inputs.rs"]
 mod inputs;
 #[path = "gpu/lay.rs"]

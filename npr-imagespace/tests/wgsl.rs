@@ -172,7 +172,7 @@ const FULLSCREEN: &str = include_str!("../src/pass/fullscreen.wgsl");
 
 /// The passes' own shaders, as they use them: after the library and the triangle.
 const PASSES: [(&str, &[&str]); 6] = [
-    (concat!(include_str!("../src/pass/fused_taps.wgsl"), include_str!("../src/pass/fused.wgsl")), &["fs_fused"]),
+    (include_str!("../src/pass/fused.wgsl"), &["fs_fused"]),
     (include_str!("../src/pass/separate.wgsl"), &["fs_separate"]),
     (include_str!("../src/pass/printed.wgsl"), &["fs_printed", "fs_inker"]),
     (include_str!("../src/pass/step.wgsl"), &["fs_step"]),
@@ -188,11 +188,6 @@ fn passes_validate() {
         assert_eq!(found[0], "vs_fullscreen");
         assert_eq!(found[1..], *entry_points);
     }
-    // This one draws no triangle.
-    let strips = concat!(include_str!("../src/pass/fused_taps.wgsl"), include_str!("../src/pass/fused_strips.wgsl"));
-    let module = validated(&[WGSL, strips].concat());
-    let found: Vec<_> = module.entry_points.iter().map(|entry| entry.name.as_str()).collect();
-    assert_eq!(found, ["fused_strips", "fused_border"]);
 }
 
 #[test]

@@ -32,12 +32,4 @@ pub enum OutlineError {
         /// What there is.
         limit: u64,
     },
-    /// A picture whose pixels do not fit one buffer of the device.
-    #[error("a picture without pixels, or {bytes} bytes of pixels exceed the device's limit of {limit} for one buffer")]
-    PictureTooLarge {
-        /// What is needed.
-        bytes: u64,
-        /// What there is.
-        limit: u64,
-    },
 }

@@ -20,8 +20,7 @@
 //! 2. [`segment`]: an edge cut at the near plane, projected, widened by px and hidden where its centreline is hidden.
 //! 3. [`line_look`]: width by kind of line, and ink.
 //! 4. With the feature `wgpu`, `line_pass` draws them: with lines found by a scan on the CPU and sent as records, or
-//!    found by a compute pass and drawn indirectly. `line_strokes` draws records without triangles, which is the faster
-//!    way where the rasteriser is software.
+//!    found by a compute pass and drawn indirectly.
 //!
 //! [`fin_printed`] (and `fin_pass`) are the fins of 2002 as they were printed, all edges of a model in a vertex buffer,
 //! to be measured against. [`normal_format`] has their face normals in f32, i16, i8 and octahedral records.
@@ -48,8 +47,6 @@ pub mod fin_printed;
 pub mod line_look;
 #[cfg(feature = "wgpu")]
 pub mod line_pass;
-#[cfg(feature = "wgpu")]
-pub mod line_strokes;
 pub mod normal_format;
 pub mod segment;
 #[cfg(feature = "wgpu")]

@@ -17,7 +17,7 @@ use glam::{DVec4, Vec3};
 
 /// The WGSL library of this crate: no bindings, no entry points.
 pub const WGSL: &str = include_str!("line.wgsl");
-pub(crate) const INK_WGSL: &str = include_str!("line_ink.wgsl");
+const INK_WGSL: &str = include_str!("line_ink.wgsl");
 const PASS_WGSL: &str = include_str!("line_pass.wgsl");
 const PULLED_WGSL: &str = include_str!("line_pulled.wgsl");
 const COMPACTION_WGSL: &str = include_str!("compaction.wgsl");
@@ -372,42 +372,38 @@ impl EdgesOnDevice {
 
 impl OutlineUniform {
     fn new(look: &LineLook, view: &LineView, eye: DVec4, source: LineSource<'_>) -> Self {
-        let LineSource::OnDevice(edges) = source else { return Self::of_records(look, view, 0, 0) };
-        Self {
-            local_eye: (eye - edges.local_origin.as_dvec3().extend(0.0) * eye.w).as_vec4().to_array(),
-            edge_count: edges.edge_count,
-            always_count: edges.always_count,
-            row_stride: 64 * edges.workgroups().0,
-            ..Self::of_records(look, view, 0, 0)
-        }
-    }
-
-    /// For so many records, with so many invocations in a row of workgroups.
-    pub(crate) fn of_records(look: &LineLook, view: &LineView, records: u32, row_stride: u32) -> Self {
-        Self {
+        let of_records = Self {
             clip_from_world: view.clip_from_world.as_mat4().to_cols_array_2d(),
             viewport_px: view.viewport_px.as_vec2().to_array(),
             depth_per_px: view.depth_per_px.as_vec2().to_array(),
             width_px: look.width_px,
             ink: look.ink,
             local_eye: [0.0; 4],
-            edge_count: records,
+            edge_count: 0,
             always_count: 0,
-            row_stride,
+            row_stride: 0,
             padding: 0,
+        };
+        let LineSource::OnDevice(edges) = source else { return of_records };
+        Self {
+            local_eye: (eye - edges.local_origin.as_dvec3().extend(0.0) * eye.w).as_vec4().to_array(),
+            edge_count: edges.edge_count,
+            always_count: edges.always_count,
+            row_stride: 64 * edges.workgroups().0,
+            ..of_records
         }
     }
 }
 
 /// Workgroups of 64 for so many invocations, in rows of at most 65,535, which every device can dispatch.
-pub(crate) fn workgroups(invocations: u32) -> (u32, u32) {
+fn workgroups(invocations: u32) -> (u32, u32) {
     let groups = invocations.div_ceil(64).max(1);
     let rows = groups.div_ceil(65_535);
     (groups.div_ceil(rows), rows)
 }
 
 /// The most bytes that a storage buffer can have.
-pub(crate) fn storage_limit(device: &wgpu::Device) -> u64 {
+fn storage_limit(device: &wgpu::Device) -> u64 {
     device.limits().max_storage_buffer_binding_size.min(device.limits().max_buffer_size)
 }
 
@@ -425,7 +421,7 @@ pub(crate) fn bind_group(
     device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
 }
 
-pub(crate) fn shader(device: &wgpu::Device, label: &str, parts: &[&str]) -> wgpu::ShaderModule {
+fn shader(device: &wgpu::Device, label: &str, parts: &[&str]) -> wgpu::ShaderModule {
     device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some(label),
         source: wgpu::ShaderSource::Wgsl(parts.concat().into()),
@@ -442,7 +438,7 @@ pub(crate) fn buffer_entry(
 }
 
 /// Group 1 of `line_ink.wgsl`: depth and picture, read texel by texel, and the sampler for depth.
-pub(crate) fn picture_layout(device: &wgpu::Device, visibility: wgpu::ShaderStages) -> wgpu::BindGroupLayout {
+fn picture_layout(device: &wgpu::Device, visibility: wgpu::ShaderStages) -> wgpu::BindGroupLayout {
     let texture = wgpu::BindingType::Texture {
         sample_type: wgpu::TextureSampleType::Float { filterable: false },
         view_dimension: wgpu::TextureViewDimension::D2,
@@ -457,7 +453,7 @@ pub(crate) fn picture_layout(device: &wgpu::Device, visibility: wgpu::ShaderStag
 }
 
 /// What [`picture_layout`] is for.
-pub(crate) fn picture_group(
+fn picture_group(
     device: &wgpu::Device,
     layout: &wgpu::BindGroupLayout,
     depth: &wgpu::TextureView,
@@ -473,7 +469,7 @@ pub(crate) fn picture_group(
 }
 
 /// Filters nothing, and repeats the border outside of a texture.
-pub(crate) fn nearest_sampler(device: &wgpu::Device) -> wgpu::Sampler {
+fn nearest_sampler(device: &wgpu::Device) -> wgpu::Sampler {
     device.create_sampler(&wgpu::SamplerDescriptor { label: Some("nearest"), ..Default::default() })
 }
 

@@ -4,7 +4,6 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 
 const LINE: &str = include_str!("../src/line.wgsl");
 const LINE_INK: &str = include_str!("../src/line_ink.wgsl");
-const LINE_STROKES: &str = include_str!("../src/line_strokes.wgsl");
 const LINE_PASS: &str = include_str!("../src/line_pass.wgsl");
 const LINE_PULLED: &str = include_str!("../src/line_pulled.wgsl");
 const COMPACTION: &str = include_str!("../src/compaction.wgsl");
@@ -33,7 +32,6 @@ fn entry_points(parts: &[&str]) -> Vec<String> {
 fn modules_validate_as_the_passes_use_them() {
     assert_eq!(entry_points(&[LINE, LINE_INK, LINE_PASS]), ["vs_record", "fs_ink"]);
     assert_eq!(entry_points(&[LINE, LINE_INK, LINE_PASS, LINE_PULLED]), ["vs_record", "fs_ink", "vs_pulled"]);
-    assert_eq!(entry_points(&[LINE, LINE_INK, LINE_STROKES]), ["stroke", "mix_ink", "lay_ink"]);
     assert_eq!(entry_points(&[LINE, COMPACTION]), ["compact"]);
     assert_eq!(entry_points(&[NORMAL_FORMAT, FIN_PRINTED, FIN_PASS]), ["vs_fin", "vs_fin_oct", "fs_fin"]);
     assert_eq!(entry_points(&[SHADOW_VOLUME, SHADOW_PASS]), ["vs_side", "vs_cap", "vs_placed"]);

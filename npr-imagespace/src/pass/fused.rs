@@ -7,7 +7,6 @@ use crate::filter::fused::{FilterUniform, FusedFilter};
 use crate::format::texel::{DepthCode, TexelLayout};
 use crate::picture::Taps;
 
-pub(super) const TAPS_WGSL: &str = include_str!("fused_taps.wgsl");
 const FUSED_WGSL: &str = include_str!("fused.wgsl");
 
 /// The format of a texture of packed texels. It is to be cleared to 0, which is background.
@@ -38,14 +37,7 @@ impl FusedPass {
         ];
         let bound = [Bound::Uniform, Bound::Whole];
         Self {
-            draw: Fullscreen::new(
-                device,
-                "fused",
-                &[TAPS_WGSL, FUSED_WGSL].concat(),
-                &bound,
-                &constants,
-                Output::Ink(target),
-            ),
+            draw: Fullscreen::new(device, "fused", FUSED_WGSL, &bound, &constants, Output::Ink(target)),
             layout,
             taps: filter.taps,
             soft,

@@ -55,15 +55,13 @@ pub struct Picture {
     pub depth: wgpu::Texture,
     /// Where lines are drawn; starts white.
     pub inked: wgpu::Texture,
-    /// Where lines are drawn as strokes; starts white.
-    pub stroked: wgpu::Texture,
     views: [wgpu::TextureView; 4],
 }
 
 impl Gpu {
     /// A white picture with a depth buffer cleared to 0, infinitely far.
     pub fn picture(&self, [width, height]: [u32; 2]) -> Picture {
-        let texture = |format, usage| {
+        let texture = |format| {
             self.device.create_texture(&wgpu::TextureDescriptor {
                 label: None,
                 size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
@@ -73,16 +71,13 @@ impl Gpu {
                 format,
                 usage: wgpu::TextureUsages::RENDER_ATTACHMENT
                     | wgpu::TextureUsages::TEXTURE_BINDING
-                    | usage
                     | wgpu::TextureUsages::COPY_SRC
                     | wgpu::TextureUsages::COPY_DST,
                 view_formats: &[],
             })
         };
-        let nothing = wgpu::TextureUsages::empty();
-        let [color, inked] = [(); 2].map(|()| texture(COLOR_FORMAT, nothing));
-        let stroked = texture(COLOR_FORMAT, wgpu::TextureUsages::STORAGE_BINDING);
-        let depth = texture(wgpu::TextureFormat::Depth32Float, nothing);
+        let [color, inked] = [(); 2].map(|()| texture(COLOR_FORMAT));
+        let depth = texture(wgpu::TextureFormat::Depth32Float);
         let winner = self.device.create_texture(&wgpu::TextureDescriptor {
             label: None,
             size: color.size(),
@@ -94,7 +89,7 @@ impl Gpu {
             view_formats: &[],
         });
         let views = [&color, &depth, &inked, &winner].map(|t| t.create_view(&Default::default()));
-        let picture = Picture { color, depth, inked, stroked, views };
+        let picture = Picture { color, depth, inked, views };
         self.clear(&picture);
         picture
     }
