@@ -60,8 +60,7 @@ fn main() {
             Style { shade: without_highlight, lines: found(TexelLayout::Narrow), ..base.clone() },
             LineMethod::Rectangles,
         ),
-        ("Lambert + lines as strokes", Style { shade: lambert, ..base.clone() }, LineMethod::Strokes),
-        ("toon + lines as strokes", base.clone(), LineMethod::Strokes),
+        ("Lambert + lines as rectangles", Style { shade: lambert, ..base.clone() }, LineMethod::Rectangles),
         ("toon + lines as rectangles", base.clone(), LineMethod::Rectangles),
         ("toon + lines found on the device", base.clone(), LineMethod::OnDevice),
         (
@@ -75,7 +74,7 @@ fn main() {
     let plain_toon = Style { lines: None, ..base.clone() };
     cases.push(("toon, 2 × 2 samples", plain_toon.clone(), LineMethod::Rectangles, 2));
     cases.push(("toon, 4 × 4 samples", plain_toon, LineMethod::Rectangles, 4));
-    cases.push(("toon + lines as strokes, 2 × 2 samples", base, LineMethod::Strokes, 2));
+    cases.push(("toon + lines as rectangles, 2 × 2 samples", base, LineMethod::Rectangles, 2));
     // What differs from 1 here is noise, and what the case before leaves behind in the caches.
     let mut again = cases[0].clone();
     again.0 = "Lambert again";

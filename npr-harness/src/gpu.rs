@@ -17,7 +17,7 @@ mod surface;
 mod targets;
 
 pub use adapter::{DeviceLimits, GpuAdapter};
-pub use capabilities::{Capabilities, ImageLineMethod, VolumeMethod};
+pub use capabilities::{Capabilities, VolumeMethod};
 pub use context::GpuContext;
 pub(crate) use context::REFUSED;
 pub use error::GpuError;
@@ -38,7 +38,6 @@ use mean::MeanPass;
 use npr_outline::fin_pass::FinPass;
 use npr_outline::line_look::LineLook;
 use npr_outline::line_pass::{LineRecord, LineSource, LineTargets, line_records};
-use npr_outline::line_strokes::{LineStrokes, StrokeTargets};
 use npr_outline::normal_format::NormalFormat;
 use shadow::{ShadowFrame, ShadowPasses, StencilTarget};
 use std::cell::{OnceCell, RefCell};
@@ -51,7 +50,6 @@ pub struct GpuRenderer<'a> {
     capabilities: Capabilities,
     surface: SurfacePass,
     lines: npr_outline::line_pass::LinePass,
-    strokes: OnceCell<LineStrokes>,
     printed: OnceCell<FinPass>,
     ink: ink::InkPasses,
     shadows: ShadowPasses,
@@ -76,7 +74,6 @@ impl<'a> GpuRenderer<'a> {
                 capabilities.can_find_lines(),
             ),
             capabilities,
-            strokes: OnceCell::new(),
             printed: OnceCell::new(),
             ink: Default::default(),
             shadows: Default::default(),
@@ -100,7 +97,6 @@ impl<'a> GpuRenderer<'a> {
         if let (true, Some(contours)) = (on_device, &plan.contours) {
             uploaded.edges = Some(self.lines.upload_edges(&self.context.device, contours, &scene.model.positions)?);
         }
-        uploaded.strokes = lines == LineMethod::Strokes;
         if let Some(shadow) = plan.shadow.as_ref().filter(|shadow| shadow.style.method == ShadowMethod::Volumes) {
             let sorted_there = match method {
                 LineMethod::Auto => capabilities.volumes().0 == VolumeMethod::OnDevice,
@@ -112,10 +108,6 @@ impl<'a> GpuRenderer<'a> {
             uploaded.fins = Some(self.printed().upload(&self.context.device, fins)?);
         }
         Ok(uploaded)
-    }
-
-    fn strokes(&self) -> &LineStrokes {
-        self.strokes.get_or_init(|| LineStrokes::new(&self.context.device))
     }
 
     fn printed(&self) -> &FinPass {
@@ -207,20 +199,14 @@ impl<'a> GpuRenderer<'a> {
             };
             let look = &LineLook { width_px: look.width_px.map(|width_px| width_px * scale), ..*look };
             let view = camera.line_view(size_px);
-            let buffers = if uploaded.strokes { canvas.stroke_buffers(device, self.strokes()) } else { None };
-            if let (LineSource::Records(records), Some(buffers)) = (source, buffers) {
-                let stroke_targets = StrokeTargets { picture: &canvas.color_view, depth: &canvas.depth_view, buffers };
-                self.strokes().record(device, &mut encoder, records, look, &view, &stroke_targets)?;
-            } else {
-                let line_targets = LineTargets {
-                    painted: &canvas.color_view,
-                    depth: &canvas.depth_view,
-                    inked: &canvas.inked_view,
-                    winner: &canvas.winner_view,
-                };
-                canvas.begin_ink(&mut encoder);
-                self.lines.record(device, &mut encoder, source, look, &view, eye, &line_targets)?;
-            }
+            let line_targets = LineTargets {
+                painted: &canvas.color_view,
+                depth: &canvas.depth_view,
+                inked: &canvas.inked_view,
+                winner: &canvas.winner_view,
+            };
+            canvas.begin_ink(&mut encoder);
+            self.lines.record(device, &mut encoder, source, look, &view, eye, &line_targets)?;
         }
         if let (Some(Lines::Printed { width_px, ink }), Some(fins), Some(bounds)) =
             (&style.lines, &uploaded.fins, scene.bounds())
@@ -256,8 +242,7 @@ impl<'a> GpuRenderer<'a> {
                     &drawn,
                 )?;
             }
-            let (method, _) = self.capabilities.image_lines();
-            self.ink.record(self.context, method, &mut encoder, scene.bounds(), image, camera, ink, targets)?;
+            self.ink.record(self.context, &mut encoder, scene.bounds(), image, camera, ink, targets)?;
         }
         self.context.queue.submit([encoder.finish()]);
         Ok(())

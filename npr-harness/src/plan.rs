@@ -20,14 +20,11 @@ use std::fmt;
 /// How lines are found and drawn on a device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LineMethod {
-    /// [`LineMethod::OnDevice`] where the adapter is hardware, [`LineMethod::Strokes`] where it is software;
-    /// [`LineMethod::Rectangles`] where it can do neither.
+    /// [`LineMethod::OnDevice`] where the adapter is hardware and can, else [`LineMethod::Rectangles`].
     #[default]
     Auto,
     /// A scan on the CPU, and the lines that it finds drawn as rectangles.
     Rectangles,
-    /// A scan on the CPU, and the lines that it finds drawn by compute shaders.
-    Strokes,
     /// A compute pass that finds the lines, and an indirect draw of rectangles.
     OnDevice,
 }

@@ -93,7 +93,7 @@ fn named(name: &str) -> Style {
 /// What is taken away, and what the methods of some style then say.
 type Case = (&'static str, fn(&mut Capabilities), &'static str, &'static str);
 
-const CASES: [Case; 9] = [
+const CASES: [Case; 8] = [
     ("nothing", |c| c.software = false, "cartoon", "found and drawn on the device"),
     ("compute shaders", |c| (c.software, c.compute) = (false, false), "cartoon", "the adapter has no compute shaders"),
     (
@@ -107,12 +107,6 @@ const CASES: [Case; 9] = [
         |c| (c.software, c.indirect_draws) = (false, false),
         "cartoon",
         "no draws with arguments in a buffer",
-    ),
-    (
-        "pictures written by compute shaders",
-        |c| (c.software, c.picture_storage) = (true, false),
-        "ink-image",
-        "cannot write pictures",
     ),
     ("a stencil beside floats", |c| c.float_stencil = false, "toon-shadow", "no stencil beside floats"),
     ("depth as computed", |c| c.exact_depth = false, "lines", "multiples of 2^-24"),
@@ -149,7 +143,6 @@ fn lines_are_found_on_the_cpu_for_the_reason_that_is_there() {
         no_compute: "the adapter has no compute shaders",
         vertex_storage: true,
         indirect_draws: true,
-        picture_storage: true,
         unclipped_depth: true,
         float_stencil: true,
         exact_depth: true,
@@ -167,7 +160,7 @@ fn lines_are_found_on_the_cpu_for_the_reason_that_is_there() {
         assert_eq!(method, LineMethod::Rectangles, "{reason}");
         assert!(why.contains(reason), "{why}");
     }
-    assert_eq!(Capabilities { software: true, ..all }.lines(1 << 20).0, LineMethod::Strokes);
+    assert_eq!(Capabilities { software: true, ..all }.lines(1 << 20).0, LineMethod::Rectangles);
 }
 
 #[test]

@@ -23,7 +23,6 @@ const LAY: &str = include_str!("../../npr-imagespace/src/pass/lay.wgsl");
 const PRINTED: &str = include_str!("../../npr-imagespace/src/pass/printed.wgsl");
 const SEPARATE: &str = include_str!("../../npr-imagespace/src/pass/separate.wgsl");
 const STEP: &str = include_str!("../../npr-imagespace/src/pass/step.wgsl");
-const FUSED_TAPS: &str = include_str!("../../npr-imagespace/src/pass/fused_taps.wgsl");
 const FUSED: &str = include_str!("../../npr-imagespace/src/pass/fused.wgsl");
 const MEAN: &str = include_str!("../src/gpu/mean.wgsl");
 const SHADOW_MAP: &str = include_str!("../src/gpu/shadow_map.wgsl");
@@ -101,7 +100,7 @@ fn every_shader_translates() {
         ("printed filters", ink(PRINTED)),
         ("separate filter", ink(SEPARATE)),
         ("step", ink(STEP)),
-        ("fused filter", ink(&[FUSED_TAPS, FUSED].concat())),
+        ("fused filter", ink(FUSED)),
     ];
     let (mut translated, mut failed) = (0, Vec::new());
     for (name, source) in &shaders {

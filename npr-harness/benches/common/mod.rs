@@ -37,7 +37,6 @@ pub fn compare(context: &GpuContext, scene: &Scene, camera: &Camera, cases: &[Ca
         .iter()
         .filter(|(_, _, method, _)| match method {
             LineMethod::OnDevice => context.capabilities.can_find_lines(),
-            LineMethod::Strokes => context.capabilities.can_stroke(),
             LineMethod::Auto | LineMethod::Rectangles => true,
         })
         .map(|(name, style, method, samples)| {

@@ -5,7 +5,6 @@ use crate::plan::{LineMethod, Plan, Reason};
 use crate::scene::Scene;
 use crate::shadow::ShadowMethod;
 use npr_hatch::upload::TamChannels;
-use npr_outline::line_strokes::STROKE_FORMAT;
 
 /// What an adapter can do, as far as pictures depend on it. Plain data: taking something away is enough to make pictures
 /// without it.
@@ -21,8 +20,6 @@ pub struct Capabilities {
     pub vertex_storage: bool,
     /// Whether a draw call's arguments can lie in a buffer.
     pub indirect_draws: bool,
-    /// Whether compute shaders can write pictures.
-    pub picture_storage: bool,
     /// Whether depths outside 0..=1 can be kept from being clipped, which shadow volumes need in parallel views.
     pub unclipped_depth: bool,
     /// Whether a depth buffer of 32-bit floats can have a stencil beside it. Otherwise shadow volumes are counted against
@@ -37,15 +34,6 @@ pub struct Capabilities {
     pub storage_bytes: u64,
 }
 
-/// How lines are found in the image.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ImageLineMethod {
-    /// By a fragment shader over the picture.
-    Fragment,
-    /// By a compute shader, 8 × 1 px an invocation, where the filter is hard and opaque.
-    Compute,
-}
-
 /// Who decides which faces and edges bound shadow volumes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VolumeMethod {
@@ -55,8 +43,6 @@ pub enum VolumeMethod {
     OnCpu,
 }
 
-const NO_PICTURE_STORAGE: &str = "the adapter's compute shaders cannot write pictures";
-
 impl Capabilities {
     /// Reads them from an adapter and the device that was opened on it, whose limits and features may be less.
     pub fn new(adapter: &wgpu::Adapter, device: &wgpu::Device) -> Self {
@@ -65,7 +51,6 @@ impl Capabilities {
         let flags = adapter.get_downlevel_capabilities().flags;
         let (limits, features) = (device.limits(), device.features());
         let buffers = limits.max_storage_buffers_per_shader_stage;
-        let stored = adapter.get_texture_format_features(STROKE_FORMAT).allowed_usages;
         Self {
             software: info.device_type == wgpu::DeviceType::Cpu,
             compute: flags.contains(DownlevelFlags::COMPUTE_SHADERS)
@@ -74,8 +59,6 @@ impl Capabilities {
             no_compute: "the adapter has no compute shaders",
             vertex_storage: flags.contains(DownlevelFlags::VERTEX_STORAGE) && buffers >= 3,
             indirect_draws: flags.contains(DownlevelFlags::INDIRECT_EXECUTION),
-            picture_storage: stored.contains(wgpu::TextureUsages::STORAGE_BINDING)
-                && limits.max_storage_textures_per_shader_stage >= 1,
             unclipped_depth: features.contains(wgpu::Features::DEPTH_CLIP_CONTROL),
             float_stencil: features.contains(wgpu::Features::DEPTH32FLOAT_STENCIL8),
             exact_depth: info.backend != wgpu::Backend::Gl,
@@ -87,24 +70,12 @@ impl Capabilities {
     /// What is left without compute shaders and what goes with them, and why they are not used: all passes are triangles
     /// then.
     pub fn without_compute(self, no_compute: &'static str) -> Self {
-        Self {
-            compute: false,
-            no_compute,
-            vertex_storage: false,
-            indirect_draws: false,
-            picture_storage: false,
-            ..self
-        }
+        Self { compute: false, no_compute, vertex_storage: false, indirect_draws: false, ..self }
     }
 
     /// Whether lines can be found on the device, whoever asks for that.
     pub fn can_find_lines(&self) -> bool {
         self.compute && self.vertex_storage && self.indirect_draws
-    }
-
-    /// Whether compute shaders can draw lines.
-    pub fn can_stroke(&self) -> bool {
-        self.compute && self.picture_storage
     }
 
     /// How lines from edges are found and drawn, and why so. On the device edges take [`ContourEdges::device_bytes`] in one
@@ -115,30 +86,13 @@ impl Capabilities {
         let rectangles = |why: &str| (LineMethod::Rectangles, format!("found on the CPU, drawn as rectangles: {why}"));
         match (self.compute, self.software) {
             (false, _) => rectangles(self.no_compute),
-            (true, true) if self.picture_storage => (
-                LineMethod::Strokes,
-                "found on the CPU, drawn by compute shaders: a software rasteriser is slower at thin rectangles".into(),
-            ),
-            (true, true) => rectangles(NO_PICTURE_STORAGE),
+            (true, true) => rectangles("a software rasteriser has no units to find them by"),
             (true, false) if !self.vertex_storage => rectangles("the adapter has no storage buffers in vertex shaders"),
             (true, false) if !self.indirect_draws => rectangles("the adapter has no draws with arguments in a buffer"),
             (true, false) if edge_bytes > self.storage_bytes => {
                 rectangles("so many edges do not fit the adapter's storage buffers")
             }
             (true, false) => (LineMethod::OnDevice, "found and drawn on the device".into()),
-        }
-    }
-
-    /// How lines are found in the image, and why so.
-    pub fn image_lines(&self) -> (ImageLineMethod, String) {
-        match (self.software, self.compute, self.picture_storage) {
-            (true, true, true) => (
-                ImageLineMethod::Compute,
-                "compute shaders, where hard and opaque: a software rasteriser is slower at it".into(),
-            ),
-            (true, false, _) => (ImageLineMethod::Fragment, format!("fragment shader: {}", self.no_compute)),
-            (true, true, false) => (ImageLineMethod::Fragment, format!("fragment shader: {NO_PICTURE_STORAGE}")),
-            (false, ..) => (ImageLineMethod::Fragment, "fragment shader".into()),
         }
     }
 
@@ -193,7 +147,7 @@ impl Capabilities {
         }
         if let Some(image) = &plan.image {
             self.check_size("the ink", image.ink.scale.size(size))?;
-            add("lines in the image", &self.image_lines().1);
+            add("lines in the image", "fragment shader");
         }
         match plan.shadow.as_ref().map(|shadow| shadow.style.method) {
             Some(ShadowMethod::Volumes) if parallel && !self.unclipped_depth => return Err(GpuError::ParallelVolumes),

@@ -123,7 +123,7 @@ impl GpuError {
             | Self::OutOfMemory { .. }
             | Self::Device { .. } => true,
             Self::Outline(error) => {
-                matches!(error, OutlineError::TooManyEdges { .. } | OutlineError::PictureTooLarge { .. })
+                matches!(error, OutlineError::TooManyEdges { .. })
             }
             Self::Hatch(error) => matches!(error, npr_hatch::HatchError::TooLarge { .. }),
             Self::Limits { .. } | Self::ImageSpace(_) | Self::Toon(_) | Self::Gooch(_) => false,

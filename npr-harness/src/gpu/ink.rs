@@ -1,6 +1,5 @@
 //! Lines in the image on the device: filter, brush and composite.
 
-use super::capabilities::ImageLineMethod;
 use super::targets::{COLOR_FORMAT, InkTargets, Targets};
 use super::{GpuContext, GpuError};
 use crate::camera::Camera;
@@ -10,7 +9,6 @@ use npr_imagespace::format::texel::TexelLayout;
 use npr_imagespace::morphology::Operation;
 use npr_imagespace::pass::disc::DiscPass;
 use npr_imagespace::pass::fused::FusedPass;
-use npr_imagespace::pass::fused_strips::{FusedStrips, Structure, serves, structure};
 use npr_imagespace::pass::lay::LayPass;
 use npr_imagespace::pass::{InkTarget, Onto};
 use npr_imagespace::picture::Taps;
@@ -26,7 +24,6 @@ const PICTURE: InkTarget = InkTarget::Picture(COLOR_FORMAT);
 #[derive(Default)]
 pub(super) struct InkPasses {
     filters: RefCell<HashMap<FilterKey, FusedPass>>,
-    strips: RefCell<HashMap<(Structure, TexelLayout), FusedStrips>>,
     brushes: RefCell<HashMap<InkTarget, DiscPass>>,
     lay: OnceCell<LayPass>,
 }
@@ -37,7 +34,6 @@ impl InkPasses {
     pub(super) fn record(
         &self,
         context: &GpuContext,
-        method: ImageLineMethod,
         encoder: &mut wgpu::CommandEncoder,
         bounds: Option<(Vec3, Vec3)>,
         image: &ImagePlan,
@@ -46,7 +42,7 @@ impl InkPasses {
         targets: &Targets,
     ) -> Result<(), GpuError> {
         for lines in image.passes() {
-            self.record_lines(context, method, encoder, bounds, image, lines, camera, ink, targets)?;
+            self.record_lines(context, encoder, bounds, image, lines, camera, ink, targets)?;
         }
         Ok(())
     }
@@ -56,7 +52,6 @@ impl InkPasses {
     fn record_lines(
         &self,
         context: &GpuContext,
-        method: ImageLineMethod,
         encoder: &mut wgpu::CommandEncoder,
         bounds: Option<(Vec3, Vec3)>,
         image: &ImagePlan,
@@ -75,15 +70,6 @@ impl InkPasses {
         let filter = &lines.filter;
         // Without a brush lines are laid as they are found, if they are found at the picture's size.
         let found = ink.found.as_ref().filter(|_| lines.brush.is_some() || ink.size != picture_size);
-        if found.is_none() && method == ImageLineMethod::Compute && serves(filter, &lines.composite) {
-            let mut strips = self.strips.borrow_mut();
-            let pass = strips
-                .entry((structure(filter), image.ink.layout))
-                .or_insert_with(|| FusedStrips::new(device, filter, image.ink.layout));
-            let onto = onto(&targets.color_view, ink.size, 1);
-            pass.record(device, encoder, filter, &image.code, &ink.texels, &onto)?;
-            return Ok(());
-        }
         let target = if found.is_some() { InkTarget::Ink } else { PICTURE };
         let key = (filter.taps, filter.softness > 0.0, image.ink.layout, target);
         let mut filters = self.filters.borrow_mut();

@@ -44,8 +44,6 @@ pub struct GpuScene {
     pub(super) most_draws: usize,
     /// Edges, where lines are found on the device.
     pub(super) edges: Option<npr_outline::line_pass::EdgesOnDevice>,
-    /// Whether lines that are found on the CPU are drawn by compute shaders.
-    pub(super) strokes: bool,
     /// Fins for all edges, where the printed form is drawn.
     pub(super) fins: Option<npr_outline::fin_pass::FinsOnDevice>,
     /// What casts shadows, where volumes are drawn.
@@ -145,7 +143,6 @@ impl GpuScene {
             materials,
             most_draws: if capabilities.software { SOFTWARE_DRAWS } else { usize::MAX },
             edges: None,
-            strokes: false,
             fins: None,
             casting: None,
             hatch,

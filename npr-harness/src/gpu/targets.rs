@@ -9,8 +9,7 @@ use npr_imagespace::pass::INK_FORMAT;
 use npr_imagespace::pass::disc::DiscScratch;
 use npr_imagespace::pass::fused::texel_format;
 use npr_outline::line_pass::WINNER_FORMAT;
-use npr_outline::line_strokes::{LineStrokes, StrokeBuffers};
-use std::cell::{Cell, OnceCell, Ref, RefCell};
+use std::cell::{Cell, Ref, RefCell};
 
 /// Display-referred values, so no encoding on store.
 pub(super) const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
@@ -34,8 +33,6 @@ pub struct Targets {
     inked: wgpu::Texture,
     pub(super) inked_view: wgpu::TextureView,
     pub(super) winner_view: wgpu::TextureView,
-    /// Made when first needed; `None` where the device's buffers are too small for them.
-    stroke_buffers: OnceCell<Option<StrokeBuffers>>,
     /// Made when first needed, and anew for a style that needs others.
     ink: RefCell<Option<InkTargets>>,
     /// Where shadow volumes are counted.
@@ -129,9 +126,7 @@ impl Targets {
         let texture = |label, format, usage| texture(context, label, format, usage, (width, height));
         let view = |texture: &wgpu::Texture| texture.create_view(&Default::default());
         let read = wgpu::TextureUsages::TEXTURE_BINDING;
-        let stored =
-            if capabilities.can_stroke() { wgpu::TextureUsages::STORAGE_BINDING } else { wgpu::TextureUsages::empty() };
-        let color = texture("colour", COLOR_FORMAT, read | stored | wgpu::TextureUsages::COPY_SRC);
+        let color = texture("colour", COLOR_FORMAT, read | wgpu::TextureUsages::COPY_SRC);
         let copied = wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::COPY_DST;
         let inked = texture("colour and lines", COLOR_FORMAT, read | copied);
         Ok(Self {
@@ -145,7 +140,6 @@ impl Targets {
             inked_view: view(&inked),
             inked,
             winner_view: view(&texture("greatest coverage", WINNER_FORMAT, wgpu::TextureUsages::empty())),
-            stroke_buffers: OnceCell::new(),
             ink: RefCell::default(),
             stencil: StencilTarget::default(),
             is_inked: Cell::new(false),
@@ -189,10 +183,6 @@ impl Targets {
     /// What the frame ends in.
     pub(super) fn drawn(&self) -> &wgpu::TextureView {
         if self.is_inked.get() { &self.inked_view } else { &self.color_view }
-    }
-
-    pub(super) fn stroke_buffers(&self, device: &wgpu::Device, strokes: &LineStrokes) -> Option<&StrokeBuffers> {
-        self.stroke_buffers.get_or_init(|| strokes.buffers(device, [self.width, self.height]).ok()).as_ref()
     }
 
     /// Copies the painted picture to where lines are drawn on it, and says that the frame ends there.
