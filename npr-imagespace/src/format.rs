@@ -17,13 +17,14 @@ pub mod normal;
 pub mod printed;
 pub mod texel;
 
-/// WGSL of this module and those in it: no bindings, no entry points.
+/// WGSL of this module, of those in it, and of [`crate::region`]: no bindings, no entry points.
 pub const FORMAT_WGSL: &str = concat!(
     include_str!("format.wgsl"),
     include_str!("format/printed.wgsl"),
     include_str!("format/depth.wgsl"),
     include_str!("format/normal.wgsl"),
     include_str!("format/texel.wgsl"),
+    include_str!("region.wgsl"),
 );
 
 /// Whether an eye-space depth is one that a surface can have: positive, finite and a number.

@@ -98,6 +98,7 @@ pub const WGSL: &str = concat!(
     include_str!("format/depth.wgsl"),
     include_str!("format/normal.wgsl"),
     include_str!("format/texel.wgsl"),
+    include_str!("region.wgsl"),
     include_str!("shadow.wgsl"),
     include_str!("filter.wgsl"),
     include_str!("filter/normal.wgsl"),

@@ -28,8 +28,8 @@ impl Taps {
     /// The four steps in px, x to the right and y down.
     pub fn offsets(self) -> [IVec2; 4] {
         match self {
-            Self::Diagonal => [IVec2::ONE, IVec2::new(-1, 1), IVec2::NEG_ONE, IVec2::new(1, -1)],
-            Self::Cross => [IVec2::X, IVec2::Y, IVec2::NEG_X, IVec2::NEG_Y],
+            Self::Diagonal => [0, 1, 2, 3].map(|tap| ink_tap_diagonal(tap, IVec2::ONE)),
+            Self::Cross => [0, 1, 2, 3].map(|tap| ink_tap_cross(tap, IVec2::ONE)),
         }
     }
 
@@ -47,6 +47,17 @@ impl Taps {
 pub fn ink_reach(pixel: UVec2, size_px: UVec2) -> IVec2 {
     let along = |at: u32, size: u32| i32::from(at > 0 && at + 1 < size);
     IVec2::new(along(pixel.x, size_px.x), along(pixel.y, size_px.y))
+}
+
+/// The step in px to diagonal tap 0–3: down right, down left, up left, up right. `reach` is that of [`ink_reach`].
+pub fn ink_tap_diagonal(tap: u32, reach: IVec2) -> IVec2 {
+    reach * IVec2::new(if tap == 0 || tap == 3 { 1 } else { -1 }, if tap < 2 { 1 } else { -1 })
+}
+
+/// The step in px to tap 0–3 along the axes: right, down, left, up. `reach` is that of [`ink_reach`].
+pub fn ink_tap_cross(tap: u32, reach: IVec2) -> IVec2 {
+    let along = if tap < 2 { 1 } else { -1 };
+    reach * if tap & 1 == 0 { IVec2::new(along, 0) } else { IVec2::new(0, along) }
 }
 
 /// The number of pixels, if the slice has as many elements.

@@ -17,10 +17,10 @@ pub const RESAMPLE_WGSL: &str = include_str!("resample.wgsl");
 
 /// Where a pixel finds its ink: the upper left of 2 × 2 texels, which may lie outside by 1, and how far the pixel's
 /// centre is from that one's to the others', 0..1. `scale` is texels of ink for a pixel.
-pub fn ink_resample_at(pixel: Vec2, scale: Vec2) -> (IVec2, Vec2) {
+pub fn ink_resample_at(pixel: Vec2, scale: Vec2) -> (Vec2, Vec2) {
     let at = (pixel + 0.5) * scale - 0.5;
     let first = at.floor();
-    (first.as_ivec2(), at - first)
+    (first, at - first)
 }
 
 /// Ink of a pixel from its 2 × 2 texels: upper left, upper right, lower left, lower right.
@@ -46,7 +46,7 @@ pub fn resample(ink: &[u8], ink_size_px: UVec2, size_px: UVec2) -> Result<Vec<u8
         for x in 0..size_px.x {
             let (first, weight) = ink_resample_at(UVec2::new(x, y).as_vec2(), scale);
             let taps = [IVec2::ZERO, IVec2::X, IVec2::Y, IVec2::ONE].map(|offset| {
-                let at = (first + offset).clamp(IVec2::ZERO, most);
+                let at = (first.as_ivec2() + offset).clamp(IVec2::ZERO, most);
                 f32::from(ink[at.y as usize * ink_size_px.x as usize + at.x as usize]) / 255.0
             });
             out.push(ink_store(ink_resample_mix(taps, weight)));

@@ -14,7 +14,7 @@ fn ink_shadow_region(folded: u32, state: u32, most: u32) -> u32 {
 }
 
 // Of states as they lie in `bits` of a region: where one is lit and the other in a cast shadow.
-fn ink_shadows_differ(a: vec4<u32>, b: vec4<u32>, bits: vec4<u32>) -> vec4<bool> {
+fn ink_shadow_differs(a: vec4<u32>, b: vec4<u32>, bits: vec4<u32>) -> vec4<bool> {
     return (a | b) == bits;
 }
 

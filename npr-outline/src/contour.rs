@@ -336,6 +336,13 @@ pub fn outline_is_silhouette(planes: &EdgePlanes, eye: Vec4) -> bool {
     (outline_facing(planes.plane0, eye) >= 0.0) != (outline_facing(planes.plane1, eye) >= 0.0)
 }
 
+/// The kind of line that an edge with these traits is for an eye, if it is a line. `eye` as for [`outline_facing`].
+pub fn outline_kind(traits: u32, planes: &EdgePlanes, eye: Vec4) -> LineKind {
+    let own = LineKind::ALL[(traits & 3) as usize];
+    // A boundary's planes make it a silhouette for every eye, but its kind is that of a boundary.
+    if own != LineKind::Boundary && outline_is_silhouette(planes, eye) { LineKind::Silhouette } else { own }
+}
+
 impl ContourEdges {
     /// The largest buffer that finding these edges' lines on a device takes, bytes.
     pub fn device_bytes(&self, positions: &[Vec3]) -> u64 {
@@ -382,14 +389,9 @@ impl ContourEdges {
     /// What kind of line an edge is for this eye (in the planes' own coordinates, [`ContourEdges::local_eye`]),
     /// or `None` if it is none.
     pub fn kind(&self, edge: usize, eye: Vec4) -> Option<LineKind> {
-        let traits = self.traits[edge];
-        let own = LineKind::ALL[(traits & 3) as usize];
-        // A boundary's planes make it a silhouette for every eye, but it is not one.
-        if own != LineKind::Boundary && outline_is_silhouette(&self.planes[edge], eye) {
-            Some(LineKind::Silhouette)
-        } else {
-            (traits & TRAIT_ALWAYS != 0).then_some(own)
-        }
+        let (traits, planes) = (self.traits[edge], &self.planes[edge]);
+        let is_line = traits & TRAIT_ALWAYS != 0 || outline_is_silhouette(planes, eye);
+        is_line.then(|| outline_kind(traits, planes, eye))
     }
 }
 

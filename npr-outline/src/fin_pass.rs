@@ -129,7 +129,7 @@ impl FinPass {
             .vertices
             .iter()
             .map(|vertex| {
-                let ([x, y, z], [u, v, w]) = (vertex.position.to_array(), vertex.smooth.to_array());
+                let ([x, y, z], [u, v, w]) = (vertex.position.to_array(), vertex.smooth_normal.to_array());
                 [x, y, z, u, v, w]
             })
             .collect();

@@ -33,7 +33,7 @@ pub struct PrintedFin {
     /// World space.
     pub position: Vec3,
     /// The smooth normal at a displaced corner, unit; zero at one that sticks to the edge.
-    pub smooth: Vec3,
+    pub smooth_normal: Vec3,
     /// Of the edge's first face, unit, or zero if that has no area.
     pub n_face0: Vec3,
     /// Of the second face; at a boundary the negated first.
@@ -73,8 +73,8 @@ pub fn printed_fins(model: &Model, edges: &Edges) -> PrintedFins {
         let [a, b] = edge.ends.map(|v| v as usize);
         let base = fins.vertices.len() as u32;
         for (end, displaced) in [(a, false), (b, false), (b, true), (a, true)] {
-            let smooth = if displaced { smooth[end].normalize_or_zero() } else { Vec3::ZERO };
-            fins.vertices.push(PrintedFin { position: model.positions[end], smooth, n_face0, n_face1 });
+            let smooth_normal = if displaced { smooth[end].normalize_or_zero() } else { Vec3::ZERO };
+            fins.vertices.push(PrintedFin { position: model.positions[end], smooth_normal, n_face0, n_face1 });
         }
         fins.indices.extend([0, 1, 2, 0, 2, 3].map(|corner| base + corner));
     }
@@ -142,7 +142,7 @@ pub fn fin_printed_vertex(vertex: &PrintedFin, view: &FinView) -> DVec4 {
     let flag = fin_printed_flag(position, vertex.n_face0.as_dvec3(), vertex.n_face1.as_dvec3(), view.eye);
     let clip = view.clip_from_world * position.extend(1.0);
     let thickness = fin_printed_depth(clip.w, view.depth) * view.thickness;
-    view.clip_from_world * (position + vertex.smooth.as_dvec3() * (thickness * flag)).extend(1.0)
+    view.clip_from_world * (position + vertex.smooth_normal.as_dvec3() * (thickness * flag)).extend(1.0)
 }
 
 /// The triangles, in clip space, of all fins that have any width.

@@ -31,34 +31,19 @@ const OUTLINE_EDGE_ON_SLOPE: f32 = 1024.0;
 const OUTLINE_DEPTH_SLACK_PX: f32 = 0.5;
 const OUTLINE_PLANE_SLACK_PX: f32 = 0.01;
 const OUTLINE_PLANE_SLACK_PER_SLOPE: f32 = 0.0078125;
-const OUTLINE_TRAIT_ALWAYS: u32 = 256u;
+// In an edge's traits: its faces are cut out by alpha.
 const OUTLINE_TRAIT_CUT_OUT: u32 = 512u;
-const OUTLINE_BOUNDARY: u32 = 1u;
-
-// On which side of a plane the eye is. The order of the sum is that of the Rust twin.
-fn outline_facing(plane: vec4<f32>, eye: vec4<f32>) -> f32 {
-    return plane.x * eye.x + plane.y * eye.y + plane.z * eye.z + plane.w * eye.w;
-}
-
-fn outline_is_silhouette(plane0: vec4<f32>, plane1: vec4<f32>, eye: vec4<f32>) -> bool {
-    return (outline_facing(plane0, eye) >= 0.0) != (outline_facing(plane1, eye) >= 0.0);
-}
-
-// The kind of line that an edge with these traits is for this eye.
-fn outline_kind(traits: u32, plane0: vec4<f32>, plane1: vec4<f32>, eye: vec4<f32>) -> u32 {
-    let own = traits & 3u;
-    if own != OUTLINE_BOUNDARY && outline_is_silhouette(plane0, plane1, eye) {
-        return 0u;
-    }
-    return own;
-}
 
 // The part of a segment before the near plane and within the widened viewport: fractions, the first above the second
 // where nothing is left.
-fn outline_clip(a: vec4<f32>, b: vec4<f32>, viewport_px: vec2<f32>, margin_px: f32) -> vec2<f32> {
+fn outline_clip(end0: vec4<f32>, end1: vec4<f32>, viewport_px: vec2<f32>, margin_px: f32) -> vec2<f32> {
     let guard = vec2<f32>(1.0) + 2.0 * margin_px / viewport_px;
-    var in_a = array<f32, 5>(a.w - a.z, guard.x * a.w - a.x, guard.x * a.w + a.x, guard.y * a.w - a.y, guard.y * a.w + a.y);
-    var in_b = array<f32, 5>(b.w - b.z, guard.x * b.w - b.x, guard.x * b.w + b.x, guard.y * b.w - b.y, guard.y * b.w + b.y);
+    var in_a = array<f32, 5>(
+        end0.w - end0.z, guard.x * end0.w - end0.x, guard.x * end0.w + end0.x, guard.y * end0.w - end0.y, guard.y * end0.w + end0.y,
+    );
+    var in_b = array<f32, 5>(
+        end1.w - end1.z, guard.x * end1.w - end1.x, guard.x * end1.w + end1.x, guard.y * end1.w - end1.y, guard.y * end1.w + end1.y,
+    );
     var part = vec2<f32>(0.0, 1.0);
     for (var i = 0; i < 5; i++) {
         if in_a[i] < 0.0 && in_b[i] < 0.0 {
@@ -175,7 +160,7 @@ fn outline_band(distance: f32, normal: vec2<f32>, width_px: f32) -> f32 {
 }
 
 // Exact beside the line; past its ends never more than a longer line would cover.
-fn outline_coverage(on_line: vec2<f32>, direction: vec2<f32>, point_px: vec2<f32>, width_px: f32) -> f32 {
+fn outline_coverage_at(on_line: vec2<f32>, direction: vec2<f32>, point_px: vec2<f32>, width_px: f32) -> f32 {
     let to_point = point_px - on_line;
     let distance = length(to_point);
     let beside = outline_band(abs(outline_cross(direction, to_point)), vec2<f32>(-direction.y, direction.x), width_px);

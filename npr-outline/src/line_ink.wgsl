@@ -45,7 +45,7 @@ fn ink_coverage(
 ) -> f32 {
     let fraction = outline_nearest(ends_px, point_px);
     let on_line = mix(ends_px.xy, ends_px.zw, fraction);
-    let coverage = outline_coverage(on_line, direction, point_px, width_px);
+    let coverage = outline_coverage_at(on_line, direction, point_px, width_px);
     if coverage <= 0.0 {
         return 0.0;
     }

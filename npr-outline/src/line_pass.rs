@@ -15,8 +15,8 @@ use crate::line_look::LineLook;
 use crate::segment::LineView;
 use glam::{DVec4, Vec3};
 
-/// The WGSL library of this crate: no bindings, no entry points.
-pub const WGSL: &str = include_str!("line.wgsl");
+/// WGSL of [`crate::contour`] and [`crate::segment`]: no bindings, no entry points.
+pub const WGSL: &str = concat!(include_str!("contour.wgsl"), include_str!("line.wgsl"));
 const INK_WGSL: &str = include_str!("line_ink.wgsl");
 const PASS_WGSL: &str = include_str!("line_pass.wgsl");
 const PULLED_WGSL: &str = include_str!("line_pulled.wgsl");

@@ -143,16 +143,12 @@ pub fn outline_project(ends: [DVec3; 2], normals: [DVec3; 2], width_px: f64, vie
 impl ScreenSegment {
     /// Unit vector from the first end to the second, and the length in px. Along x where the length is 0.
     pub fn direction(&self) -> (DVec2, f64) {
-        let span = self.ends_px[1] - self.ends_px[0];
-        let length = span.length();
-        if length > 0.0 { (span / length, length) } else { (DVec2::X, 0.0) }
+        (outline_direction(self.ends_px), self.ends_px[0].distance(self.ends_px[1]))
     }
 
     /// The nearest point of the centreline, as a fraction of the way from the first end to the second.
     pub fn nearest(&self, point_px: DVec2) -> f64 {
-        let span = self.ends_px[1] - self.ends_px[0];
-        let squared = span.length_squared();
-        if squared > 0.0 { ((point_px - self.ends_px[0]).dot(span) / squared).clamp(0.0, 1.0) } else { 0.0 }
+        outline_nearest(self.ends_px, point_px)
     }
 
     /// The centreline at a fraction of the way.
@@ -166,6 +162,20 @@ impl ScreenSegment {
     pub fn offset_px(&self, point_px: DVec2) -> f64 {
         self.direction().0.perp_dot(point_px - self.ends_px[0])
     }
+}
+
+/// Unit vector from the first end to the second; along x where the length is 0.
+fn outline_direction(ends_px: [DVec2; 2]) -> DVec2 {
+    let span = ends_px[1] - ends_px[0];
+    let length = span.length();
+    if length > 0.0 { span / length } else { DVec2::X }
+}
+
+/// The nearest point of the centreline, as a fraction of the way from the first end to the second.
+fn outline_nearest(ends_px: [DVec2; 2], point_px: DVec2) -> f64 {
+    let span = ends_px[1] - ends_px[0];
+    let squared = span.length_squared();
+    if squared > 0.0 { ((point_px - ends_px[0]).dot(span) / squared).clamp(0.0, 1.0) } else { 0.0 }
 }
 
 /// The share of a unit square around the origin on the near side of a straight border at `distance` along the unit
@@ -197,14 +207,33 @@ fn outline_band(distance: f64, normal: DVec2, width_px: f64) -> f64 {
 /// How much of the pixel around `point_px` a line of `width_px` covers, 0..=1: exact beside the line; past its ends by the
 /// distance from them, and never more than a longer line would cover, so that a line in pieces looks like the whole.
 pub fn outline_coverage(segment: &ScreenSegment, point_px: DVec2, width_px: f64) -> f64 {
-    let direction = segment.direction().0;
-    let to_point = point_px - segment.at(segment.nearest(point_px)).0;
+    let on_line = segment.at(segment.nearest(point_px)).0;
+    outline_coverage_at(on_line, segment.direction().0, point_px, width_px)
+}
+
+/// [`outline_coverage`] where the nearest point of the centreline and the line's direction are known.
+fn outline_coverage_at(on_line: DVec2, direction: DVec2, point_px: DVec2, width_px: f64) -> f64 {
+    let to_point = point_px - on_line;
     let distance = to_point.length();
-    let beside = outline_band(segment.offset_px(point_px).abs(), DVec2::new(-direction.y, direction.x), width_px);
+    let beside = outline_band(direction.perp_dot(to_point).abs(), DVec2::new(-direction.y, direction.x), width_px);
     if to_point.dot(direction).abs() <= 1e-3 * distance || distance <= 1e-3 {
         return beside;
     }
     beside.min((0.5 * width_px + 0.5 - distance).clamp(0.0, 1.0))
+}
+
+/// What one of the four pixels around a point of the centreline says: whether its surface is not in front of the line,
+/// and whether it may be one of the edge's own faces.
+///
+/// - `offset`: of the pixel's centre from the centreline, px; positive as in [`ScreenSegment::offset_px`].
+/// - `slopes`: as in [`ScreenSegment::slopes`].
+/// - `per_px`: depth-buffer units of one px along the view.
+fn outline_vote(scene_depth: f64, depth: f64, offset: f64, slopes: [f64; 2], per_px: f64) -> (bool, bool) {
+    let slope = slopes[usize::from(offset < 0.0)].min(MAX_SLOPE * per_px);
+    let allowed = DEPTH_SLACK_PX * per_px + slope * offset.abs();
+    let behind = scene_depth - depth;
+    // A face of the edge may lie as far behind the line as it may lie in front.
+    (behind <= allowed, behind.abs() <= (DEPTH_SLACK_PX + MAX_SLOPE) * per_px)
 }
 
 /// How far in front of a line's point the plane through four pixels passes there, less what rounding and their not
@@ -279,13 +308,9 @@ pub fn outline_is_visible(
     for (tap, scene) in (0u8..).zip(&mut quad) {
         let pixel = corner + DVec2::new(f64::from(tap & 1), f64::from(tap >> 1));
         let offset = direction.perp_dot(pixel + 0.5 - on_line);
-        let slope = segment.slopes[usize::from(offset < 0.0)].min(MAX_SLOPE * per_px);
-        let allowed = DEPTH_SLACK_PX * per_px + slope * offset.abs();
         *scene = depth_at(pixel.x as i64, pixel.y as i64);
-        let behind = *scene - depth;
-        seen |= behind <= allowed;
-        // A surface of its own may lie as far behind the line as it may lie in front.
-        surface |= behind.abs() <= (DEPTH_SLACK_PX + MAX_SLOPE) * per_px;
+        let votes = outline_vote(*scene, depth, offset, segment.slopes, per_px);
+        (seen, surface) = (seen || votes.0, surface || votes.1);
     }
     seen && (surface || !cut_out) && !outline_plane_hides(quad.into(), corner, on_line, depth, view, depth_at)
 }

@@ -93,10 +93,8 @@ pub fn ink_depth_bend(centre: f32, taps: [f32; 4], step: f64, parallel: bool, so
         if !is_surface || !ink_is_surface(a) || !ink_is_surface(b) {
             return 0.0;
         }
-        let v = [a, centre, b].map(|z| if parallel { f64::from(z) } else { 1.0 / f64::from(z) });
-        let bend = (v[0] - v[1] - (v[1] - v[2])).abs();
-        let threshold = if parallel { step } else { step * v[0].max(v[1]).max(v[2]) };
-        ink_ramp(bend - threshold, softness * threshold)
+        let [a, centre, b] = [a, centre, b].map(|z| if parallel { f64::from(z) } else { 1.0 / f64::from(z) });
+        ink_depth_pair(a, centre, b, step, parallel, softness)
     };
     let pairs = [pair(taps[0], taps[2]), pair(taps[1], taps[3])];
     if softness > 0.0 {
@@ -106,28 +104,45 @@ pub fn ink_depth_bend(centre: f32, taps: [f32; 4], step: f64, parallel: bool, so
     if outside.contains(&true) { 1.0 } else { pairs[0].max(pairs[1]) }
 }
 
+/// Ink of one pair of opposite taps, all three of them surfaces, from v = 1/z, or z in a parallel view.
+fn ink_depth_pair(a: f64, centre: f64, b: f64, step: f64, parallel: bool, softness: f64) -> f64 {
+    let bend = (a - centre - (centre - b)).abs();
+    let threshold = if parallel { step } else { step * a.max(centre).max(b) };
+    ink_ramp(bend - threshold, softness * threshold)
+}
+
 /// The plain test with the share of the distance as its threshold, and the rules of [`ink_depth_bend`] for all else:
 /// ink where |1/z − 1/zᵢ| > t · max(1/z, 1/zᵢ) for any i. Kept to be compared with.
 pub fn ink_depth_step(centre: f32, taps: [f32; 4], step: f64) -> bool {
-    taps.iter().any(|&tap| match (ink_is_surface(centre), ink_is_surface(tap)) {
+    taps.iter().any(|&tap| ink_depth_step_tap(centre, tap, step))
+}
+
+/// [`ink_depth_step`] for one tap.
+fn ink_depth_step_tap(centre: f32, tap: f32, step: f64) -> bool {
+    match (ink_is_surface(centre), ink_is_surface(tap)) {
         (true, true) => {
             let (a, b) = (1.0 / f64::from(centre), 1.0 / f64::from(tap));
             (a - b).abs() > step * a.max(b)
         }
         (a, b) => a != b,
-    })
+    }
 }
 
 /// The soft form of [`ink_depth_step`]: the ramp of each tap is `softness` times as wide as its threshold is high, and
 /// each counts `weight`.
 pub fn ink_depth_step_soft(centre: f32, taps: [f32; 4], step: f64, softness: f64, weight: f64) -> f64 {
-    let across = taps.map(|tap| match (ink_is_surface(centre), ink_is_surface(tap)) {
+    let across = taps.map(|tap| ink_depth_step_soft_tap(centre, tap, step, softness));
+    (weight * across.iter().sum::<f64>()).min(1.0)
+}
+
+/// [`ink_depth_step_soft`] for one tap, before it is weighted.
+fn ink_depth_step_soft_tap(centre: f32, tap: f32, step: f64, softness: f64) -> f64 {
+    match (ink_is_surface(centre), ink_is_surface(tap)) {
         (true, true) => {
             let (a, b) = (1.0 / f64::from(centre), 1.0 / f64::from(tap));
             let threshold = step * a.max(b);
             ink_ramp((a - b).abs() - threshold, softness * threshold)
         }
         (a, b) => f64::from(u8::from(a != b)),
-    });
-    (weight * across.iter().sum::<f64>()).min(1.0)
+    }
 }

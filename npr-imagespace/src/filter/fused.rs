@@ -193,136 +193,140 @@ fn dot(a: IVec3, b: IVec3) -> i32 {
 }
 
 /// Whether two normals differ; zero is no normal.
-pub fn ink_tap_normal_differs(filter: &FilterUniform, a: IVec3, b: IVec3) -> bool {
+pub fn ink_tap_normal_differs(settings: &FilterUniform, a: IVec3, b: IVec3) -> bool {
     let (no_a, no_b) = (a == IVec3::ZERO, b == IVec3::ZERO);
     if no_a || no_b {
         return no_a != no_b;
     }
     // Whole numbers below 2^24, so far exact; then three products, each rounded once.
     let cos = dot(a, b) as f32;
-    cos < 0.0 || cos * cos < (dot(a, a) as f32 * dot(b, b) as f32) * filter.normal_cos2
+    cos < 0.0 || cos * cos < (dot(a, a) as f32 * dot(b, b) as f32) * settings.normal_cos2
 }
 
 /// The threshold on differences of depth codes of which `nearest` is the largest.
-pub fn ink_tap_depth_threshold(filter: &FilterUniform, nearest: i32) -> i32 {
-    let growth = ((nearest as u32 >> filter.depth_shift) * filter.depth_step) >> (16 - filter.depth_shift);
-    filter.depth_slack.max(filter.depth_base + growth) as i32
+pub fn ink_tap_depth_threshold(settings: &FilterUniform, nearest: i32) -> i32 {
+    let growth = ((nearest as u32 >> settings.depth_shift) * settings.depth_step) >> (16 - settings.depth_shift);
+    settings.depth_slack.max(settings.depth_base + growth) as i32
 }
 
 /// By how much the plain depth test is exceeded.
-fn step_excess(filter: &FilterUniform, a: &Tap, b: &Tap) -> (i32, i32) {
-    let threshold = ink_tap_depth_threshold(filter, a.depth.max(b.depth));
+fn step_excess(settings: &FilterUniform, a: &Tap, b: &Tap) -> (i32, i32) {
+    let threshold = ink_tap_depth_threshold(settings, a.depth.max(b.depth));
     ((a.depth - b.depth).abs() - threshold, threshold)
 }
 
 /// Whether a tap shows a surface. A state of shadow without a region does not make one.
-fn is_surface(filter: &FilterUniform, tap: &Tap) -> bool {
-    tap.region & filter.region_mask != 0
+fn is_surface(settings: &FilterUniform, tap: &Tap) -> bool {
+    tap.region & settings.region_mask != 0
 }
 
 /// Whether a tap lies across a border of shadows.
-pub fn ink_tap_shadow_differs(filter: &FilterUniform, centre: &Tap, tap: &Tap) -> bool {
-    filter.asked & ASKED_SHADOW != 0
-        && is_surface(filter, centre)
-        && is_surface(filter, tap)
-        && ink_shadow_differs(centre.region & filter.shadow_bits, tap.region & filter.shadow_bits, filter.shadow_bits)
+pub fn ink_tap_shadow_differs(settings: &FilterUniform, centre: &Tap, tap: &Tap) -> bool {
+    settings.asked & ASKED_SHADOW != 0
+        && is_surface(settings, centre)
+        && is_surface(settings, tap)
+        && ink_shadow_differs(
+            centre.region & settings.shadow_bits,
+            tap.region & settings.shadow_bits,
+            settings.shadow_bits,
+        )
 }
 
 /// Whether regions are asked for and differ.
-fn region_differs(filter: &FilterUniform, a: &Tap, b: &Tap) -> bool {
-    filter.asked & ASKED_REGION != 0 && (a.region ^ b.region) & filter.region_mask != 0
+fn region_differs(settings: &FilterUniform, a: &Tap, b: &Tap) -> bool {
+    settings.asked & ASKED_REGION != 0 && (a.region ^ b.region) & settings.region_mask != 0
 }
 
 /// Whether a tap lies across a border, but for those of shadows.
-pub fn ink_tap_across(filter: &FilterUniform, centre: &Tap, tap: &Tap) -> bool {
-    if !(is_surface(filter, centre) && is_surface(filter, tap)) {
-        return is_surface(filter, centre) != is_surface(filter, tap);
+pub fn ink_tap_across(settings: &FilterUniform, centre: &Tap, tap: &Tap) -> bool {
+    if !(is_surface(settings, centre) && is_surface(settings, tap)) {
+        return is_surface(settings, centre) != is_surface(settings, tap);
     }
-    region_differs(filter, centre, tap)
-        || (filter.asked & ASKED_STEP != 0 && step_excess(filter, centre, tap).0 > 0)
-        || (filter.asked & ASKED_NORMAL != 0 && ink_tap_normal_differs(filter, centre.normal, tap.normal))
+    region_differs(settings, centre, tap)
+        || (settings.asked & ASKED_STEP != 0 && step_excess(settings, centre, tap).0 > 0)
+        || (settings.asked & ASKED_NORMAL != 0 && ink_tap_normal_differs(settings, centre.normal, tap.normal))
 }
 
 /// By how much a pair's bend exceeds its threshold, and the threshold; none beside the background.
-fn bend_excess(filter: &FilterUniform, a: &Tap, centre: &Tap, b: &Tap) -> Option<(i32, i32)> {
-    if filter.asked & ASKED_BEND == 0 || ![a, centre, b].into_iter().all(|tap| is_surface(filter, tap)) {
+fn bend_excess(settings: &FilterUniform, a: &Tap, centre: &Tap, b: &Tap) -> Option<(i32, i32)> {
+    if settings.asked & ASKED_BEND == 0 || ![a, centre, b].into_iter().all(|tap| is_surface(settings, tap)) {
         return None;
     }
-    let threshold = ink_tap_depth_threshold(filter, a.depth.max(centre.depth).max(b.depth));
+    let threshold = ink_tap_depth_threshold(settings, a.depth.max(centre.depth).max(b.depth));
     Some(((a.depth - centre.depth - (centre.depth - b.depth)).abs() - threshold, threshold))
 }
 
 /// Whether the depth bends between opposite taps.
-pub fn ink_tap_bends(filter: &FilterUniform, a: &Tap, centre: &Tap, b: &Tap) -> bool {
-    bend_excess(filter, a, centre, b).is_some_and(|(excess, _)| excess > 0)
+pub fn ink_tap_bends(settings: &FilterUniform, a: &Tap, centre: &Tap, b: &Tap) -> bool {
+    bend_excess(settings, a, centre, b).is_some_and(|(excess, _)| excess > 0)
 }
 
 /// Whether a pixel is a line.
-pub fn ink_fused_hard(filter: &FilterUniform, centre: &Tap, taps: &[Tap; 4]) -> bool {
-    let others = taps.iter().any(|tap| ink_tap_across(filter, centre, tap))
-        || ink_tap_bends(filter, &taps[0], centre, &taps[2])
-        || ink_tap_bends(filter, &taps[1], centre, &taps[3]);
-    let shadows = taps.iter().any(|tap| ink_tap_shadow_differs(filter, centre, tap));
-    if filter.asked & ASKED_ALONE != 0 { shadows && !others } else { shadows || others }
+pub fn ink_fused_hard(settings: &FilterUniform, centre: &Tap, taps: &[Tap; 4]) -> bool {
+    let others = taps.iter().any(|tap| ink_tap_across(settings, centre, tap))
+        || ink_tap_bends(settings, &taps[0], centre, &taps[2])
+        || ink_tap_bends(settings, &taps[1], centre, &taps[3]);
+    let shadows = taps.iter().any(|tap| ink_tap_shadow_differs(settings, centre, tap));
+    if settings.asked & ASKED_ALONE != 0 { shadows && !others } else { shadows || others }
 }
 
 /// The soft form of [`ink_tap_normal_differs`].
-pub fn ink_tap_normal_soft(filter: &FilterUniform, a: IVec3, b: IVec3) -> f64 {
+pub fn ink_tap_normal_soft(settings: &FilterUniform, a: IVec3, b: IVec3) -> f64 {
     let (no_a, no_b) = (a == IVec3::ZERO, b == IVec3::ZERO);
     if no_a || no_b {
         return f64::from(u8::from(no_a != no_b));
     }
     let cos = f64::from(dot(a, b)) / f64::from(dot(a, a) * dot(b, b)).sqrt();
-    ink_ramp(f64::from(filter.normal_cos) - cos, f64::from(filter.softness))
+    ink_ramp(f64::from(settings.normal_cos) - cos, f64::from(settings.softness))
 }
 
 /// The soft form of an excess over a threshold.
-fn depth_soft(filter: &FilterUniform, (excess, threshold): (i32, i32)) -> f64 {
-    ink_ramp(f64::from(excess), f64::from(filter.softness) * f64::from(threshold))
+fn depth_soft(settings: &FilterUniform, (excess, threshold): (i32, i32)) -> f64 {
+    ink_ramp(f64::from(excess), f64::from(settings.softness) * f64::from(threshold))
 }
 
 /// The soft form of [`ink_tap_across`].
-pub fn ink_tap_soft(filter: &FilterUniform, centre: &Tap, tap: &Tap) -> f64 {
-    if !(is_surface(filter, centre) && is_surface(filter, tap)) {
-        return f64::from(u8::from(is_surface(filter, centre) != is_surface(filter, tap)));
+pub fn ink_tap_soft(settings: &FilterUniform, centre: &Tap, tap: &Tap) -> f64 {
+    if !(is_surface(settings, centre) && is_surface(settings, tap)) {
+        return f64::from(u8::from(is_surface(settings, centre) != is_surface(settings, tap)));
     }
-    if region_differs(filter, centre, tap) {
+    if region_differs(settings, centre, tap) {
         return 1.0;
     }
     let mut ink = 0.0f64;
-    if filter.asked & ASKED_STEP != 0 {
-        ink = depth_soft(filter, step_excess(filter, centre, tap));
+    if settings.asked & ASKED_STEP != 0 {
+        ink = depth_soft(settings, step_excess(settings, centre, tap));
     }
-    if filter.asked & ASKED_NORMAL != 0 {
-        ink = ink.max(ink_tap_normal_soft(filter, centre.normal, tap.normal));
+    if settings.asked & ASKED_NORMAL != 0 {
+        ink = ink.max(ink_tap_normal_soft(settings, centre.normal, tap.normal));
     }
     ink
 }
 
 /// Ink of a pixel, 0..=1: weight · max(Σ taps, Σ pairs), at most 1. A border of shadows is one of taps; asked for alone,
 /// its taps' ink fades where there is ink of others.
-pub fn ink_fused_soft(filter: &FilterUniform, centre: &Tap, taps: &[Tap; 4]) -> f64 {
-    let weight = f64::from(filter.weight);
-    let shadow = |tap: &Tap| f64::from(u8::from(ink_tap_shadow_differs(filter, centre, tap)));
-    let alone = filter.asked & ASKED_ALONE != 0;
+pub fn ink_fused_soft(settings: &FilterUniform, centre: &Tap, taps: &[Tap; 4]) -> f64 {
+    let weight = f64::from(settings.weight);
+    let shadow = |tap: &Tap| f64::from(u8::from(ink_tap_shadow_differs(settings, centre, tap)));
+    let alone = settings.asked & ASKED_ALONE != 0;
     let across = |tap: &Tap| {
-        let ink = ink_tap_soft(filter, centre, tap);
+        let ink = ink_tap_soft(settings, centre, tap);
         if alone { ink } else { ink.max(shadow(tap)) }
     };
     let across: f64 = taps.iter().map(across).sum();
     let bends: f64 = [(0, 2), (1, 3)]
         .into_iter()
-        .filter_map(|(a, b)| bend_excess(filter, &taps[a], centre, &taps[b]))
-        .map(|excess| depth_soft(filter, excess))
+        .filter_map(|(a, b)| bend_excess(settings, &taps[a], centre, &taps[b]))
+        .map(|excess| depth_soft(settings, excess))
         .sum();
     let ink = (weight * across.max(bends)).min(1.0);
     if alone { (weight * taps.iter().map(shadow).sum::<f64>()).min(1.0) * (1.0 - ink) } else { ink }
 }
 
 /// Ink of a pixel, 0..=1, hard or soft as the filter says.
-pub fn ink_fused(filter: &FilterUniform, centre: &Tap, taps: &[Tap; 4]) -> f64 {
-    if filter.softness > 0.0 {
-        return ink_fused_soft(filter, centre, taps);
+pub fn ink_fused(settings: &FilterUniform, centre: &Tap, taps: &[Tap; 4]) -> f64 {
+    if settings.softness > 0.0 {
+        return ink_fused_soft(settings, centre, taps);
     }
-    f64::from(u8::from(ink_fused_hard(filter, centre, taps)))
+    f64::from(u8::from(ink_fused_hard(settings, centre, taps)))
 }

@@ -35,37 +35,37 @@ const INK_ASKED_ALONE: u32 = 32u;
 
 // Which normals differ from the centre's; zero is no normal. Dot products of whole numbers are exact, and no sum
 // follows the products, so that nothing can be fused into something else.
-fn ink_taps_normals_differ(what: InkFilter, centre: vec3<f32>, lengths2: vec4<f32>, dots: vec4<f32>) -> vec4<bool> {
+fn ink_taps_normals_differ(settings: InkFilter, centre: vec3<f32>, lengths2: vec4<f32>, dots: vec4<f32>) -> vec4<bool> {
     let own2 = dot(centre, centre);
     let none = (lengths2 == vec4<f32>(0.0)) != vec4<bool>(own2 == 0.0);
-    return none | (dots < vec4<f32>(0.0)) | (dots * dots < (own2 * lengths2) * what.normal_cos2);
+    return none | (dots < vec4<f32>(0.0)) | (dots * dots < (own2 * lengths2) * settings.normal_cos2);
 }
 
 // The thresholds on differences of depth codes of which `nearest` are the largest.
-fn ink_taps_depth_thresholds(what: InkFilter, nearest: vec4<i32>) -> vec4<i32> {
-    let growth = ((vec4<u32>(nearest) >> vec4<u32>(what.depth_shift)) * what.depth_step)
-        >> vec4<u32>(16u - what.depth_shift);
-    return vec4<i32>(max(vec4<u32>(what.depth_slack), what.depth_base + growth));
+fn ink_taps_depth_thresholds(settings: InkFilter, nearest: vec4<i32>) -> vec4<i32> {
+    let growth = ((vec4<u32>(nearest) >> vec4<u32>(settings.depth_shift)) * settings.depth_step)
+        >> vec4<u32>(16u - settings.depth_shift);
+    return vec4<i32>(max(vec4<u32>(settings.depth_slack), settings.depth_base + growth));
 }
 
 // |q0 - 2 q + q2| and |q1 - 2 q + q3|, and their thresholds.
-fn ink_taps_bends(what: InkFilter, centre: i32, depths: vec4<i32>) -> vec4<i32> {
+fn ink_taps_bends(settings: InkFilter, centre: i32, depths: vec4<i32>) -> vec4<i32> {
     let nearest = max(max(depths.xy, depths.zw), vec2<i32>(centre));
     let bends = abs(depths.xy - centre - (centre - depths.zw));
-    return vec4<i32>(bends, ink_taps_depth_thresholds(what, nearest.xyxy).xy);
+    return vec4<i32>(bends, ink_taps_depth_thresholds(settings, nearest.xyxy).xy);
 }
 
 // Which taps lie across a border of shadows.
-fn ink_taps_shadows_differ(what: InkFilter, centre: u32, regions: vec4<u32>) -> vec4<bool> {
-    let bits = vec4<u32>(what.shadow_bits);
-    let surfaces = ((regions & vec4<u32>(what.region_mask)) != vec4<u32>(0u))
-        & vec4<bool>((centre & what.region_mask) != 0u);
-    return surfaces & ink_shadows_differ(vec4<u32>(centre) & bits, regions & bits, bits);
+fn ink_taps_shadows_differ(settings: InkFilter, centre: u32, regions: vec4<u32>) -> vec4<bool> {
+    let bits = vec4<u32>(settings.shadow_bits);
+    let surfaces = ((regions & vec4<u32>(settings.region_mask)) != vec4<u32>(0u))
+        & vec4<bool>((centre & settings.region_mask) != 0u);
+    return surfaces & ink_shadow_differs(vec4<u32>(centre) & bits, regions & bits, bits);
 }
 
 // Whether a pixel is a line.
 fn ink_fused_hard(
-    what: InkFilter,
+    settings: InkFilter,
     centre: InkTap,
     tap0: InkTap,
     tap1: InkTap,
@@ -73,20 +73,20 @@ fn ink_fused_hard(
     tap3: InkTap,
 ) -> bool {
     let words = vec4<u32>(tap0.region, tap1.region, tap2.region, tap3.region);
-    let regions = words & vec4<u32>(what.region_mask);
-    let region = centre.region & what.region_mask;
+    let regions = words & vec4<u32>(settings.region_mask);
+    let region = centre.region & settings.region_mask;
     let depths = vec4<i32>(tap0.depth, tap1.depth, tap2.depth, tap3.depth);
     let surface = vec4<bool>(region != 0u);
     let surfaces = regions != vec4<u32>(0u);
     var across = surfaces != surface;
-    if (what.asked & INK_ASKED_REGION) != 0u {
+    if (settings.asked & INK_ASKED_REGION) != 0u {
         across = regions != vec4<u32>(region);
     }
-    if (what.asked & INK_ASKED_STEP) != 0u {
-        let thresholds = ink_taps_depth_thresholds(what, max(depths, vec4<i32>(centre.depth)));
+    if (settings.asked & INK_ASKED_STEP) != 0u {
+        let thresholds = ink_taps_depth_thresholds(settings, max(depths, vec4<i32>(centre.depth)));
         across = across | (surfaces & surface & (abs(depths - centre.depth) > thresholds));
     }
-    if (what.asked & INK_ASKED_NORMAL) != 0u {
+    if (settings.asked & INK_ASKED_NORMAL) != 0u {
         let own = centre.normal;
         let lengths2 = vec4<f32>(
             dot(tap0.normal, tap0.normal),
@@ -95,16 +95,16 @@ fn ink_fused_hard(
             dot(tap3.normal, tap3.normal),
         );
         let dots = vec4<f32>(dot(own, tap0.normal), dot(own, tap1.normal), dot(own, tap2.normal), dot(own, tap3.normal));
-        across = across | (surfaces & surface & ink_taps_normals_differ(what, own, lengths2, dots));
+        across = across | (surfaces & surface & ink_taps_normals_differ(settings, own, lengths2, dots));
     }
-    if (what.asked & INK_ASKED_BEND) != 0u {
-        let bends = ink_taps_bends(what, centre.depth, depths);
+    if (settings.asked & INK_ASKED_BEND) != 0u {
+        let bends = ink_taps_bends(settings, centre.depth, depths);
         let bent = surfaces.xy & surfaces.zw & surface.xy & (bends.xy > bends.zw);
         across = across | bent.xyxy;
     }
-    if (what.asked & INK_ASKED_SHADOW) != 0u {
-        let shadows = ink_taps_shadows_differ(what, centre.region, words);
-        if (what.asked & INK_ASKED_ALONE) != 0u {
+    if (settings.asked & INK_ASKED_SHADOW) != 0u {
+        let shadows = ink_taps_shadows_differ(settings, centre.region, words);
+        if (settings.asked & INK_ASKED_ALONE) != 0u {
             return any(shadows) && !any(across);
         }
         across = across | shadows;
@@ -113,23 +113,23 @@ fn ink_fused_hard(
 }
 
 // The soft form of a difference above a threshold, both in codes.
-fn ink_taps_depth_soft(what: InkFilter, differences: vec4<i32>, thresholds: vec4<i32>) -> vec4<f32> {
-    return saturate(vec4<f32>(differences - thresholds) / (what.softness * vec4<f32>(thresholds)) + 0.5);
+fn ink_taps_depth_soft(settings: InkFilter, differences: vec4<i32>, thresholds: vec4<i32>) -> vec4<f32> {
+    return saturate(vec4<f32>(differences - thresholds) / (settings.softness * vec4<f32>(thresholds)) + 0.5);
 }
 
 // The soft form of normals that differ.
-fn ink_taps_normals_soft(what: InkFilter, centre: vec3<f32>, lengths2: vec4<f32>, dots: vec4<f32>) -> vec4<f32> {
+fn ink_taps_normals_soft(settings: InkFilter, centre: vec3<f32>, lengths2: vec4<f32>, dots: vec4<f32>) -> vec4<f32> {
     let own2 = dot(centre, centre);
     let products = own2 * lengths2;
     let cosines = dots * inverseSqrt(max(products, vec4<f32>(1.0)));
-    let ink = saturate((what.normal_cos - cosines) / what.softness + 0.5);
+    let ink = saturate((settings.normal_cos - cosines) / settings.softness + 0.5);
     let none = select(vec4<f32>(0.0), vec4<f32>(1.0), (lengths2 == vec4<f32>(0.0)) != vec4<bool>(own2 == 0.0));
     return select(ink, none, products == vec4<f32>(0.0));
 }
 
 // Ink of a pixel, 0..1; the softness is above 0.
 fn ink_fused_soft(
-    what: InkFilter,
+    settings: InkFilter,
     centre: InkTap,
     tap0: InkTap,
     tap1: InkTap,
@@ -137,18 +137,18 @@ fn ink_fused_soft(
     tap3: InkTap,
 ) -> f32 {
     let words = vec4<u32>(tap0.region, tap1.region, tap2.region, tap3.region);
-    let regions = words & vec4<u32>(what.region_mask);
-    let region = centre.region & what.region_mask;
+    let regions = words & vec4<u32>(settings.region_mask);
+    let region = centre.region & settings.region_mask;
     let depths = vec4<i32>(tap0.depth, tap1.depth, tap2.depth, tap3.depth);
     let surface = vec4<bool>(region != 0u);
     let surfaces = regions != vec4<u32>(0u);
     let paper = vec4<f32>(0.0);
     var ink = paper;
-    if (what.asked & INK_ASKED_STEP) != 0u {
-        let thresholds = ink_taps_depth_thresholds(what, max(depths, vec4<i32>(centre.depth)));
-        ink = ink_taps_depth_soft(what, abs(depths - centre.depth), thresholds);
+    if (settings.asked & INK_ASKED_STEP) != 0u {
+        let thresholds = ink_taps_depth_thresholds(settings, max(depths, vec4<i32>(centre.depth)));
+        ink = ink_taps_depth_soft(settings, abs(depths - centre.depth), thresholds);
     }
-    if (what.asked & INK_ASKED_NORMAL) != 0u {
+    if (settings.asked & INK_ASKED_NORMAL) != 0u {
         let own = centre.normal;
         let lengths2 = vec4<f32>(
             dot(tap0.normal, tap0.normal),
@@ -157,38 +157,38 @@ fn ink_fused_soft(
             dot(tap3.normal, tap3.normal),
         );
         let dots = vec4<f32>(dot(own, tap0.normal), dot(own, tap1.normal), dot(own, tap2.normal), dot(own, tap3.normal));
-        ink = max(ink, ink_taps_normals_soft(what, own, lengths2, dots));
+        ink = max(ink, ink_taps_normals_soft(settings, own, lengths2, dots));
     }
     ink = select(paper, ink, surfaces & surface);
     var across = surfaces != surface;
-    if (what.asked & INK_ASKED_REGION) != 0u {
+    if (settings.asked & INK_ASKED_REGION) != 0u {
         across = regions != vec4<u32>(region);
     }
     var shadows = paper;
-    if (what.asked & INK_ASKED_SHADOW) != 0u {
-        shadows = select(paper, vec4<f32>(1.0), ink_taps_shadows_differ(what, centre.region, words));
-        if (what.asked & INK_ASKED_ALONE) == 0u {
+    if (settings.asked & INK_ASKED_SHADOW) != 0u {
+        shadows = select(paper, vec4<f32>(1.0), ink_taps_shadows_differ(settings, centre.region, words));
+        if (settings.asked & INK_ASKED_ALONE) == 0u {
             ink = max(ink, shadows);
         }
     }
     ink = select(ink, vec4<f32>(1.0), across);
     var bent = vec2<f32>(0.0);
-    if (what.asked & INK_ASKED_BEND) != 0u {
-        let bends = ink_taps_bends(what, centre.depth, depths);
-        bent = ink_taps_depth_soft(what, bends.xyxy, bends.zwzw).xy;
+    if (settings.asked & INK_ASKED_BEND) != 0u {
+        let bends = ink_taps_bends(settings, centre.depth, depths);
+        bent = ink_taps_depth_soft(settings, bends.xyxy, bends.zwzw).xy;
         bent = select(vec2<f32>(0.0), bent, surfaces.xy & surfaces.zw & surface.xy);
     }
-    let line = min(what.weight * max(ink.x + ink.y + (ink.z + ink.w), bent.x + bent.y), 1.0);
-    if (what.asked & INK_ASKED_ALONE) != 0u {
-        return min(what.weight * (shadows.x + shadows.y + (shadows.z + shadows.w)), 1.0) * (1.0 - line);
+    let line = min(settings.weight * max(ink.x + ink.y + (ink.z + ink.w), bent.x + bent.y), 1.0);
+    if (settings.asked & INK_ASKED_ALONE) != 0u {
+        return min(settings.weight * (shadows.x + shadows.y + (shadows.z + shadows.w)), 1.0) * (1.0 - line);
     }
     return line;
 }
 
 // Ink of a pixel, 0..1, hard or soft as the filter says.
-fn ink_fused(what: InkFilter, centre: InkTap, tap0: InkTap, tap1: InkTap, tap2: InkTap, tap3: InkTap) -> f32 {
-    if what.softness > 0.0 {
-        return ink_fused_soft(what, centre, tap0, tap1, tap2, tap3);
+fn ink_fused(settings: InkFilter, centre: InkTap, tap0: InkTap, tap1: InkTap, tap2: InkTap, tap3: InkTap) -> f32 {
+    if settings.softness > 0.0 {
+        return ink_fused_soft(settings, centre, tap0, tap1, tap2, tap3);
     }
-    return select(0.0, 1.0, ink_fused_hard(what, centre, tap0, tap1, tap2, tap3));
+    return select(0.0, 1.0, ink_fused_hard(settings, centre, tap0, tap1, tap2, tap3));
 }

@@ -20,15 +20,20 @@ pub const COS_OS: f32 = 0.80;
 ///
 /// 1 where n · nᵢ < t for any i. With a `softness` s > 0: clamp(weight · Σ clamp((t − n · nᵢ) / s + ½, 0, 1), 0, 1).
 pub fn ink_normal(centre: DVec3, taps: [DVec3; 4], cos: f64, softness: f64, weight: f64) -> f64 {
-    let across = taps.map(|tap| match (centre == DVec3::ZERO, tap == DVec3::ZERO) {
-        (true, true) => 0.0,
-        (false, false) => ink_ramp(cos - centre.dot(tap), softness),
-        _ => 1.0,
-    });
+    let across = taps.map(|tap| ink_normal_tap(centre, tap, cos, softness));
     if softness > 0.0 {
         return (weight * across.iter().sum::<f64>()).min(1.0);
     }
     across.into_iter().fold(0.0, f64::max)
+}
+
+/// How far one tap lies across a border of normals, 0..=1.
+fn ink_normal_tap(centre: DVec3, tap: DVec3, cos: f64, softness: f64) -> f64 {
+    match (centre == DVec3::ZERO, tap == DVec3::ZERO) {
+        (true, true) => 0.0,
+        (false, false) => ink_ramp(cos - centre.dot(tap), softness),
+        _ => 1.0,
+    }
 }
 
 /// As printed, hard, without a rule for the background: 1 where n · nᵢ < t for any i.

@@ -278,12 +278,12 @@ fn is_normal_positive(bits: u32) -> bool {
 }
 
 /// Eye-space depth from a texel; 0 for background, which is also what is below 2^−126.
-pub fn ink_separate_depth(texel: f32, filter: &SeparateUniform) -> f32 {
+pub fn ink_separate_depth(texel: f32, settings: &SeparateUniform) -> f32 {
     let mut depth = texel;
-    if filter.depth_is_buffer != 0 {
-        let v = texel * filter.depth_scale + filter.depth_bias;
-        depth = if filter.parallel != 0 { v } else { 1.0 / v };
-        if texel == filter.depth_clear {
+    if settings.depth_is_buffer != 0 {
+        let v = texel * settings.depth_scale + settings.depth_bias;
+        depth = if settings.parallel != 0 { v } else { 1.0 / v };
+        if texel == settings.depth_clear {
             depth = 0.0;
         }
     }

@@ -35,11 +35,11 @@ fn ink_separate_normal(texel: vec3<f32>, biased: bool) -> vec3<f32> {
 }
 
 // Eye-space depth from a texel; 0 for background, which is also what is below 2^-126 and has no reciprocal.
-fn ink_separate_depth(texel: f32, what: InkSeparate) -> f32 {
+fn ink_separate_depth(texel: f32, settings: InkSeparate) -> f32 {
     var depth = texel;
-    if what.depth_is_buffer != 0u {
-        let v = texel * what.depth_scale + what.depth_bias;
-        depth = select(select(1.0 / v, v, what.parallel != 0u), 0.0, texel == what.depth_clear);
+    if settings.depth_is_buffer != 0u {
+        let v = texel * settings.depth_scale + settings.depth_bias;
+        depth = select(select(1.0 / v, v, settings.parallel != 0u), 0.0, texel == settings.depth_clear);
     }
     return select(0.0, depth, bitcast<u32>(depth) - 0x00800000u < 0x7f000000u);
 }

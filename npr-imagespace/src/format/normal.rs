@@ -35,11 +35,12 @@ pub const fn oct_most(bits: u32) -> i32 {
     (1 << (bits - 1)) - 1
 }
 
-/// The octahedral numbers of a direction of any length, or `None` if it has none: zero or not finite.
-pub fn ink_oct_encode(normal: Vec3, most: i32) -> Option<IVec2> {
+/// The octahedral code of a direction of any length as two unsigned numbers, 1..=2 `most` + 1; (0, 0) where the vector
+/// has no direction: zero or not finite.
+pub fn ink_oct_encode(normal: Vec3, most: i32) -> UVec2 {
     let sum = normal.x.abs() + normal.y.abs() + normal.z.abs();
     if !ink_is_surface(sum) {
-        return None;
+        return UVec2::ZERO;
     }
     let mut flat = Vec2::new(normal.x / sum, normal.y / sum);
     if normal.z < 0.0 {
@@ -47,7 +48,7 @@ pub fn ink_oct_encode(normal: Vec3, most: i32) -> Option<IVec2> {
         flat =
             Vec2::new(if flat.x < 0.0 { -folded.x } else { folded.x }, if flat.y < 0.0 { -folded.y } else { folded.y });
     }
-    Some((flat * most as f32 + 0.5).floor().as_ivec2())
+    ((flat * most as f32 + 0.5).floor().as_ivec2() + most + 1).as_uvec2()
 }
 
 /// The direction of octahedral numbers as integers, |x| + |y| + |z| = `most`.
@@ -60,14 +61,14 @@ pub fn ink_oct_vector(code: IVec2, most: i32) -> IVec3 {
     IVec3::new(if code.x < 0 { -folded.x } else { folded.x }, if code.y < 0 { -folded.y } else { folded.y }, z)
 }
 
-/// Octahedral numbers as unsigned ones, 1..=2 m + 1; 0 and 0 for no normal.
-pub fn ink_oct_store(code: Option<IVec2>, most: i32) -> UVec2 {
-    code.map_or(UVec2::ZERO, |code| (code + most + 1).as_uvec2())
-}
-
-/// The reverse of [`ink_oct_store`], as a vector; zero for no normal.
+/// The reverse of [`ink_oct_encode`]: the vector of integers of [`ink_oct_vector`], zero for (0, 0).
 pub fn ink_oct_load(stored: UVec2, most: i32) -> IVec3 {
     if stored.x == 0 { IVec3::ZERO } else { ink_oct_vector(stored.as_ivec2() - most - 1, most) }
+}
+
+/// The reverse of [`ink_oct_encode`]: a unit vector, zero for (0, 0).
+pub fn ink_oct_decode(stored: UVec2, most: i32) -> Vec3 {
+    ink_oct_load(stored, most).as_dvec3().normalize_or_zero().as_vec3()
 }
 
 impl NormalFormat {
@@ -88,7 +89,7 @@ impl NormalFormat {
     /// A normal of unit length, or one that is no normal, as a code in the lowest [`NormalFormat::bits`].
     pub fn encode(self, normal: Vec3) -> u64 {
         let oct = |bits: u32| {
-            let stored = ink_oct_store(ink_oct_encode(normal, oct_most(bits)), oct_most(bits));
+            let stored = ink_oct_encode(normal, oct_most(bits));
             u64::from(stored.x) | u64::from(stored.y) << bits
         };
         match self {
@@ -112,7 +113,7 @@ impl NormalFormat {
         let oct = |bits: u32| {
             let mask = (1 << bits) - 1;
             let stored = UVec2::new((code & mask) as u32, (code >> bits & mask) as u32);
-            ink_oct_load(stored, oct_most(bits)).as_dvec3().normalize_or_zero().as_vec3()
+            ink_oct_decode(stored, oct_most(bits))
         };
         let half = |shift: u32| ink_half_decode((code >> shift) as u16);
         match self {

@@ -24,7 +24,7 @@
 
 use crate::ImageSpaceError;
 use crate::format::ink_is_surface;
-use crate::format::normal::{ink_oct_encode, ink_oct_load, ink_oct_store};
+use crate::format::normal::{ink_oct_encode, ink_oct_load};
 use bytemuck::{Pod, Zeroable};
 use glam::{IVec3, UVec2, Vec3};
 
@@ -187,7 +187,7 @@ pub fn ink_narrow_pack(normal: Vec3, region: u32, depth: f32, code: &DepthCode) 
 /// is dear: on lavapipe it took a twentieth of a whole frame.
 pub fn ink_narrow_word(normal: Vec3, folded: u32, depth_code: u32) -> u32 {
     let layout = TexelLayout::Narrow;
-    let oct = ink_oct_store(ink_oct_encode(normal, layout.normal_most()), layout.normal_most());
+    let oct = ink_oct_encode(normal, layout.normal_most());
     depth_code | folded << 14 | oct.x << 22 | oct.y << 27
 }
 
@@ -213,12 +213,13 @@ pub fn ink_wide_pack(normal: Vec3, region: u32, depth: f32, code: &DepthCode) ->
 /// A surface in two words, as [`ink_narrow_word`].
 pub fn ink_wide_words(normal: Vec3, folded: u32, depth_code: u32) -> [u32; 2] {
     let layout = TexelLayout::Wide;
-    let oct = ink_oct_store(ink_oct_encode(normal, layout.normal_most()), layout.normal_most());
+    let oct = ink_oct_encode(normal, layout.normal_most());
     [depth_code | folded << 24, oct.x | oct.y << 8 | folded >> 8 << 16]
 }
 
 /// A pixel of two words.
-pub fn ink_wide_tap([x, y]: [u32; 2]) -> Tap {
+pub fn ink_wide_tap(words: [u32; 2]) -> Tap {
+    let [x, y] = words;
     let oct = UVec2::new(y & 255, y >> 8 & 255);
     Tap {
         normal: ink_oct_load(oct, TexelLayout::Wide.normal_most()),

@@ -38,18 +38,6 @@ fn ink_fold_region(region: u32, most: u32) -> u32 {
     return select(1u + (region - 1u) % most, 0u, region == 0u);
 }
 
-// The region that a texture's colour stands for, sampled without filtering.
-fn ink_region_of_color(rgb: vec3<f32>) -> u32 {
-    let bytes = vec3<u32>(rgb * 255.0 + 0.5);
-    return (bytes.x | (bytes.y << 8u) | (bytes.z << 16u)) + 1u;
-}
-
-// Two numbers as one of 24 bits; 0 where either is.
-fn ink_region_pair(a: u32, b: u32) -> u32 {
-    let mixed = ((a * 0x9e3779b1u) ^ b) * 0x85ebca6bu;
-    return select(1u + (mixed >> 8u) % 0xffffffu, 0u, a == 0u || b == 0u);
-}
-
 // A surface in one word, for an r32uint target. The region is folded.
 fn ink_narrow_word(normal: vec3<f32>, folded: u32, depth_code: u32) -> u32 {
     let oct = ink_oct_encode(normal, INK_OCT5_MOST);
