@@ -86,33 +86,44 @@ pub use wgpu;
 
 pub use error::ImageSpaceError;
 
-/// The functions of this crate in WGSL: no bindings, no entry points, every name begins with `ink_`, `INK_` or `Ink`.
-///
-/// It is all parts in a row: [`picture::PICTURE_WGSL`], [`format::FORMAT_WGSL`], [`shadow::SHADOW_WGSL`],
-/// [`filter::FILTER_WGSL`], [`morphology::MORPHOLOGY_WGSL`], [`composite::COMPOSITE_WGSL`], [`resample::RESAMPLE_WGSL`]
-/// and [`artist::ARTIST_WGSL`]. Each stands alone, but for the filters, which need the formats and the shadows.
-pub const WGSL: &str = concat!(
-    include_str!("picture.wgsl"),
-    include_str!("format.wgsl"),
-    include_str!("format/printed.wgsl"),
-    include_str!("format/depth.wgsl"),
-    include_str!("format/normal.wgsl"),
-    include_str!("format/texel.wgsl"),
-    include_str!("region.wgsl"),
-    include_str!("shadow.wgsl"),
-    include_str!("filter.wgsl"),
-    include_str!("filter/normal.wgsl"),
-    include_str!("filter/depth.wgsl"),
-    include_str!("filter/region.wgsl"),
-    include_str!("filter/fused.wgsl"),
-    include_str!("filter/inker.wgsl"),
-    include_str!("filter/separate.wgsl"),
-    include_str!("filter/printed.wgsl"),
-    include_str!("morphology.wgsl"),
-    include_str!("morphology/flood.wgsl"),
-    include_str!("composite.wgsl"),
-    include_str!("resample.wgsl"),
-    include_str!("artist.wgsl"),
+/// Makes the library's text, and for the passes the list of its files.
+macro_rules! library {
+    ($($file:literal,)*) => {
+        /// The functions of this crate in WGSL: no bindings, no entry points, every name begins with `ink_`, `INK_` or `Ink`.
+        ///
+        /// It is all parts in a row: [`picture::PICTURE_WGSL`], [`format::FORMAT_WGSL`], [`shadow::SHADOW_WGSL`],
+        /// [`filter::FILTER_WGSL`], [`morphology::MORPHOLOGY_WGSL`], [`composite::COMPOSITE_WGSL`], [`resample::RESAMPLE_WGSL`]
+        /// and [`artist::ARTIST_WGSL`]. Each stands alone, but for the filters, which need the formats and the shadows.
+        pub const WGSL: &str = concat!($(include_str!($file)),*);
+
+        /// The files of [`WGSL`]: name and text.
+        #[cfg(feature = "wgpu")]
+        pub(crate) const LIBRARY: &[(&str, &str)] = &[$(($file, include_str!($file))),*];
+    };
+}
+
+library!(
+    "picture.wgsl",
+    "format.wgsl",
+    "format/printed.wgsl",
+    "format/depth.wgsl",
+    "format/normal.wgsl",
+    "format/texel.wgsl",
+    "region.wgsl",
+    "shadow.wgsl",
+    "filter.wgsl",
+    "filter/normal.wgsl",
+    "filter/depth.wgsl",
+    "filter/region.wgsl",
+    "filter/fused.wgsl",
+    "filter/inker.wgsl",
+    "filter/separate.wgsl",
+    "filter/printed.wgsl",
+    "morphology.wgsl",
+    "morphology/flood.wgsl",
+    "composite.wgsl",
+    "resample.wgsl",
+    "artist.wgsl",
 );
 
 /// Compiles the example of the README.

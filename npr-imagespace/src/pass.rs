@@ -28,6 +28,16 @@ pub mod step;
 
 use crate::composite::Composite;
 
+/// A shader module from several files, given as name and text: their names at its head, and a line before each.
+fn assemble(files: &[(&str, &str)]) -> String {
+    let names: Vec<_> = files.iter().map(|(name, _)| *name).collect();
+    let mut source = format!("// Made of: {}\n", names.join(", "));
+    for (name, text) in files {
+        source += &format!("\n// ---- {name}\n{text}");
+    }
+    source
+}
+
 /// Of ink pictures.
 pub const INK_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
 
@@ -50,4 +60,25 @@ pub struct Onto<'a> {
     /// Where there may be lines: left, top, width and height in px, within the target. `None` for all of it. A pass
     /// costs what its area does, and where a scene's bounds are known there is none outside them, and a pixel around.
     pub area: Option<[u32; 4]>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use naga::valid::{Capabilities, ValidationFlags, Validator};
+
+    #[test]
+    fn modules_name_their_files_and_validate() {
+        for file in [disc::DISC, fused::FUSED, lay::LAY, printed::PRINTED, separate::SEPARATE, step::STEP] {
+            let source = fullscreen::module_source(file);
+            let (head, rest) = source.split_once('\n').unwrap();
+            let names: Vec<_> = head.strip_prefix("// Made of: ").unwrap().split(", ").collect();
+            assert_eq!(names.len(), crate::LIBRARY.len() + 2);
+            assert_eq!(names[names.len() - 2..], ["pass/fullscreen.wgsl", file.0]);
+            let before_each: Vec<_> = rest.lines().filter_map(|line| line.strip_prefix("// ---- ")).collect();
+            assert_eq!(names, before_each);
+            let module = naga::front::wgsl::parse_str(&source).unwrap();
+            Validator::new(ValidationFlags::all(), Capabilities::empty()).validate(&module).unwrap();
+        }
+    }
 }

@@ -1,5 +1,5 @@
-// Which edges are lines, written close together, and the arguments of the draw call that draws them. Appended to
-// `line.wgsl`. The twin of `ContourEdges::scan`; the order of the lines is not that of the edges.
+// Finds the edges that are lines, writes their numbers to a compact list in no order, and counts them in the arguments
+// of the indirect draw call. The same edges as those of `ContourEdges::scan`.
 
 @group(0) @binding(0) var<uniform> view: OutlineView;
 @group(1) @binding(0) var<storage, read> planes: array<vec4<f32>>;

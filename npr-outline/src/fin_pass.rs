@@ -7,8 +7,14 @@ use crate::OutlineError;
 use crate::filled_buffer::filled_buffer;
 use crate::fin_printed::{FIN_PRINTED_WGSL, FinDepth, FinView, PrintedFins};
 use crate::normal_format::{NORMAL_FORMAT_WGSL, NormalFormat};
+use crate::shader::assemble;
 
-pub(crate) const FIN_PASS_WGSL: &str = include_str!("fin_pass.wgsl");
+const PASS: (&str, &str) = ("fin_pass.wgsl", include_str!("fin_pass.wgsl"));
+
+/// The whole shader of the pass.
+pub(crate) fn wgsl() -> String {
+    assemble(&[("normal_format.wgsl", NORMAL_FORMAT_WGSL), ("fin_printed.wgsl", FIN_PRINTED_WGSL), PASS])
+}
 
 /// `FinPrintedView` of `fin_printed.wgsl`.
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -59,7 +65,7 @@ impl FinPass {
         });
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("printed fins"),
-            source: wgpu::ShaderSource::Wgsl([NORMAL_FORMAT_WGSL, FIN_PRINTED_WGSL, FIN_PASS_WGSL].concat().into()),
+            source: wgpu::ShaderSource::Wgsl(wgsl().into()),
         });
         let (vertex_format, entry_point) = match format {
             NormalFormat::F32 => (wgpu::VertexFormat::Float32x3, "vs_fin"),

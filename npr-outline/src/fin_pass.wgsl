@@ -1,4 +1,4 @@
-// Entry points of the fin pass; appended to `normal_format.wgsl` and `fin_printed.wgsl`.
+// Entry points of the fin pass.
 
 @group(0) @binding(0) var<uniform> view: FinPrintedView;
 

@@ -50,6 +50,8 @@ pub mod line_pass;
 pub mod normal_format;
 pub mod segment;
 #[cfg(feature = "wgpu")]
+mod shader;
+#[cfg(feature = "wgpu")]
 pub mod shadow_mask;
 #[cfg(feature = "wgpu")]
 pub mod shadow_pass;

@@ -1,4 +1,4 @@
-// A line's ink in a pixel, whoever asks; appended to `line.wgsl`.
+// The coverage of a pixel by a line, and the colour that results.
 
 @group(0) @binding(0) var<uniform> view: OutlineView;
 

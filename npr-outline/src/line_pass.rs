@@ -13,14 +13,32 @@ use crate::contour::{ContourEdges, TRAIT_ALWAYS, TRAIT_CUT_OUT};
 use crate::filled_buffer::filled_buffer;
 use crate::line_look::LineLook;
 use crate::segment::LineView;
+use crate::shader::assemble;
 use glam::{DVec4, Vec3};
 
 /// WGSL of [`crate::contour`] and [`crate::segment`]: no bindings, no entry points.
 pub const WGSL: &str = concat!(include_str!("contour.wgsl"), include_str!("line.wgsl"));
-const INK_WGSL: &str = include_str!("line_ink.wgsl");
-const PASS_WGSL: &str = include_str!("line_pass.wgsl");
-const PULLED_WGSL: &str = include_str!("line_pulled.wgsl");
-const COMPACTION_WGSL: &str = include_str!("compaction.wgsl");
+const CONTOUR: (&str, &str) = ("contour.wgsl", include_str!("contour.wgsl"));
+const LINE: (&str, &str) = ("line.wgsl", include_str!("line.wgsl"));
+const INK: (&str, &str) = ("line_ink.wgsl", include_str!("line_ink.wgsl"));
+const PASS: (&str, &str) = ("line_pass.wgsl", include_str!("line_pass.wgsl"));
+const PULLED: (&str, &str) = ("line_pulled.wgsl", include_str!("line_pulled.wgsl"));
+const COMPACTION: (&str, &str) = ("compaction.wgsl", include_str!("compaction.wgsl"));
+
+/// The shader that draws records.
+pub(crate) fn record_wgsl() -> String {
+    assemble(&[CONTOUR, LINE, INK, PASS])
+}
+
+/// The shader that draws edges by their numbers.
+pub(crate) fn pulled_wgsl() -> String {
+    assemble(&[CONTOUR, LINE, INK, PASS, PULLED])
+}
+
+/// The shader that finds the edges that are lines.
+pub(crate) fn compaction_wgsl() -> String {
+    assemble(&[CONTOUR, LINE, COMPACTION])
+}
 
 /// Of the target that keeps the greatest coverage.
 pub const WINNER_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth16Unorm;
@@ -166,7 +184,7 @@ impl LinePass {
                 let groups = [Some(&view_layout), Some(&picture_layout), pulled];
                 line_pipeline(device, module, vertex, &groups[..2 + usize::from(pulled.is_some())], color_format)
             };
-        let module = shader(device, "outline lines", &[WGSL, INK_WGSL, PASS_WGSL]);
+        let module = shader(device, "outline lines", record_wgsl());
         let record_pipeline = pipeline(&module, ("vs_record", &RECORD_LAYOUT), None);
         let on_device = on_device.then(|| {
             let read = wgpu::BufferBindingType::Storage { read_only: true };
@@ -181,7 +199,7 @@ impl LinePass {
                 "outline compaction",
                 &[buffer_entry(0, compute, read), buffer_entry(1, compute, write), buffer_entry(2, compute, write)],
             );
-            let module = shader(device, "outline pulled lines", &[WGSL, INK_WGSL, PASS_WGSL, PULLED_WGSL]);
+            let module = shader(device, "outline pulled lines", pulled_wgsl());
             let pulled_pipeline = pipeline(&module, ("vs_pulled", &EDGE_NUMBER_LAYOUT), Some(&pulled_layout));
             let compaction = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
                 label: Some("outline compaction"),
@@ -190,7 +208,7 @@ impl LinePass {
                     bind_group_layouts: &[Some(&view_layout), Some(&compaction_layout)],
                     immediate_size: 0,
                 })),
-                module: &shader(device, "outline compaction", &[WGSL, COMPACTION_WGSL]),
+                module: &shader(device, "outline compaction", compaction_wgsl()),
                 entry_point: Some("compact"),
                 compilation_options: Default::default(),
                 cache: None,
@@ -421,10 +439,10 @@ pub(crate) fn bind_group(
     device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
 }
 
-fn shader(device: &wgpu::Device, label: &str, parts: &[&str]) -> wgpu::ShaderModule {
+fn shader(device: &wgpu::Device, label: &str, source: String) -> wgpu::ShaderModule {
     device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some(label),
-        source: wgpu::ShaderSource::Wgsl(parts.concat().into()),
+        source: wgpu::ShaderSource::Wgsl(source.into()),
     })
 }
 

@@ -1,4 +1,4 @@
-// The line pass's entry points; appended to `line.wgsl` and `line_ink.wgsl`.
+// Entry points of the line pass.
 
 struct LineVertex {
     @builtin(position) position: vec4<f32>,

@@ -13,12 +13,13 @@
 
 use crate::OutlineError;
 use crate::filled_buffer::filled_buffer;
+use crate::shader::assemble;
 use crate::shadow_volume::{ShadowCasters, VolumeEdge, VolumeFace};
 use glam::{DMat4, DVec4};
 
 /// WGSL of [`crate::shadow_volume`]: no bindings, no entry points.
 pub const SHADOW_WGSL: &str = include_str!("shadow_volume.wgsl");
-const PASS_WGSL: &str = include_str!("shadow_pass.wgsl");
+const PASS: (&str, &str) = ("shadow_pass.wgsl", include_str!("shadow_pass.wgsl"));
 
 /// `ShadowView` of `shadow_pass.wgsl`.
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -280,7 +281,7 @@ impl ShadowPass {
 
 /// The whole shader of the pass.
 pub fn wgsl() -> String {
-    [SHADOW_WGSL, PASS_WGSL].concat()
+    assemble(&[("shadow_volume.wgsl", SHADOW_WGSL), PASS])
 }
 
 const fn attribute(shader_location: u32, offset: u64, format: wgpu::VertexFormat) -> wgpu::VertexAttribute {

@@ -1,4 +1,4 @@
-// Shadow volumes into a stencil buffer. Appended to `shadow_volume.wgsl`.
+// Counts shadow volumes in a stencil buffer.
 
 struct ShadowView {
     clip_from_world: mat4x4<f32>,

@@ -19,7 +19,7 @@ use crate::morphology::disc::{Disc, RADIUS_MOST_PX};
 use crate::morphology::flood::{FloodPlan, disc_plan};
 use bytemuck::{Pod, Zeroable};
 
-const DISC_WGSL: &str = include_str!("disc.wgsl");
+pub(super) const DISC: (&str, &str) = ("pass/disc.wgsl", include_str!("disc.wgsl"));
 /// Of lines as bits.
 const WORD_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 /// Pixels in a texel of them.
@@ -97,7 +97,7 @@ impl DiscPass {
     /// Makes the pipelines.
     pub fn new(device: &wgpu::Device, target: InkTarget) -> Self {
         let pipeline =
-            |label, texture, output| Fullscreen::new(device, label, DISC_WGSL, &[Bound::Uniform, texture], &[], output);
+            |label, texture, output| Fullscreen::new(device, label, DISC, &[Bound::Uniform, texture], &[], output);
         Self {
             bits: pipeline("bits", Bound::Float, Output::Whole(WORD_FORMAT)),
             row: pipeline("row", Bound::Whole, Output::Whole(SITE_FORMAT)),
@@ -216,12 +216,12 @@ fn in_texels([x, y, width, height]: [u32; 4], px: u32) -> [u32; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::pass::fullscreen::module_source;
     use std::mem::offset_of;
 
     #[test]
     fn the_uniform_has_the_layout_of_the_shader() {
-        let source = [crate::WGSL, include_str!("fullscreen.wgsl"), DISC_WGSL].concat();
-        let module = naga::front::wgsl::parse_str(&source).expect("it is valid");
+        let module = naga::front::wgsl::parse_str(&module_source(DISC)).expect("it is valid");
         let (_, found) = module.types.iter().find(|(_, t)| t.name.as_deref() == Some("Pass")).expect("it has it");
         let naga::TypeInner::Struct { members, span } = &found.inner else { panic!("it is no struct") };
         let offsets: Vec<_> = members[..6].iter().map(|m| (m.name.as_deref().unwrap(), m.offset as usize)).collect();

@@ -1,5 +1,4 @@
-// The disc in passes: lines to bits, bits to the nearest along the row, along the columns, to ink. Appended to
-// `fullscreen.wgsl`.
+// The disc in passes: lines to bits, bits to the nearest along the row, along the columns, to ink.
 //
 // What a texel costs is to fetch it, so that one holds many pixels side by side: of lines 32 in a word, of the steps to
 // the nearest 4 in four.

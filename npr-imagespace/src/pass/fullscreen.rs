@@ -1,10 +1,15 @@
 //! What all passes share: a triangle over the target, bindings in a row, and how ink is put out.
 
-use super::{INK_FORMAT, InkTarget, Onto};
+use super::{INK_FORMAT, InkTarget, Onto, assemble};
 use crate::composite::{Composite, CompositeUniform};
 use glam::Vec3;
 
-const FULLSCREEN_WGSL: &str = include_str!("fullscreen.wgsl");
+const FULLSCREEN: (&str, &str) = ("pass/fullscreen.wgsl", include_str!("fullscreen.wgsl"));
+
+/// The shader of a pass: the library, the triangle and the pass's own file.
+pub(super) fn module_source(file: (&str, &str)) -> String {
+    assemble(&[crate::LIBRARY, &[FULLSCREEN, file]].concat())
+}
 
 /// What a pass binds after the uniform that says how ink is put out.
 #[derive(Clone, Copy, Debug)]
@@ -37,12 +42,12 @@ pub(super) struct Fullscreen {
 }
 
 impl Fullscreen {
-    /// - `source`: after the library and `fullscreen.wgsl`; its entry point is `label` with `fs_` before it.
+    /// - `file`: the pass's own WGSL, name and text; its entry point is `label` with `fs_` before it.
     /// - `bound`: what it binds, from binding 1 of group 0 on.
     pub(super) fn new(
         device: &wgpu::Device,
         label: &'static str,
-        source: &str,
+        file: (&str, &str),
         bound: &[Bound],
         constants: &[(&str, f64)],
         output: Output,
@@ -62,7 +67,7 @@ impl Fullscreen {
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries });
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(label),
-            source: wgpu::ShaderSource::Wgsl([crate::WGSL, FULLSCREEN_WGSL, source].concat().into()),
+            source: wgpu::ShaderSource::Wgsl(module_source(file).into()),
         });
         // A picture's alpha stays.
         let (format, blend, write_mask) = match output {

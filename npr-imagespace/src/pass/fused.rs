@@ -7,7 +7,7 @@ use crate::filter::fused::{FilterUniform, FusedFilter};
 use crate::format::texel::{DepthCode, TexelLayout};
 use crate::picture::Taps;
 
-const FUSED_WGSL: &str = include_str!("fused.wgsl");
+pub(super) const FUSED: (&str, &str) = ("pass/fused.wgsl", include_str!("fused.wgsl"));
 
 /// The format of a texture of packed texels. It is to be cleared to 0, which is background.
 pub fn texel_format(layout: TexelLayout) -> wgpu::TextureFormat {
@@ -37,7 +37,7 @@ impl FusedPass {
         ];
         let bound = [Bound::Uniform, Bound::Whole];
         Self {
-            draw: Fullscreen::new(device, "fused", FUSED_WGSL, &bound, &constants, Output::Ink(target)),
+            draw: Fullscreen::new(device, "fused", FUSED, &bound, &constants, Output::Ink(target)),
             layout,
             taps: filter.taps,
             soft,

@@ -1,4 +1,4 @@
-// The fused filter over packed texels. Appended to `fullscreen.wgsl`.
+// The fused filter over packed texels.
 
 @group(0) @binding(1) var<uniform> what: InkFilter;
 @group(0) @binding(2) var texels: texture_2d<u32>;

@@ -3,7 +3,7 @@
 use super::fullscreen::{Bound, Fullscreen, Output, flag, size_px, uniform};
 use super::{InkTarget, Onto};
 
-const LAY_WGSL: &str = include_str!("lay.wgsl");
+pub(super) const LAY: (&str, &str) = ("pass/lay.wgsl", include_str!("lay.wgsl"));
 
 /// The pipelines, for ink of the picture's size and of another.
 #[derive(Debug)]
@@ -17,7 +17,7 @@ impl LayPass {
     pub fn new(device: &wgpu::Device, target: InkTarget) -> Self {
         let pipeline = |same| {
             let bound = [Bound::Uniform, Bound::Float];
-            Fullscreen::new(device, "lay", LAY_WGSL, &bound, &[flag("same_size", same)], Output::Ink(target))
+            Fullscreen::new(device, "lay", LAY, &bound, &[flag("same_size", same)], Output::Ink(target))
         };
         Self { same: pipeline(true), scaled: pipeline(false) }
     }

@@ -1,4 +1,4 @@
-// Ink over a picture, also of another size. Appended to `fullscreen.wgsl`.
+// Ink over a picture, also of another size.
 
 @group(0) @binding(1) var<uniform> scale: vec4<f32>;
 @group(0) @binding(2) var ink: texture_2d<f32>;

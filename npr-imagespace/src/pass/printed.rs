@@ -8,7 +8,7 @@ use crate::filter::inker::InkerUniform;
 use crate::filter::printed::{PrintedFilter, PrintedUniform};
 use crate::picture::Taps;
 
-const PRINTED_WGSL: &str = include_str!("printed.wgsl");
+pub(super) const PRINTED: (&str, &str) = ("pass/printed.wgsl", include_str!("printed.wgsl"));
 
 /// What a pipeline is made for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,7 +57,7 @@ impl PrintedPass {
             flag("cross_taps", taps == Taps::Cross),
         ];
         let bound = [Bound::Uniform, Bound::Float];
-        Self { draw: Fullscreen::new(device, label, PRINTED_WGSL, &bound, &constants, Output::Ink(target)), kind }
+        Self { draw: Fullscreen::new(device, label, PRINTED, &bound, &constants, Output::Ink(target)), kind }
     }
 
     /// Records filtering `texels`, `Rgba8Unorm` of the target's size.

@@ -1,4 +1,4 @@
-// The filters and the inker of 2002 over an RGBA8 target. Appended to `fullscreen.wgsl`.
+// The filters and the inker of 2002 over an RGBA8 target.
 
 @group(0) @binding(1) var<uniform> what: InkPrinted;
 @group(0) @binding(1) var<uniform> inker: InkInker;

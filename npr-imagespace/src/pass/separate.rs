@@ -7,7 +7,7 @@ use crate::ImageSpaceError;
 use crate::filter::separate::{SeparateDepthTest, SeparateFilter, SeparateUniform};
 use crate::picture::Taps;
 
-const SEPARATE_WGSL: &str = include_str!("separate.wgsl");
+pub(super) const SEPARATE: (&str, &str) = ("pass/separate.wgsl", include_str!("separate.wgsl"));
 
 /// The textures of a G-buffer, all of the target's size. What the filter does not ask for may be `None`.
 #[derive(Clone, Copy, Debug, Default)]
@@ -84,7 +84,7 @@ impl SeparatePass {
             texture.create_view(&Default::default())
         });
         Self {
-            draw: Fullscreen::new(device, "separate", SEPARATE_WGSL, &bound, &constants, Output::Ink(target)),
+            draw: Fullscreen::new(device, "separate", SEPARATE, &bound, &constants, Output::Ink(target)),
             kind,
             none,
             nearest: device.create_sampler(&wgpu::SamplerDescriptor { label: Some("nearest"), ..Default::default() }),

@@ -1,4 +1,4 @@
-// The filters over textures of normals, depth and regions. Appended to `fullscreen.wgsl`.
+// The filters over textures of normals, depth and regions.
 
 @group(0) @binding(1) var<uniform> what: InkSeparate;
 @group(0) @binding(2) var normals: texture_2d<f32>;

@@ -8,7 +8,7 @@ use crate::ImageSpaceError;
 use crate::composite::Composite;
 use crate::morphology::{Kernel, Operation};
 
-const STEP_WGSL: &str = include_str!("step.wgsl");
+pub(super) const STEP: (&str, &str) = ("pass/step.wgsl", include_str!("step.wgsl"));
 
 /// What one step does.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,7 +67,7 @@ impl StepPass {
             flag("cross_taps", kernel != Kernel::Diagonal),
             ("threshold", f64::from(threshold)),
         ];
-        let draw = Fullscreen::new(device, "step", STEP_WGSL, &[Bound::Float], &constants, Output::Ink(target));
+        let draw = Fullscreen::new(device, "step", STEP, &[Bound::Float], &constants, Output::Ink(target));
         Ok(Self { draw })
     }
 

@@ -1,4 +1,4 @@
-// One step of dilation or erosion, from ink to ink. Appended to `fullscreen.wgsl`.
+// One step of dilation or erosion, from ink to ink.
 
 @group(0) @binding(1) var ink: texture_2d<f32>;
 
