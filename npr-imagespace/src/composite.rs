@@ -1,13 +1,13 @@
 //! Lines over a picture.
 //!
-//! - [`ink_multiply`]: Card & Mitchell 2002 multiply the frame buffer with the edge image, white paper and black
+//! - [`Composite::Multiply`]: Card & Mitchell 2002 multiply the frame buffer with the edge image, white paper and black
 //!   lines, so that several passes add up: c · (1 − ink).
-//! - [`ink_alpha_tested`]: the same with the alpha test that spares the frame buffer the white pixels. The edge image
+//! - [`Composite::AlphaTested`]: the same with the alpha test that spares the frame buffer the white pixels. The edge image
 //!   has its value in alpha, too, 255 on paper and 0 on a line. What was wrong in print: `D3DCMP_GREATER` keeps what
 //!   is greater than the reference, that is the paper, and kills the lines; and the reference `(DWORD) 0.5f` is 0, of
 //!   0–255 ([`AlphaTest::PRINTED`]): the picture stays as it was, at the cost of writing all of it. Right is LESS and
 //!   128 ([`AlphaTest::CORRECTED`]).
-//! - [`ink_over`]: a line of any colour, by its coverage: c + opacity · ink · (line − c). The default. With a black
+//! - [`Composite::Over`]: a line of any colour, by its coverage: c + opacity · ink · (line − c). The default. With a black
 //!   opaque line it is the multiplication.
 //!
 //! Colours are display-referred, and coverage blends in display space.
@@ -59,7 +59,7 @@ impl AlphaTest {
 }
 
 /// c · (1 − ink).
-pub fn ink_multiply(color: DVec3, ink: f64) -> DVec3 {
+fn ink_multiply(color: DVec3, ink: f64) -> DVec3 {
     color * (1.0 - ink)
 }
 
@@ -69,13 +69,13 @@ pub fn ink_alpha_passes(ink: f64, test: AlphaTest) -> bool {
     if test.less { alpha < test.reference } else { alpha > test.reference }
 }
 
-/// [`ink_multiply`] where the test is passed, and else the colour as it was.
-pub fn ink_alpha_tested(color: DVec3, ink: f64, test: AlphaTest) -> DVec3 {
+/// c · (1 − ink) where the test is passed, and else the colour as it was.
+fn ink_alpha_tested(color: DVec3, ink: f64, test: AlphaTest) -> DVec3 {
     if ink_alpha_passes(ink, test) { ink_multiply(color, ink) } else { color }
 }
 
 /// c + opacity · ink · (line − c).
-pub fn ink_over(color: DVec3, ink: f64, line: DVec3, opacity: f64) -> DVec3 {
+fn ink_over(color: DVec3, ink: f64, line: DVec3, opacity: f64) -> DVec3 {
     color + (line - color) * (opacity * ink)
 }
 

@@ -50,12 +50,12 @@ pub fn ink_reach(pixel: UVec2, size_px: UVec2) -> IVec2 {
 }
 
 /// The step in px to diagonal tap 0–3: down right, down left, up left, up right. `reach` is that of [`ink_reach`].
-pub fn ink_tap_diagonal(tap: u32, reach: IVec2) -> IVec2 {
+fn ink_tap_diagonal(tap: u32, reach: IVec2) -> IVec2 {
     reach * IVec2::new(if tap == 0 || tap == 3 { 1 } else { -1 }, if tap < 2 { 1 } else { -1 })
 }
 
 /// The step in px to tap 0–3 along the axes: right, down, left, up. `reach` is that of [`ink_reach`].
-pub fn ink_tap_cross(tap: u32, reach: IVec2) -> IVec2 {
+fn ink_tap_cross(tap: u32, reach: IVec2) -> IVec2 {
     let along = if tap < 2 { 1 } else { -1 };
     reach * if tap & 1 == 0 { IVec2::new(along, 0) } else { IVec2::new(0, along) }
 }

@@ -17,14 +17,14 @@ pub const RESAMPLE_WGSL: &str = include_str!("resample.wgsl");
 
 /// Where a pixel finds its ink: the upper left of 2 × 2 texels, which may lie outside by 1, and how far the pixel's
 /// centre is from that one's to the others', 0..1. `scale` is texels of ink for a pixel.
-pub fn ink_resample_at(pixel: Vec2, scale: Vec2) -> (Vec2, Vec2) {
+fn ink_resample_at(pixel: Vec2, scale: Vec2) -> (Vec2, Vec2) {
     let at = (pixel + 0.5) * scale - 0.5;
     let first = at.floor();
     (first, at - first)
 }
 
 /// Ink of a pixel from its 2 × 2 texels: upper left, upper right, lower left, lower right.
-pub fn ink_resample_mix(taps: [f32; 4], weight: Vec2) -> f32 {
+fn ink_resample_mix(taps: [f32; 4], weight: Vec2) -> f32 {
     let row = |left: f32, right: f32| left * (1.0 - weight.x) + right * weight.x;
     row(taps[0], taps[1]) * (1.0 - weight.y) + row(taps[2], taps[3]) * weight.y
 }

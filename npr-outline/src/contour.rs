@@ -337,7 +337,7 @@ pub fn outline_is_silhouette(planes: &EdgePlanes, eye: Vec4) -> bool {
 }
 
 /// The kind of line that an edge with these traits is for an eye, if it is a line. `eye` as for [`outline_facing`].
-pub fn outline_kind(traits: u32, planes: &EdgePlanes, eye: Vec4) -> LineKind {
+fn outline_kind(traits: u32, planes: &EdgePlanes, eye: Vec4) -> LineKind {
     let own = LineKind::ALL[(traits & 3) as usize];
     // A boundary's planes make it a silhouette for every eye, but its kind is that of a boundary.
     if own != LineKind::Boundary && outline_is_silhouette(planes, eye) { LineKind::Silhouette } else { own }
@@ -397,7 +397,7 @@ impl ContourEdges {
 
 /// The side of a triangle's plane on which a (homogeneous) eye is, in f64 from its corners: the truth that the
 /// records are measured against. Positive in front.
-pub fn facing_exact([a, b, c]: [Vec3; 3], eye: DVec4) -> f64 {
+pub(crate) fn facing_exact([a, b, c]: [Vec3; 3], eye: DVec4) -> f64 {
     let [a, b, c] = [a.as_dvec3(), b.as_dvec3(), c.as_dvec3()];
     (b - a).cross(c - a).dot(eye.truncate() - a * eye.w)
 }

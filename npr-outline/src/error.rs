@@ -16,14 +16,6 @@ pub enum OutlineError {
         /// What was asked for.
         angle_rad: f32,
     },
-    /// A picture without pixels.
-    #[error("a viewport of {width} × {height} px has no pixel")]
-    EmptyViewport {
-        /// Pixels.
-        width: u32,
-        /// Pixels.
-        height: u32,
-    },
     /// More edges than one buffer of the device may hold.
     #[error("{bytes} bytes of edge records exceed the device's limit of {limit} for one buffer")]
     TooManyEdges {

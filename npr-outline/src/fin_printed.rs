@@ -123,7 +123,7 @@ pub struct FinView {
 
 /// Whether the listing displaces a vertex: 1 where the product of the two normals' dot products with the view vector,
 /// from the eye to the vertex, is below zero, and 0 elsewhere.
-pub fn fin_printed_flag(position: DVec3, n_face0: DVec3, n_face1: DVec3, eye: DVec3) -> f64 {
+fn fin_printed_flag(position: DVec3, n_face0: DVec3, n_face1: DVec3, eye: DVec3) -> f64 {
     let view = (position - eye).normalize_or_zero();
     if view.dot(n_face0) * view.dot(n_face1) < 0.0 { 1.0 } else { 0.0 }
 }
@@ -137,7 +137,7 @@ pub fn fin_printed_depth(w: f64, depth: FinDepth) -> f64 {
 }
 
 /// Listing 1: a vertex in clip space, displaced along its smooth normal where its edge is a silhouette.
-pub fn fin_printed_vertex(vertex: &PrintedFin, view: &FinView) -> DVec4 {
+fn fin_printed_vertex(vertex: &PrintedFin, view: &FinView) -> DVec4 {
     let position = vertex.position.as_dvec3();
     let flag = fin_printed_flag(position, vertex.n_face0.as_dvec3(), vertex.n_face1.as_dvec3(), view.eye);
     let clip = view.clip_from_world * position.extend(1.0);

@@ -46,7 +46,7 @@ pub const WINNER_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth16Unorm
 /// `OutlineView` of `line.wgsl`.
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
-pub struct OutlineUniform {
+struct OutlineUniform {
     clip_from_world: [[f32; 4]; 4],
     viewport_px: [f32; 2],
     depth_per_px: [f32; 2],

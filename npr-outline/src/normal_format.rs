@@ -53,11 +53,6 @@ impl NormalFormat {
         }
     }
 
-    /// Bytes that a flat scan reads for one edge: a position of three f32 and two normals.
-    pub fn bytes_per_edge(self) -> usize {
-        12 + 2 * self.bytes_per_normal()
-    }
-
     /// Bytes of one fin of [`crate::fin_printed`]: four vertices, each with a position and a smooth normal of three f32
     /// and two face normals. Its six indices (24 bytes) are not counted.
     pub fn bytes_per_fin(self) -> usize {
@@ -104,7 +99,7 @@ impl NormalFormat {
 }
 
 /// The direction that a point of the unfolded octahedron, −1..=1, stands for; zero for (−1, −1).
-pub fn normal_oct_decode(code: Vec2) -> Vec3 {
+fn normal_oct_decode(code: Vec2) -> Vec3 {
     if code == Vec2::NEG_ONE { Vec3::ZERO } else { oct_direction(code.as_dvec2()).as_vec3() }
 }
 

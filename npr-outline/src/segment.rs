@@ -35,15 +35,15 @@ use glam::{DMat4, DVec2, DVec3, DVec4, Vec4Swizzles};
 pub const MAX_SLOPE: f64 = 8.0;
 /// A face that gains more depth than this within a px across the line, in px of depth, is seen edge-on: it covers no
 /// pixel, and the side on which it lies is rounding.
-pub const EDGE_ON_SLOPE: f64 = 1024.0;
+const EDGE_ON_SLOPE: f64 = 1024.0;
 /// How far a line may lie behind a surface and still be seen, in px of depth.
-pub const DEPTH_SLACK_PX: f64 = 0.5;
+const DEPTH_SLACK_PX: f64 = 0.5;
 /// How far a line may lie behind the surface interpolated to it and still be seen, in px of depth: what touches may miss
 /// by as much.
-pub const PLANE_SLACK_PX: f64 = 0.01;
+const PLANE_SLACK_PX: f64 = 0.01;
 /// The same for each px of depth that the surface gains within a px: rasterisers round corners to 1/256 px, which
 /// moves a face's depths by its slope times that.
-pub const PLANE_SLACK_PER_SLOPE: f64 = 1.0 / 128.0;
+const PLANE_SLACK_PER_SLOPE: f64 = 1.0 / 128.0;
 
 /// The view that lines are drawn for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,7 +74,7 @@ pub struct ScreenSegment {
 /// space, or `None` if nothing is left.
 ///
 /// Everything that follows divides by w, and f32 loses the centreline's place when an end is a thousand screens away.
-pub fn outline_clip(ends: [DVec4; 2], viewport_px: DVec2, margin_px: f64) -> Option<[DVec4; 2]> {
+fn outline_clip(ends: [DVec4; 2], viewport_px: DVec2, margin_px: f64) -> Option<[DVec4; 2]> {
     let guard = DVec2::ONE + 2.0 * margin_px / viewport_px;
     let inside =
         |p: DVec4| [p.w - p.z, guard.x * p.w - p.x, guard.x * p.w + p.x, guard.y * p.w - p.y, guard.y * p.w + p.y];
@@ -180,7 +180,7 @@ fn outline_nearest(ends_px: [DVec2; 2], point_px: DVec2) -> f64 {
 
 /// The share of a unit square around the origin on the near side of a straight border at `distance` along the unit
 /// vector `normal`: the distribution of a sum of two uniform variables, a trapezoid's integral.
-pub fn outline_half_plane(distance: f64, normal: DVec2) -> f64 {
+fn outline_half_plane(distance: f64, normal: DVec2) -> f64 {
     let (a, b) = (normal.x.abs().max(normal.y.abs()), normal.x.abs().min(normal.y.abs()));
     let reach = 0.5 * (a + b);
     let inner = 0.5 * (a - b);

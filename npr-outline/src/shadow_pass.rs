@@ -280,7 +280,7 @@ impl ShadowPass {
 }
 
 /// The whole shader of the pass.
-pub fn wgsl() -> String {
+pub(crate) fn wgsl() -> String {
     assemble(&[("shadow_volume.wgsl", SHADOW_WGSL), PASS])
 }
 

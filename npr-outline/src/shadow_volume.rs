@@ -224,7 +224,7 @@ pub fn outline_turn(plane: [f32; 4], light: Vec4) -> i32 {
 
 /// How a face casts: 1 turned towards the light, −1 away from it, 0 not at all.
 #[inline]
-pub fn outline_casting(plane: [f32; 4], open: bool, light: Vec4) -> i32 {
+fn outline_casting(plane: [f32; 4], open: bool, light: Vec4) -> i32 {
     let turn = outline_turn(plane, light);
     if open { turn } else { turn.max(0) }
 }
@@ -233,7 +233,7 @@ pub fn outline_casting(plane: [f32; 4], open: bool, light: Vec4) -> i32 {
 ///
 /// `light`: relative to [`ShadowCasters::origin`], a point with w = 1 or the direction to the light with w = 0.
 #[inline]
-pub fn outline_sweeps(edge: &VolumeEdge, light: Vec4) -> i32 {
+fn outline_sweeps(edge: &VolumeEdge, light: Vec4) -> i32 {
     let mut sweeps = outline_casting(edge.plane0, edge.flags & VOLUME_OPEN != 0, light);
     if edge.flags & VOLUME_SECOND != 0 {
         let second = outline_casting(edge.plane1, edge.flags & VOLUME_SECOND_OPEN != 0, light);
@@ -261,7 +261,7 @@ pub fn outline_swept(point: DVec3, light: DVec4) -> DVec4 {
 
 impl ShadowCasters {
     /// The light in the planes' own coordinates. `light` is a world-space point with w = 1 or direction with w = 0.
-    pub fn local_light(&self, light: DVec4) -> Vec4 {
+    fn local_light(&self, light: DVec4) -> Vec4 {
         (light - self.origin.as_dvec3().extend(0.0) * light.w).as_vec4()
     }
 
@@ -333,54 +333,6 @@ impl ShadowCasters {
         let casting = |face: &&VolumeFace| outline_casting(face.plane, face.flags & VOLUME_OPEN != 0, local) != 0;
         self.faces.iter().filter(casting).filter(is_hit).count() as u32
     }
-
-    /// In how many volumes a point lies, by the signed crossings of a ray from it to `beyond`, a point that lies in none:
-    /// the definition, for tests, in f64. Sides are taken as they are swept, caps as they are turned.
-    pub fn count_at(&self, point: DVec3, beyond: DVec3, light: DVec4) -> i32 {
-        let local = self.local_light(light);
-        let mut count = 0;
-        let mut crossed = |corners: [DVec4; 3], times: i32| count += times * crossing(corners, point, beyond);
-        for edge in &self.edges {
-            let sweeps = outline_sweeps(edge, local);
-            let ends = [edge.from, edge.to].map(|end| Vec3::from(end).as_dvec3());
-            let [from, to] = if sweeps > 0 { ends } else { [ends[1], ends[0]] };
-            let [near_from, near_to] = [from, to].map(|end| end.extend(1.0));
-            let [far_from, far_to] = [from, to].map(|end| outline_swept(end, light));
-            crossed([near_to, near_from, far_from], sweeps.abs());
-            if light.w != 0.0 {
-                crossed([near_to, far_from, far_to], sweeps.abs());
-            }
-        }
-        for face in &self.faces {
-            let casting = outline_casting(face.plane, face.flags & VOLUME_OPEN != 0, local);
-            let corners = [face.a, face.b, face.c].map(|corner| Vec3::from(corner).as_dvec3());
-            crossed(corners.map(|corner| corner.extend(1.0)), casting);
-            if light.w != 0.0 {
-                let [a, b, c] = corners.map(|corner| outline_swept(corner, light));
-                crossed([a, c, b], casting);
-            }
-        }
-        count
-    }
-}
-
-/// 1 where the way from `inside` to `outside` leaves through a homogeneous triangle, counter-clockwise from outside, −1
-/// where it enters, 0 where it passes by.
-fn crossing(corners: [DVec4; 3], inside: DVec3, outside: DVec3) -> i32 {
-    // Signs of 4×4 determinants: the sides of planes through three homogeneous points.
-    let side = |a: DVec4, b: DVec4, c: DVec4, d: DVec4| glam::DMat4::from_cols(a, b, c, d).determinant();
-    let [a, b, c] = corners;
-    let (p, q) = (inside.extend(1.0), outside.extend(1.0));
-    let (at_p, at_q) = (side(a, b, c, p), side(a, b, c, q));
-    if at_p * at_q >= 0.0 {
-        return 0;
-    }
-    let [u, v, w] = [side(p, q, a, b), side(p, q, b, c), side(p, q, c, a)];
-    let within = (u > 0.0 && v > 0.0 && w > 0.0) || (u < 0.0 && v < 0.0 && w < 0.0);
-    if !within {
-        return 0;
-    }
-    if at_p > 0.0 { 1 } else { -1 }
 }
 
 #[cfg(test)]

@@ -102,9 +102,9 @@ pub const ASKED_STEP: u32 = 4;
 /// In [`FilterUniform::asked`]: regions.
 pub const ASKED_REGION: u32 = 8;
 /// In [`FilterUniform::asked`]: borders of shadows.
-pub const ASKED_SHADOW: u32 = 16;
+const ASKED_SHADOW: u32 = 16;
 /// In [`FilterUniform::asked`]: borders of shadows, and of the others only where they are not.
-pub const ASKED_ALONE: u32 = 32;
+const ASKED_ALONE: u32 = 32;
 
 /// A [`FusedFilter`] in the integers of a layout: `InkFilter` of the WGSL, 48 bytes.
 #[repr(C)]
@@ -286,7 +286,7 @@ fn depth_soft(settings: &FilterUniform, (excess, threshold): (i32, i32)) -> f64 
 }
 
 /// The soft form of [`ink_tap_across`].
-pub fn ink_tap_soft(settings: &FilterUniform, centre: &Tap, tap: &Tap) -> f64 {
+fn ink_tap_soft(settings: &FilterUniform, centre: &Tap, tap: &Tap) -> f64 {
     if !(is_surface(settings, centre) && is_surface(settings, tap)) {
         return f64::from(u8::from(is_surface(settings, centre) != is_surface(settings, tap)));
     }

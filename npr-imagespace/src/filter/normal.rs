@@ -47,7 +47,7 @@ pub fn normal_bytes_threshold(cos: f32) -> i32 {
 }
 
 /// Whether two normals of biased bytes differ. What [`crate::format::printed::CLEAR`] has in rgb is no normal.
-pub fn ink_normal_bytes_differ(a: [u8; 3], b: [u8; 3], threshold: i32) -> bool {
+fn ink_normal_bytes_differ(a: [u8; 3], b: [u8; 3], threshold: i32) -> bool {
     let (no_a, no_b) = (a == [0; 3], b == [0; 3]);
     if no_a || no_b {
         return no_a != no_b;

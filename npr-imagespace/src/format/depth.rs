@@ -65,17 +65,17 @@ impl DepthRange {
 }
 
 /// 0..=1 as 8 bits, rounded to the nearest.
-pub fn ink_depth_encode8(fraction: f32) -> u32 {
+fn ink_depth_encode8(fraction: f32) -> u32 {
     (fraction * 255.0 + 0.5) as u32
 }
 
 /// 0..=1 as 16 bits, rounded to the nearest.
-pub fn ink_depth_encode16(fraction: f32) -> u32 {
+fn ink_depth_encode16(fraction: f32) -> u32 {
     (fraction * 65535.0 + 0.5) as u32
 }
 
 /// 0..=1 as 32 bits: all of an f32's own. Only 1 itself, 2^32, does not fit, and becomes the largest code.
-pub fn ink_depth_encode32(fraction: f32) -> u32 {
+fn ink_depth_encode32(fraction: f32) -> u32 {
     // In Rust this conversion saturates; WGSL's need not.
     (fraction * 4294967296.0) as u32
 }

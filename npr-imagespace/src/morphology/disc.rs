@@ -22,7 +22,7 @@
 //!
 //! Rows full of borders, which noise has, are not made by copying but pixel by pixel.
 //!
-//! Up to a whole radius of [`DIRECT_MOST`] the hard disc is the maximum of shifted rows, which is cheaper still.
+//! Up to a whole radius of 5 px the hard disc is the maximum of shifted rows, which is cheaper still.
 //!
 //! Distances by two passes over the axes: Saito & Toriwaki 1994, "New algorithms for Euclidean distance transformation
 //! of an n-dimensional digitized picture with applications".
@@ -33,7 +33,7 @@ use crate::picture::checked_len;
 use glam::UVec2;
 
 /// The largest integer part of a radius for which shifted rows are used.
-pub const DIRECT_MOST: usize = 5;
+const DIRECT_MOST: usize = 5;
 /// The largest radius.
 pub const RADIUS_MOST_PX: f32 = 32766.0;
 /// The least ink of a line pixel.

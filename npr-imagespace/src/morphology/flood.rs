@@ -3,7 +3,7 @@
 //!
 //! A texel of `R32Uint` holds the step from the pixel to the nearest line pixel known so far, 0 for none
 //! ([`ink_flood_seed`]). A pass reads some texels at a distance, adds the way there, and keeps the shortest
-//! ([`ink_flood_take`]); the last turns the distance into ink ([`ink_flood_resolve`]). All but that is done on
+//! ([`ink_flood_take`]); the last turns the distance into ink. All but that is done on
 //! integers.
 //!
 //! Jump flooding in the plane (Rong & Tan 2006, "Jump flooding in GPU with applications to Voronoi diagram and
@@ -119,7 +119,7 @@ pub fn ink_flood_vector(site: u32) -> IVec2 {
 }
 
 /// Squared distance of the line pixel that a texel names; far for none.
-pub fn ink_flood_distance2(site: u32) -> u32 {
+fn ink_flood_distance2(site: u32) -> u32 {
     if site == FLOOD_NONE {
         return u32::MAX;
     }
@@ -143,7 +143,7 @@ pub fn ink_flood_take(best: u32, tap: u32, offset: IVec2) -> u32 {
 }
 
 /// Ink 0..=1 of a pixel that knows its nearest line pixel, as [`crate::morphology::disc`] defines it.
-pub fn ink_flood_resolve(site: u32, radius_px: f32, antialias: bool) -> f32 {
+fn ink_flood_resolve(site: u32, radius_px: f32, antialias: bool) -> f32 {
     if site == FLOOD_NONE {
         return 0.0;
     }

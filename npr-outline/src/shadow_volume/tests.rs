@@ -3,6 +3,56 @@ use npr_mesh::edges::{EdgeOptions, find};
 use npr_mesh::{Material, embedded};
 use proptest::prelude::*;
 
+impl ShadowCasters {
+    /// In how many volumes a point lies: the sum of the signed crossings of the segment from it to `beyond`, a point
+    /// outside all volumes. Sides are taken as they are swept, caps as they are wound.
+    fn count_at(&self, point: DVec3, beyond: DVec3, light: DVec4) -> i32 {
+        let local = self.local_light(light);
+        let mut count = 0;
+        let mut crossed = |corners: [DVec4; 3], times: i32| count += times * crossing(corners, point, beyond);
+        for edge in &self.edges {
+            let sweeps = outline_sweeps(edge, local);
+            let ends = [edge.from, edge.to].map(|end| Vec3::from(end).as_dvec3());
+            let [from, to] = if sweeps > 0 { ends } else { [ends[1], ends[0]] };
+            let [near_from, near_to] = [from, to].map(|end| end.extend(1.0));
+            let [far_from, far_to] = [from, to].map(|end| outline_swept(end, light));
+            crossed([near_to, near_from, far_from], sweeps.abs());
+            if light.w != 0.0 {
+                crossed([near_to, far_from, far_to], sweeps.abs());
+            }
+        }
+        for face in &self.faces {
+            let casting = outline_casting(face.plane, face.flags & VOLUME_OPEN != 0, local);
+            let corners = [face.a, face.b, face.c].map(|corner| Vec3::from(corner).as_dvec3());
+            crossed(corners.map(|corner| corner.extend(1.0)), casting);
+            if light.w != 0.0 {
+                let [a, b, c] = corners.map(|corner| outline_swept(corner, light));
+                crossed([a, c, b], casting);
+            }
+        }
+        count
+    }
+}
+
+/// 1 where the way from `inside` to `outside` leaves through a homogeneous triangle, counter-clockwise from outside, −1
+/// where it enters, 0 where it passes by.
+fn crossing(corners: [DVec4; 3], inside: DVec3, outside: DVec3) -> i32 {
+    // Signs of 4×4 determinants: the sides of planes through three homogeneous points.
+    let side = |a: DVec4, b: DVec4, c: DVec4, d: DVec4| glam::DMat4::from_cols(a, b, c, d).determinant();
+    let [a, b, c] = corners;
+    let (p, q) = (inside.extend(1.0), outside.extend(1.0));
+    let (at_p, at_q) = (side(a, b, c, p), side(a, b, c, q));
+    if at_p * at_q >= 0.0 {
+        return 0;
+    }
+    let [u, v, w] = [side(p, q, a, b), side(p, q, b, c), side(p, q, c, a)];
+    let within = (u > 0.0 && v > 0.0 && w > 0.0) || (u < 0.0 && v < 0.0 && w < 0.0);
+    if !within {
+        return 0;
+    }
+    if at_p > 0.0 { 1 } else { -1 }
+}
+
 fn casters_of(model: &Model) -> ShadowCasters {
     let edges = find(&model.positions, &model.faces, &[], &model.face_material, &EdgeOptions::default());
     shadow_casters(model, &edges)
