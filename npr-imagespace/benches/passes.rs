@@ -279,7 +279,7 @@ fn bench(gpu: &Gpu, size: [u32; 2]) {
         .map(|format| (format, Copy::new(gpu, size, format)))
         .into();
     let steps = PingPong::new(device, Kernel::Square);
-    let disc_pass = DiscPass::new(device, InkTarget::Ink);
+    let disc_pass = DiscPass::new(device, InkTarget::Ink).expect("a picture that blends");
     let mut timed = Passes::default();
     for (format, copy) in &copies {
         timed.add(&format!("copy {format:?}"), copy.bytes, |encoder| copy.record(encoder));
@@ -287,7 +287,7 @@ fn bench(gpu: &Gpu, size: [u32; 2]) {
     for (layout, texels, bytes) in [(TexelLayout::Narrow, &narrow, 4.0), (TexelLayout::Wide, &wide, 8.0)] {
         for (how, softness) in [("hard", 0.0), ("soft", 0.1)] {
             let filter = FusedFilter { softness, ..Default::default() };
-            let pass = FusedPass::new(device, &filter, layout, InkTarget::Ink);
+            let pass = FusedPass::new(device, &filter, layout, InkTarget::Ink).expect("a picture that blends");
             let run = move |encoder: &mut wgpu::CommandEncoder| {
                 pass.record(device, encoder, &filter, &code(layout), texels, &onto_ink).expect("in range");
             };
@@ -295,14 +295,14 @@ fn bench(gpu: &Gpu, size: [u32; 2]) {
         }
     }
     let filter = FusedFilter::default();
-    let pass = FusedPass::new(device, &filter, TexelLayout::Wide, over);
+    let pass = FusedPass::new(device, &filter, TexelLayout::Wide, over).expect("a picture that blends");
     let wide = &wide;
     let run = move |encoder: &mut wgpu::CommandEncoder| {
         pass.record(device, encoder, &filter, &code(TexelLayout::Wide), wide, &onto_picture).expect("in range");
     };
     timed.add("fused, Wide, hard, over a picture", 8.0 + 8.0, run);
     let separate = SeparateFilter::default();
-    let pass = SeparatePass::new(device, &separate, InkTarget::Ink);
+    let pass = SeparatePass::new(device, &separate, InkTarget::Ink).expect("a picture that blends");
     let run = move |encoder: &mut wgpu::CommandEncoder| {
         let textures = SeparateTextures { normal: Some(&normals), depth: Some(&depths), region: Some(&regions) };
         pass.record(device, encoder, &separate, &textures, &onto_ink).expect("in range");
@@ -312,7 +312,7 @@ fn bench(gpu: &Gpu, size: [u32; 2]) {
         ("printed edges", PrintedFilter::default()),
         ("printed inker", PrintedFilter::Inker(npr_imagespace::filter::inker::Inker::default())),
     ] {
-        let pass = PrintedPass::new(device, &filter, InkTarget::Ink);
+        let pass = PrintedPass::new(device, &filter, InkTarget::Ink).expect("a picture that blends");
         let printed = &printed;
         let run = move |encoder: &mut wgpu::CommandEncoder| {
             pass.record(device, encoder, &filter, printed, &onto_ink).expect("in range");
@@ -327,14 +327,16 @@ fn bench(gpu: &Gpu, size: [u32; 2]) {
     ] {
         let pass = StepPass::new(device, step, InkTarget::Ink).expect("no threshold");
         let ink = &ink;
-        let run = move |encoder: &mut wgpu::CommandEncoder| pass.record(device, encoder, ink, &onto_ink);
+        let run = move |encoder: &mut wgpu::CommandEncoder| {
+            pass.record(device, encoder, ink, &onto_ink).expect("one size");
+        };
         timed.add(name, 2.0, run);
     }
     for count in [4u32, 16] {
         // From one scratch to another, since both are overwritten.
         let (steps, out, other) = (&steps, &out, &other);
         let run = move |encoder: &mut wgpu::CommandEncoder| {
-            steps.record(device, encoder, Operation::Dilate, count, [out, other]);
+            steps.record(device, encoder, Operation::Dilate, count, [out, other]).expect("one size");
         };
         timed.add(&format!("ping-pong, 3 × 3, {count} steps"), 2.0 * f64::from(count), run);
     }
@@ -353,8 +355,10 @@ fn bench(gpu: &Gpu, size: [u32; 2]) {
         }
     }
     for (name, ink, bytes) in [("lay", &ink, 1.0), ("lay, half", &half_ink, 0.25), ("lay, double", &double_ink, 4.0)] {
-        let pass = LayPass::new(device, over);
-        let run = move |encoder: &mut wgpu::CommandEncoder| pass.record(device, encoder, ink, &onto_picture);
+        let pass = LayPass::new(device, over).expect("a picture that blends");
+        let run = move |encoder: &mut wgpu::CommandEncoder| {
+            pass.record(device, encoder, ink, &onto_picture).expect("ink of any size");
+        };
         timed.add(name, bytes + 8.0, run);
     }
 

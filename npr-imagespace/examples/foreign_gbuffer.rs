@@ -152,7 +152,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         depth: Some(SeparateDepth { source: DepthSource::reversed(NEAR, f32::INFINITY)?, ..Default::default() }),
         ..Default::default()
     };
-    let pass = SeparatePass::new(&device, &filter, InkTarget::Picture(picture.format()));
+    let pass = SeparatePass::new(&device, &filter, InkTarget::Picture(picture.format()))?;
     let textures = SeparateTextures { normal: Some(&normal), depth: Some(&depth), region: Some(&object) };
     let composite = Composite::Over { color: Vec3::new(0.08, 0.06, 0.10), opacity: 1.0 };
     let onto = Onto { view: &picture_view, composite: &composite, area: None };

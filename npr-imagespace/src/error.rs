@@ -82,4 +82,74 @@ pub enum ImageSpaceError {
         /// How many there are.
         faces: usize,
     },
+    /// A picture format whose stores encode sRGB, in which coverage would blend in linear light.
+    #[cfg(feature = "wgpu")]
+    #[error("a picture of format {format:?}: stores must not encode sRGB")]
+    SrgbPicture {
+        /// The format that was given.
+        format: wgpu::TextureFormat,
+    },
+    /// A picture format that the blend unit cannot write.
+    #[cfg(feature = "wgpu")]
+    #[error(
+        "a picture of format {format:?}: a color format of floats that can be blended is needed, such as Rgba8Unorm"
+    )]
+    PictureFormat {
+        /// The format that was given.
+        format: wgpu::TextureFormat,
+    },
+    /// A texture of another format than the pass reads or writes.
+    #[cfg(feature = "wgpu")]
+    #[error("{what} of format {format:?}: {needed} is needed")]
+    ViewFormat {
+        /// Which texture.
+        what: &'static str,
+        /// Its format.
+        format: wgpu::TextureFormat,
+        /// The format, or the kind of format, that is needed.
+        needed: &'static str,
+    },
+    /// A texture of another size than the target's.
+    #[cfg(feature = "wgpu")]
+    #[error("{what} of {} × {} px: {} × {} px are needed", size_px.x, size_px.y, needed_px.x, needed_px.y)]
+    ViewSize {
+        /// Which texture.
+        what: &'static str,
+        /// Its width and height, px.
+        size_px: UVec2,
+        /// The width and height that are needed, px.
+        needed_px: UVec2,
+    },
+    /// A texture with several samples for each pixel.
+    #[cfg(feature = "wgpu")]
+    #[error("{what} of {samples} samples a pixel: 1 is needed")]
+    ViewSamples {
+        /// Which texture.
+        what: &'static str,
+        /// Its samples for each pixel.
+        samples: u32,
+    },
+    /// An area that reaches beyond the target.
+    #[cfg(feature = "wgpu")]
+    #[error(
+        "an area of {} × {} px at {}, {} reaches beyond a target of {} × {} px",
+        area[2], area[3], area[0], area[1], size_px.x, size_px.y
+    )]
+    Area {
+        /// Left, top, width and height, px.
+        area: [u32; 4],
+        /// Width and height of the target, px.
+        size_px: UVec2,
+    },
+    /// A filter that looks for other things, or elsewhere, than the one that the pass was made for.
+    #[cfg(feature = "wgpu")]
+    #[error("the filter looks for other things than the one that the pass was made for")]
+    OtherFilter,
+    /// A texture that the filter reads is not given.
+    #[cfg(feature = "wgpu")]
+    #[error("the filter reads a texture of {what}, and none is given")]
+    MissingTexture {
+        /// What it holds.
+        what: &'static str,
+    },
 }

@@ -14,9 +14,12 @@
 //!
 //! # Targets
 //!
-//! Ink pictures are [`INK_FORMAT`]: 0 paper, 1 line. Pictures are targets that the blend unit can write and that
-//! show what they hold: `Rgba8Unorm`, `Bgra8Unorm`, `Rgba16Float`, but not those named `Srgb`, in which coverage would
-//! blend in linear light. Their alpha is left alone.
+//! Ink pictures are [`INK_FORMAT`]: 0 paper, 1 line. Pictures are of color formats that can be blended and whose stores
+//! do not encode sRGB: `Rgba8Unorm`, `Bgra8Unorm`, `Rgba16Float`. With an `Srgb` format coverage would blend in linear
+//! light; a view without `Srgb` of such a texture is accepted. The alpha of pictures is not written.
+//!
+//! All textures have one sample a pixel, and views show their first level and layer. Unless a pass says otherwise, what
+//! it reads has the size of its target. A pass that is given anything else records nothing and returns an error.
 
 pub mod disc;
 mod fullscreen;
@@ -26,6 +29,7 @@ pub mod printed;
 pub mod separate;
 pub mod step;
 
+use crate::ImageSpaceError;
 use crate::composite::Composite;
 
 /// A shader module from several files, given as name and text: their names at its head, and a line before each.
@@ -50,6 +54,73 @@ pub enum InkTarget {
     Picture(wgpu::TextureFormat),
 }
 
+impl InkTarget {
+    /// The format of the target's views.
+    fn format(self) -> wgpu::TextureFormat {
+        match self {
+            Self::Ink => INK_FORMAT,
+            Self::Picture(format) => format,
+        }
+    }
+
+    /// Refuses formats of pictures that lines cannot be composited over.
+    fn check(self, device: &wgpu::Device) -> Result<(), ImageSpaceError> {
+        let Self::Picture(format) = self else { return Ok(()) };
+        if format.is_srgb() {
+            return Err(ImageSpaceError::SrgbPicture { format });
+        }
+        let features = format.guaranteed_format_features(device.features());
+        let known = features.flags.contains(wgpu::TextureFormatFeatureFlags::BLENDABLE);
+        // What an adapter blends besides is not known here.
+        let specific = device.features().contains(wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES);
+        let is_float =
+            matches!(format.sample_type(None, Some(device.features())), Some(wgpu::TextureSampleType::Float { .. }));
+        if !is_float || format.has_depth_aspect() || !(known || specific) {
+            return Err(ImageSpaceError::PictureFormat { format });
+        }
+        Ok(())
+    }
+}
+
+/// Refuses a texture of another format, with more than one sample a pixel, or, if `size_px` is given, of another size.
+/// A view of an sRGB texture may be one without sRGB, which cannot be seen here.
+fn check_view(
+    what: &'static str,
+    view: &wgpu::TextureView,
+    format: wgpu::TextureFormat,
+    needed: &'static str,
+    size_px: Option<[u32; 2]>,
+) -> Result<(), ImageSpaceError> {
+    let found = view.texture().format();
+    if found.remove_srgb_suffix() != format.remove_srgb_suffix() {
+        return Err(ImageSpaceError::ViewFormat { what, format: found, needed });
+    }
+    check_samples_and_size(what, view, size_px)
+}
+
+fn check_samples_and_size(
+    what: &'static str,
+    view: &wgpu::TextureView,
+    size_px: Option<[u32; 2]>,
+) -> Result<(), ImageSpaceError> {
+    let samples = view.texture().sample_count();
+    if samples != 1 {
+        return Err(ImageSpaceError::ViewSamples { what, samples });
+    }
+    let found = fullscreen::size_px(view);
+    match size_px {
+        Some(needed) if needed != found => {
+            Err(ImageSpaceError::ViewSize { what, size_px: found.into(), needed_px: needed.into() })
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Refuses ink of another format, with more than one sample, or of another size if one is given.
+fn check_ink(ink: &wgpu::TextureView, size_px: Option<[u32; 2]>) -> Result<(), ImageSpaceError> {
+    check_view("ink", ink, INK_FORMAT, "R8Unorm", size_px)
+}
+
 /// Where a pass puts its ink.
 #[derive(Clone, Copy, Debug)]
 pub struct Onto<'a> {
@@ -60,6 +131,25 @@ pub struct Onto<'a> {
     /// Where there may be lines: left, top, width and height in px, within the target. `None` for all of it. A pass
     /// costs what its area does, and where a scene's bounds are known there is none outside them, and a pixel around.
     pub area: Option<[u32; 4]>,
+}
+
+impl Onto<'_> {
+    /// Refuses a view that is none of the target that a pass was made for, and areas beyond it. Returns its size, px.
+    fn check(&self, target: InkTarget) -> Result<[u32; 2], ImageSpaceError> {
+        let needed = match target {
+            InkTarget::Ink => "R8Unorm",
+            InkTarget::Picture(_) => "the one that the pass was made for",
+        };
+        check_view("a target", self.view, target.format(), needed, None)?;
+        let size = fullscreen::size_px(self.view);
+        if let Some(area @ [x, y, width, height]) = self.area
+            && !(x.checked_add(width).is_some_and(|right| right <= size[0])
+                && y.checked_add(height).is_some_and(|bottom| bottom <= size[1]))
+        {
+            return Err(ImageSpaceError::Area { area, size_px: size.into() });
+        }
+        Ok(size)
+    }
 }
 
 #[cfg(test)]

@@ -16,6 +16,8 @@ mod inputs;
 mod lay;
 #[path = "gpu/printed.rs"]
 mod printed;
+#[path = "gpu/refusals.rs"]
+mod refusals;
 #[path = "gpu/separate.rs"]
 mod separate;
 #[path = "gpu/steps.rs"]

@@ -131,7 +131,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     encoder.copy_texture_to_texture(painted.as_image_copy(), inked.as_image_copy(), SIZE);
     let look = LineLook { width_px: [2.5; 4], ink: [0.1, 0.1, 0.15, 1.0] };
     let targets = LineTargets { painted: &painted_view, depth: &depth_view, inked: &inked_view, winner: &winner_view };
-    let line_pass = LinePass::new(&device, COLOR, false);
+    let line_pass = LinePass::new(&device, COLOR, false)?;
     let source = LineSource::Records(&records);
     line_pass.record(&device, &mut encoder, source, &look, &view, eye.extend(1.0), &targets)?;
 

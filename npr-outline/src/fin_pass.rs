@@ -8,6 +8,7 @@ use crate::filled_buffer::filled_buffer;
 use crate::fin_printed::{FIN_PRINTED_WGSL, FinDepth, FinView, PrintedFins};
 use crate::normal_format::{NORMAL_FORMAT_WGSL, NormalFormat};
 use crate::shader::assemble;
+use crate::target::{check_color_format, check_reversed, check_view, is_same, size};
 
 const PASS: (&str, &str) = ("fin_pass.wgsl", include_str!("fin_pass.wgsl"));
 
@@ -45,11 +46,21 @@ pub struct FinPass {
     layout: wgpu::BindGroupLayout,
     pipeline: wgpu::RenderPipeline,
     format: NormalFormat,
+    color_format: wgpu::TextureFormat,
 }
 
 impl FinPass {
-    /// Makes the pipeline for a colour target of `color_format` and face normals stored in `format`.
-    pub fn new(device: &wgpu::Device, color_format: wgpu::TextureFormat, format: NormalFormat) -> Self {
+    /// Makes the pipeline for a color target of `color_format`, of floats and without sRGB, and face normals stored in
+    /// `format`.
+    ///
+    /// # Errors
+    /// [`OutlineError::SrgbTarget`]; [`OutlineError::ViewFormat`] for a format that is no color of floats.
+    pub fn new(
+        device: &wgpu::Device,
+        color_format: wgpu::TextureFormat,
+        format: NormalFormat,
+    ) -> Result<Self, OutlineError> {
+        check_color_format(device, color_format)?;
         let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("printed fins"),
             entries: &[wgpu::BindGroupLayoutEntry {
@@ -116,7 +127,7 @@ impl FinPass {
             multiview_mask: None,
             cache: None,
         });
-        Self { layout, pipeline, format }
+        Ok(Self { layout, pipeline, format, color_format })
     }
 
     /// Sends fins to the device: [`NormalFormat::bytes_per_fin`] and 24 bytes of indices each.
@@ -154,11 +165,17 @@ impl FinPass {
 
     /// Records drawing a frame's fins.
     ///
-    /// - `ink`: display-referred colour and alpha, 0..=1, written as they are.
-    /// - `color`: of the format that the pass was made for; kept outside the fins.
-    /// - `depth`: the scene's, `Depth32Float`, reversed, renderable, of the same size; only read.
+    /// - `view`: with reversed depth.
+    /// - `ink`: display-referred color and alpha, 0..=1, written as they are.
+    /// - `color`: of the format that the pass was made for, `RENDER_ATTACHMENT`; kept outside the fins.
+    /// - `depth`: the scene's, `Depth32Float`, reversed, `RENDER_ATTACHMENT`, of the same size; only read.
     ///
-    /// `fins` must come from this pass or one of the same normal format.
+    /// Both are views of the first level of textures with one sample a pixel. `fins` must come from this pass or one of
+    /// the same normal format.
+    ///
+    /// # Errors
+    /// If a texture is not as said; [`OutlineError::StandardDepth`], where the matrix can be judged. Nothing is recorded
+    /// then.
     #[expect(clippy::too_many_arguments, reason = "each is a thing of its own; a struct would only rename them")]
     pub fn record(
         &self,
@@ -169,9 +186,14 @@ impl FinPass {
         ink: [f32; 4],
         color: &wgpu::TextureView,
         depth: &wgpu::TextureView,
-    ) {
+    ) -> Result<(), OutlineError> {
+        check_reversed(&view.clip_from_world, None)?;
+        let needed = "the format that the pass was made for";
+        check_view("a target", color, needed, |format| is_same(format, self.color_format), None)?;
+        let is_depth = |format| format == wgpu::TextureFormat::Depth32Float;
+        check_view("the scene's depth", depth, "Depth32Float", is_depth, Some(size(color)))?;
         if fins.index_count == 0 {
-            return;
+            return Ok(());
         }
         let uniform = FinUniform::new(view, ink);
         let usage = wgpu::BufferUsages::UNIFORM;
@@ -203,6 +225,7 @@ impl FinPass {
         pass.set_vertex_buffer(1, fins.normals.slice(..));
         pass.set_index_buffer(fins.indices.slice(..), wgpu::IndexFormat::Uint32);
         pass.draw_indexed(0..fins.index_count, 0, 0..1);
+        Ok(())
     }
 }
 

@@ -56,6 +56,8 @@ pub mod shadow_mask;
 #[cfg(feature = "wgpu")]
 pub mod shadow_pass;
 pub mod shadow_volume;
+#[cfg(feature = "wgpu")]
+mod target;
 
 /// The crate of the vectors and matrices in this API.
 pub use glam;

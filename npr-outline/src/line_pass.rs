@@ -14,6 +14,7 @@ use crate::filled_buffer::filled_buffer;
 use crate::line_look::LineLook;
 use crate::segment::LineView;
 use crate::shader::assemble;
+use crate::target::{check_color_format, check_reversed, check_view, is_same};
 use glam::{DVec4, Vec3};
 
 /// WGSL of [`crate::contour`] and [`crate::segment`]: no bindings, no entry points.
@@ -120,16 +121,18 @@ pub enum LineSource<'a> {
     OnDevice(&'a EdgesOnDevice),
 }
 
-/// What a frame reads and draws into, all of one size.
+/// What a frame reads and draws into: views of the first level of textures of the size of [`LineView::viewport_px`],
+/// with one sample a pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct LineTargets<'a> {
-    /// The picture without lines, readable.
+    /// The picture without lines: a color format of floats, `TEXTURE_BINDING`.
     pub painted: &'a wgpu::TextureView,
-    /// The scene's depth, reversed, readable.
+    /// The scene's depth, reversed: the depth aspect of a depth format, or `R32Float`; `TEXTURE_BINDING`.
     pub depth: &'a wgpu::TextureView,
-    /// Of the format that the pass was made for, renderable; holds a copy of `painted` and gets the lines.
+    /// Of the format that the pass was made for, `RENDER_ATTACHMENT`; holds a copy of `painted` and gets the lines. A
+    /// view without sRGB of an sRGB texture will do.
     pub inked: &'a wgpu::TextureView,
-    /// [`WINNER_FORMAT`], renderable; overwritten.
+    /// [`WINNER_FORMAT`], `RENDER_ATTACHMENT`; overwritten.
     pub winner: &'a wgpu::TextureView,
 }
 
@@ -141,6 +144,7 @@ pub struct LinePass {
     nearest: wgpu::Sampler,
     record_pipeline: wgpu::RenderPipeline,
     on_device: Option<OnDevicePipelines>,
+    color_format: wgpu::TextureFormat,
 }
 
 #[derive(Debug)]
@@ -166,12 +170,21 @@ const EDGE_NUMBER_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBuffer
 };
 
 impl LinePass {
-    /// Makes the pipelines for a colour target of `color_format`.
+    /// Makes the pipelines for a color target of `color_format`, of floats and without sRGB: coverage blends in display
+    /// space.
     ///
     /// `on_device`: also those of [`LineSource::OnDevice`], which need compute shaders, storage buffers in vertex shaders and
     /// indirect drawing ([`wgpu::DownlevelFlags::COMPUTE_SHADERS`], [`wgpu::DownlevelFlags::VERTEX_STORAGE`],
     /// [`wgpu::DownlevelFlags::INDIRECT_EXECUTION`]).
-    pub fn new(device: &wgpu::Device, color_format: wgpu::TextureFormat, on_device: bool) -> Self {
+    ///
+    /// # Errors
+    /// [`OutlineError::SrgbTarget`]; [`OutlineError::ViewFormat`] for a format that is no color of floats.
+    pub fn new(
+        device: &wgpu::Device,
+        color_format: wgpu::TextureFormat,
+        on_device: bool,
+    ) -> Result<Self, OutlineError> {
+        check_color_format(device, color_format)?;
         let layout = |label, entries: &[wgpu::BindGroupLayoutEntry]| {
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
         };
@@ -215,7 +228,14 @@ impl LinePass {
             });
             OnDevicePipelines { pulled_layout, compaction_layout, compaction, pulled_pipeline }
         });
-        Self { view_layout, picture_layout, nearest: nearest_sampler(device), record_pipeline, on_device }
+        Ok(Self {
+            view_layout,
+            picture_layout,
+            nearest: nearest_sampler(device),
+            record_pipeline,
+            on_device,
+            color_format,
+        })
     }
 
     /// Sends a model's edges to the device: 52 bytes an edge and 12 a position.
@@ -284,10 +304,12 @@ impl LinePass {
 
     /// Records finding and drawing a frame's lines.
     ///
-    /// `eye`: world space, a point with w = 1 or the direction to the viewer with w = 0.
+    /// `eye`: world space, a point with w = 1 or the direction to the viewer with w = 0. The depth of
+    /// [`LineView::clip_from_world`] is reversed: 1 at the near plane, falling with distance.
     ///
     /// # Errors
-    /// [`OutlineError::Width`]; [`OutlineError::TooManyEdges`] where the records do not fit a buffer.
+    /// [`OutlineError::Width`]; [`OutlineError::TooManyEdges`] where the records do not fit a buffer; if a texture is not
+    /// as [`LineTargets`] says; [`OutlineError::StandardDepth`], where the matrix can be judged. Nothing is recorded then.
     #[expect(clippy::too_many_arguments, reason = "each is a thing of its own; a struct would only rename them")]
     pub fn record(
         &self,
@@ -300,6 +322,7 @@ impl LinePass {
         targets: &LineTargets<'_>,
     ) -> Result<(), OutlineError> {
         look.validate()?;
+        self.check(view, eye, targets)?;
         let uniform = OutlineUniform::new(look, view, eye, source);
         let uniform = filled_buffer(device, "outline view", bytemuck::bytes_of(&uniform), wgpu::BufferUsages::UNIFORM);
         let group = |layout, resources: &[_]| bind_group(device, "outline", layout, resources);
@@ -354,6 +377,24 @@ impl LinePass {
         }
         drop(pass);
         Ok(())
+    }
+
+    /// Refuses what the pass cannot draw right with.
+    fn check(&self, view: &LineView, eye: DVec4, targets: &LineTargets<'_>) -> Result<(), OutlineError> {
+        let towards_viewer = (eye.w == 0.0).then(|| eye.truncate());
+        check_reversed(&view.clip_from_world, towards_viewer)?;
+        let size_px = Some([view.viewport_px.x as u32, view.viewport_px.y as u32]);
+        let is_float = |format: wgpu::TextureFormat| {
+            !format.has_depth_aspect()
+                && matches!(format.sample_type(None, None), Some(wgpu::TextureSampleType::Float { .. }))
+        };
+        let is_depth =
+            |format: wgpu::TextureFormat| format.has_depth_aspect() || format == wgpu::TextureFormat::R32Float;
+        check_view("a picture without lines", targets.painted, "a color format of floats", is_float, size_px)?;
+        check_view("the scene's depth", targets.depth, "a depth format or R32Float", is_depth, size_px)?;
+        let needed = "the format that the pass was made for";
+        check_view("a target", targets.inked, needed, |format| is_same(format, self.color_format), size_px)?;
+        check_view("the coverage target", targets.winner, "Depth16Unorm", |format| format == WINNER_FORMAT, size_px)
     }
 
     /// Records the compute pass alone: afterwards [`EdgesOnDevice::lines`] holds the lines' numbers.

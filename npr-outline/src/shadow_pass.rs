@@ -15,6 +15,7 @@ use crate::OutlineError;
 use crate::filled_buffer::filled_buffer;
 use crate::shader::assemble;
 use crate::shadow_volume::{ShadowCasters, VolumeEdge, VolumeFace};
+use crate::target::{check_area, check_no_far_plane, check_reversed, check_view, size, towards_viewer};
 use glam::{DMat4, DVec4};
 
 /// WGSL of [`crate::shadow_volume`]: no bindings, no entry points.
@@ -89,6 +90,8 @@ pub struct ShadowPass {
     caps: [wgpu::RenderPipeline; 2],
     /// The same of triangles that are there already.
     placed: [wgpu::RenderPipeline; 2],
+    format: wgpu::TextureFormat,
+    unclipped: bool,
 }
 
 /// Vertices of one sweep of an edge, and of the caps of a face, for a light far away and for one near.
@@ -99,8 +102,12 @@ impl ShadowPass {
     /// Makes the pipelines.
     ///
     /// - `format`: of the depth buffer, reversed, with a stencil: `Depth32FloatStencil8` where there is that.
-    /// - `unclipped`: needed for parallel views, whose depth ends; asks for `Features::DEPTH_CLIP_CONTROL`.
-    pub fn new(device: &wgpu::Device, format: wgpu::TextureFormat, unclipped: bool) -> Self {
+    /// - `unclipped`: needed for parallel views and others with a far plane; asks for `Features::DEPTH_CLIP_CONTROL`.
+    ///
+    /// # Errors
+    /// [`OutlineError::ViewFormat`] for a format without depth or without stencil.
+    pub fn new(device: &wgpu::Device, format: wgpu::TextureFormat, unclipped: bool) -> Result<Self, OutlineError> {
+        check_depth_stencil_format(format)?;
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("shadow volumes"),
             source: wgpu::ShaderSource::Wgsl(wgsl().into()),
@@ -192,7 +199,8 @@ impl ShadowPass {
             attributes: &wgpu::vertex_attr_array![0 => Float32x4],
         };
         let placed = [false, true].map(|turned| pipeline("vs_placed", placed_buffer.clone(), &[], turned));
-        Self { sides: SWEEP_VERTICES.map(side), caps: [cap(1.0), cap(-1.0)], placed, layout }
+        let (sides, caps) = (SWEEP_VERTICES.map(side), [cap(1.0), cap(-1.0)]);
+        Ok(Self { sides, caps, placed, layout, format, unclipped })
     }
 
     /// Records the pass: clears the stencil, and counts the volumes against the depth that is there.
@@ -202,6 +210,11 @@ impl ShadowPass {
     /// - `endless`: of a parallel view what [`ShadowCasters::endless`] says of its direction, else 0;
     /// - `area`: left, top, width and height, px, in which there are surfaces: volumes reach to infinity, and what is
     ///   counted before nothing is of no use. All of it without.
+    ///
+    /// # Errors
+    /// If `depth_stencil` is no view of the first level of a texture of the pass's format with one sample a pixel;
+    /// [`OutlineError::Area`]; [`OutlineError::StandardDepth`] and, of a pass with depth clipping,
+    /// [`OutlineError::FarPlane`], where the matrix can be judged. Nothing is recorded then.
     #[expect(clippy::too_many_arguments, reason = "each is a thing of its own; a struct would only rename them")]
     pub fn record(
         &self,
@@ -213,7 +226,14 @@ impl ShadowPass {
         depth_stencil: &wgpu::TextureView,
         endless: u32,
         area: Option<[u32; 4]>,
-    ) {
+    ) -> Result<(), OutlineError> {
+        check_reversed(&clip_from_world, Some(towards_viewer(&clip_from_world)))?;
+        if !self.unclipped {
+            check_no_far_plane(&clip_from_world)?;
+        }
+        let needed = "the format that the pass was made for";
+        check_view("depth and stencil", depth_stencil, needed, |format| format == self.format, None)?;
+        check_area(area, size(depth_stencil))?;
         let local = light - casters.origin.as_dvec3().extend(0.0) * light.w;
         let uniform = ShadowUniform {
             clip_from_world: clip_from_world.as_mat4().to_cols_array_2d(),
@@ -243,7 +263,7 @@ impl ShadowPass {
         pass.set_bind_group(0, &group, &[]);
         if let Some([x, y, width, height]) = area {
             if width == 0 || height == 0 {
-                return;
+                return Ok(());
             }
             pass.set_scissor_rect(x, y, width, height);
         }
@@ -266,7 +286,7 @@ impl ShadowPass {
                 }
             }
             Source::Triangles { vertices, towards, away } => {
-                let Some(vertices) = vertices else { return };
+                let Some(vertices) = vertices else { return Ok(()) };
                 pass.set_vertex_buffer(0, vertices.slice(..));
                 for (pipeline, range) in self.placed.iter().zip([0..*towards, *towards..towards + away]) {
                     if !range.is_empty() {
@@ -276,7 +296,17 @@ impl ShadowPass {
                 }
             }
         }
+        Ok(())
     }
+}
+
+/// Refuses formats without depth or without stencil.
+pub(crate) fn check_depth_stencil_format(format: wgpu::TextureFormat) -> Result<(), OutlineError> {
+    if format.has_depth_aspect() && format.has_stencil_aspect() {
+        return Ok(());
+    }
+    let needed = "a format of depth and stencil, such as Depth32FloatStencil8,";
+    Err(OutlineError::ViewFormat { what: "depth and stencil", format, needed })
 }
 
 /// The whole shader of the pass.

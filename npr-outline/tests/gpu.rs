@@ -6,6 +6,8 @@
 
 #[path = "gpu/device.rs"]
 mod device;
+#[path = "gpu/refusals.rs"]
+mod refusals;
 
 use device::{COLOR_FORMAT, Gpu, Picture, gpu};
 use glam::dcamera::rh::proj::directx as proj;
@@ -76,7 +78,7 @@ fn lines_found_on_the_device_are_those_of_the_scan() {
     if !gpu.compute {
         return println!("skipped: the device does not run compute shaders");
     }
-    let pass = LinePass::new(&gpu.device, COLOR_FORMAT, true);
+    let pass = LinePass::new(&gpu.device, COLOR_FORMAT, true).unwrap();
     let size = [160, 120];
     let (mut borderline, mut lines_in_all) = (0, 0);
     for model in [embedded::cube(), embedded::torus(1.0, 0.4, 48, 24), embedded::teapot(6)] {
@@ -133,7 +135,7 @@ fn width_in_columns(coverage: &[u8], size: [u32; 2], columns: std::ops::Range<u3
 #[test]
 fn widths_are_as_asked_at_any_distance() {
     let Some(gpu) = gpu() else { return };
-    let pass = LinePass::new(&gpu.device, COLOR_FORMAT, false);
+    let pass = LinePass::new(&gpu.device, COLOR_FORMAT, false).unwrap();
     let size = [640, 480];
     let view = line_view(size, DMat4::IDENTITY);
     let picture = gpu.picture(size);
@@ -175,7 +177,7 @@ fn widths_are_as_asked_at_any_distance() {
 #[test]
 fn a_segment_through_the_near_plane_is_cut_there() {
     let Some(gpu) = gpu() else { return };
-    let pass = LinePass::new(&gpu.device, COLOR_FORMAT, false);
+    let pass = LinePass::new(&gpu.device, COLOR_FORMAT, false).unwrap();
     let size = [320, 240];
     let view = line_view(size, DMat4::IDENTITY);
     let picture = gpu.picture(size);
@@ -218,7 +220,7 @@ fn compare(
 #[test]
 fn overlapping_joints_are_not_counted_twice() {
     let Some(gpu) = gpu() else { return };
-    let pass = LinePass::new(&gpu.device, COLOR_FORMAT, false);
+    let pass = LinePass::new(&gpu.device, COLOR_FORMAT, false).unwrap();
     let size = [320, 240];
     let view = line_view(size, DMat4::IDENTITY);
     let ends = [DVec3::new(-0.5, -0.31, -1.0), DVec3::new(0.61, 0.4, -1.0)];
@@ -267,7 +269,7 @@ impl Random {
 #[test]
 fn coverage_is_that_of_the_twin() {
     let Some(gpu) = gpu() else { return };
-    let pass = LinePass::new(&gpu.device, COLOR_FORMAT, false);
+    let pass = LinePass::new(&gpu.device, COLOR_FORMAT, false).unwrap();
     let size = [128, 96];
     let view = line_view(size, DMat4::IDENTITY);
     let picture = gpu.picture(size);
@@ -371,7 +373,7 @@ fn printed_fins_are_those_of_the_rasteriser() {
         let eye = (centre + Vec3::new(3.1, 2.3, 4.2)).as_dvec3();
         let lines = line_view(size, look_at_mat4(eye, centre.as_dvec3(), DVec3::Y));
         for format in NormalFormat::ALL {
-            let pass = FinPass::new(&gpu.device, COLOR_FORMAT, format);
+            let pass = FinPass::new(&gpu.device, COLOR_FORMAT, format).unwrap();
             let on_device = pass.upload(&gpu.device, &fins).unwrap();
             let quantised = fins.quantised(format);
             for depth in [FinDepth::Eye, FinDepth::Printed { near: NEAR, far: 50.0 }] {
@@ -388,7 +390,7 @@ fn printed_fins_are_those_of_the_rasteriser() {
                 let targets = picture.targets();
                 let mut encoder = gpu.device.create_command_encoder(&Default::default());
                 let ink = [0.0, 0.0, 0.0, 1.0];
-                pass.record(&gpu.device, &mut encoder, &on_device, &view, ink, targets.painted, targets.depth);
+                pass.record(&gpu.device, &mut encoder, &on_device, &view, ink, targets.painted, targets.depth).unwrap();
                 gpu.queue.submit([encoder.finish()]);
                 let got = gpu.read_texture(&picture.color, 4);
                 let mut unhidden = 0;
@@ -505,7 +507,7 @@ fn the_mask_is_what_the_twin_says_of_each_count() {
     let stencil = texture(format, wgpu::TextureUsages::empty()).create_view(&Default::default());
     let mask = texture(MASK_FORMAT, wgpu::TextureUsages::COPY_SRC);
     let view = mask.create_view(&Default::default());
-    let pass = ShadowMaskPass::new(&gpu.device, format);
+    let pass = ShadowMaskPass::new(&gpu.device, format).unwrap();
     let counted = ColumnCounts::new(gpu, format);
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     counted.record(&mut encoder, &stencil);
@@ -513,7 +515,7 @@ fn the_mask_is_what_the_twin_says_of_each_count() {
         (None, &(|_: u32, _: u32| true) as &dyn Fn(u32, u32) -> bool),
         (Some(area), &|x, y| (16..216).contains(&x) && (1..3).contains(&y)),
     ] {
-        pass.record(&mut encoder, &stencil, &view, area);
+        pass.record(&mut encoder, &stencil, &view, area).unwrap();
         let submitted = std::mem::replace(&mut encoder, gpu.device.create_command_encoder(&Default::default()));
         gpu.queue.submit([submitted.finish()]);
         for (at, found) in (0u32..).zip(gpu.read_texture(&mask, 1)) {

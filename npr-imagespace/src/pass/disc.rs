@@ -11,7 +11,7 @@
 //! paper is sought, and there is none outside the picture, so that its border eats nothing.
 
 use super::fullscreen::{Bound, Fullscreen, Output, size_px, uniform};
-use super::{INK_FORMAT, InkTarget, Onto};
+use super::{INK_FORMAT, InkTarget, Onto, check_ink, check_view};
 use crate::ImageSpaceError;
 use crate::composite::Composite;
 use crate::morphology::Operation;
@@ -95,26 +95,27 @@ struct Half<'a> {
 
 impl DiscPass {
     /// Makes the pipelines.
-    pub fn new(device: &wgpu::Device, target: InkTarget) -> Self {
+    ///
+    /// # Errors
+    /// [`ImageSpaceError::SrgbPicture`], [`ImageSpaceError::PictureFormat`].
+    pub fn new(device: &wgpu::Device, target: InkTarget) -> Result<Self, ImageSpaceError> {
+        target.check(device)?;
         let pipeline =
             |label, texture, output| Fullscreen::new(device, label, DISC, &[Bound::Uniform, texture], &[], output);
-        Self {
+        Ok(Self {
             bits: pipeline("bits", Bound::Float, Output::Whole(WORD_FORMAT)),
             row: pipeline("row", Bound::Whole, Output::Whole(SITE_FORMAT)),
             column: pipeline("column", Bound::Whole, Output::Whole(SITE_FORMAT)),
             resolve: pipeline("resolve", Bound::Whole, Output::Ink(target)),
             resolve_half: pipeline("resolve", Bound::Whole, Output::Ink(InkTarget::Ink)),
-        }
+        })
     }
 
-    /// Records an operation by a disc over `ink`, [`INK_FORMAT`], of the target's size; `scratch` is made for that
-    /// size. Line pixels are those with ink 128 and more.
+    /// Records an operation by a disc over `ink`, of format [`INK_FORMAT`] and the target's size; `scratch` is made for
+    /// that size. Line pixels are those with ink 128 and more.
     ///
     /// # Errors
-    /// If the radius is not within 0..=[`RADIUS_MOST_PX`].
-    ///
-    /// # Panics
-    /// If `scratch` is made for another size than that of `ink`.
+    /// If the radius is not within 0..=[`RADIUS_MOST_PX`]; if a texture is not as [`crate::pass`] says.
     #[expect(clippy::too_many_arguments, reason = "each is a thing of its own")]
     pub fn record(
         &self,
@@ -129,8 +130,9 @@ impl DiscPass {
         if !(0.0..=RADIUS_MOST_PX).contains(&disc.radius_px) {
             return Err(ImageSpaceError::Radius { radius_px: disc.radius_px });
         }
-        let size = size_px(ink);
-        assert_eq!(size, size_px(&scratch.ink), "textures for another size");
+        let size = self.resolve.check(onto)?;
+        check_ink(ink, Some(size))?;
+        check_view("the scratch textures", &scratch.ink, INK_FORMAT, "R8Unorm", Some(size))?;
         let plan = disc_plan(disc);
         let halves: Vec<_> = operation.halves().map(|eroding| Half { disc, plan: &plan, eroding }).collect();
         if let [first, second] = halves[..] {

@@ -1,6 +1,7 @@
 //! What all passes share: a triangle over the target, bindings in a row, and how ink is put out.
 
 use super::{INK_FORMAT, InkTarget, Onto, assemble};
+use crate::ImageSpaceError;
 use crate::composite::{Composite, CompositeUniform};
 use glam::Vec3;
 
@@ -103,6 +104,14 @@ impl Fullscreen {
             cache: None,
         });
         Self { pipeline, layout, output, label }
+    }
+
+    /// Refuses a target that the pipeline is not made for. Returns its size, px.
+    pub(super) fn check(&self, onto: &Onto<'_>) -> Result<[u32; 2], ImageSpaceError> {
+        match self.output {
+            Output::Ink(target) => onto.check(target),
+            Output::Whole(_) => Ok(size_px(onto.view)),
+        }
     }
 
     /// What it binds. `resources` are those of [`Fullscreen::new`]'s `bound`; `composite` is not looked at but for

@@ -1,7 +1,8 @@
 //! Ink over a picture, also of another size: see [`crate::resample`].
 
 use super::fullscreen::{Bound, Fullscreen, Output, flag, size_px, uniform};
-use super::{InkTarget, Onto};
+use super::{InkTarget, Onto, check_ink};
+use crate::ImageSpaceError;
 
 pub(super) const LAY: (&str, &str) = ("pass/lay.wgsl", include_str!("lay.wgsl"));
 
@@ -13,29 +14,38 @@ pub struct LayPass {
 }
 
 impl LayPass {
-    /// Makes the pipelines. Onto [`InkTarget::Ink`] the ink is brought to that picture's size.
-    pub fn new(device: &wgpu::Device, target: InkTarget) -> Self {
+    /// Makes the pipelines. With [`InkTarget::Ink`] the ink is resampled to the size of another ink picture.
+    ///
+    /// # Errors
+    /// [`ImageSpaceError::SrgbPicture`], [`ImageSpaceError::PictureFormat`].
+    pub fn new(device: &wgpu::Device, target: InkTarget) -> Result<Self, ImageSpaceError> {
+        target.check(device)?;
         let pipeline = |same| {
             let bound = [Bound::Uniform, Bound::Float];
             Fullscreen::new(device, "lay", LAY, &bound, &[flag("same_size", same)], Output::Ink(target))
         };
-        Self { same: pipeline(true), scaled: pipeline(false) }
+        Ok(Self { same: pipeline(true), scaled: pipeline(false) })
     }
 
-    /// Records laying `ink`, [`super::INK_FORMAT`] of any size, over the target. Sizes are those of the views'
-    /// textures: a target that is a smaller level of its texture is not told from the largest.
+    /// Records compositing `ink`, of format [`super::INK_FORMAT`] and any size, over the target.
+    ///
+    /// # Errors
+    /// If a texture is not as [`crate::pass`] says.
     pub fn record(
         &self,
         device: &wgpu::Device,
         encoder: &mut wgpu::CommandEncoder,
         ink: &wgpu::TextureView,
         onto: &Onto<'_>,
-    ) {
-        let (from, to) = (size_px(ink), size_px(onto.view));
+    ) -> Result<(), ImageSpaceError> {
+        let to = self.same.check(onto)?;
+        check_ink(ink, None)?;
+        let from = size_px(ink);
         let scale = [from[0] as f32 / to[0] as f32, from[1] as f32 / to[1] as f32, 0.0, 0.0];
         let scale = uniform(device, bytemuck::bytes_of(&scale));
         let resources = [scale.as_entire_binding(), wgpu::BindingResource::TextureView(ink)];
         let draw = if from == to { &self.same } else { &self.scaled };
         draw.record(device, encoder, &resources, onto);
+        Ok(())
     }
 }

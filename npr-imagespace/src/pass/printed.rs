@@ -2,7 +2,7 @@
 //! [`crate::format::printed`] for what the target holds.
 
 use super::fullscreen::{Bound, Fullscreen, Output, flag, uniform};
-use super::{InkTarget, Onto};
+use super::{InkTarget, Onto, check_view};
 use crate::ImageSpaceError;
 use crate::filter::inker::InkerUniform;
 use crate::filter::printed::{PrintedFilter, PrintedUniform};
@@ -44,7 +44,11 @@ pub struct PrintedPass {
 
 impl PrintedPass {
     /// Makes the pipeline.
-    pub fn new(device: &wgpu::Device, filter: &PrintedFilter, target: InkTarget) -> Self {
+    ///
+    /// # Errors
+    /// [`ImageSpaceError::SrgbPicture`], [`ImageSpaceError::PictureFormat`].
+    pub fn new(device: &wgpu::Device, filter: &PrintedFilter, target: InkTarget) -> Result<Self, ImageSpaceError> {
+        target.check(device)?;
         let kind = Kind::from(filter);
         let (label, normal, depth, taps) = match kind {
             Kind::Edges { normal, depth, taps } => ("printed", normal, depth, taps),
@@ -57,16 +61,14 @@ impl PrintedPass {
             flag("cross_taps", taps == Taps::Cross),
         ];
         let bound = [Bound::Uniform, Bound::Float];
-        Self { draw: Fullscreen::new(device, label, PRINTED, &bound, &constants, Output::Ink(target)), kind }
+        Ok(Self { draw: Fullscreen::new(device, label, PRINTED, &bound, &constants, Output::Ink(target)), kind })
     }
 
-    /// Records filtering `texels`, `Rgba8Unorm` of the target's size.
+    /// Records filtering `texels`, of format `Rgba8Unorm` and the target's size.
     ///
     /// # Errors
-    /// If a threshold, or the inker's softness, is out of its range.
-    ///
-    /// # Panics
-    /// If the filter looks for anything else than what the pass was made for.
+    /// If a threshold, or the inker's softness, is out of its range; [`ImageSpaceError::OtherFilter`] if the filter
+    /// looks for anything else than what the pass was made for; if a texture is not as [`crate::pass`] says.
     pub fn record(
         &self,
         device: &wgpu::Device,
@@ -75,7 +77,11 @@ impl PrintedPass {
         texels: &wgpu::TextureView,
         onto: &Onto<'_>,
     ) -> Result<(), ImageSpaceError> {
-        assert_eq!(Kind::from(filter), self.kind, "a pass for another filter");
+        if Kind::from(filter) != self.kind {
+            return Err(ImageSpaceError::OtherFilter);
+        }
+        let size = self.draw.check(onto)?;
+        check_view("texels", texels, wgpu::TextureFormat::Rgba8Unorm, "Rgba8Unorm", Some(size))?;
         let what = match filter {
             PrintedFilter::Edges(edges) => uniform(device, bytemuck::bytes_of(&PrintedUniform::new(edges)?)),
             PrintedFilter::Inker(inker) if !(inker.softness >= 0.0 && inker.softness.is_finite()) => {

@@ -2,7 +2,7 @@
 //! of a depth buffer are read.
 
 use super::fullscreen::{Bound, Fullscreen, Output, flag, uniform};
-use super::{InkTarget, Onto};
+use super::{InkTarget, Onto, check_samples_and_size};
 use crate::ImageSpaceError;
 use crate::filter::separate::{SeparateDepthTest, SeparateFilter, SeparateUniform};
 use crate::picture::Taps;
@@ -18,6 +18,30 @@ pub struct SeparateTextures<'a> {
     pub depth: Option<&'a wgpu::TextureView>,
     /// Any format of unsigned whole numbers, the first channel: `R8Uint`, `R16Uint`, `R32Uint`.
     pub region: Option<&'a wgpu::TextureView>,
+}
+
+/// Which formats a texture may have.
+#[derive(Clone, Copy)]
+struct Accept {
+    needed: &'static str,
+    accepts: fn(wgpu::TextureFormat, wgpu::Features) -> bool,
+}
+
+const NORMALS: Accept = Accept {
+    needed: "a format of floats with three channels or more, and not sRGB,",
+    accepts: |format, features| is_float(format, features) && format.components() >= 3 && !format.is_srgb(),
+};
+const DEPTHS: Accept = Accept {
+    needed: "a format of floats or of depth",
+    accepts: |format, features| format.has_depth_aspect() || is_float(format, features),
+};
+const REGIONS: Accept = Accept {
+    needed: "a format of unsigned whole numbers",
+    accepts: |format, features| format.sample_type(None, Some(features)) == Some(wgpu::TextureSampleType::Uint),
+};
+
+fn is_float(format: wgpu::TextureFormat, features: wgpu::Features) -> bool {
+    matches!(format.sample_type(None, Some(features)), Some(wgpu::TextureSampleType::Float { .. }))
 }
 
 /// What a pipeline is made for.
@@ -60,7 +84,11 @@ pub struct SeparatePass {
 
 impl SeparatePass {
     /// Makes the pipeline.
-    pub fn new(device: &wgpu::Device, filter: &SeparateFilter, target: InkTarget) -> Self {
+    ///
+    /// # Errors
+    /// [`ImageSpaceError::SrgbPicture`], [`ImageSpaceError::PictureFormat`].
+    pub fn new(device: &wgpu::Device, filter: &SeparateFilter, target: InkTarget) -> Result<Self, ImageSpaceError> {
+        target.check(device)?;
         let kind = Kind::from(filter);
         let constants = [
             flag("with_normal", kind.normal),
@@ -83,21 +111,20 @@ impl SeparatePass {
             });
             texture.create_view(&Default::default())
         });
-        Self {
+        Ok(Self {
             draw: Fullscreen::new(device, "separate", SEPARATE, &bound, &constants, Output::Ink(target)),
             kind,
             none,
             nearest: device.create_sampler(&wgpu::SamplerDescriptor { label: Some("nearest"), ..Default::default() }),
-        }
+        })
     }
 
     /// Records filtering the textures.
     ///
     /// # Errors
-    /// If a threshold is out of its range, or a depth buffer's numbers make no depths.
-    ///
-    /// # Panics
-    /// If the filter looks for anything else than what the pass was made for, or in a texture that is not given.
+    /// If a threshold is out of its range, or a depth buffer's numbers make no depths; [`ImageSpaceError::OtherFilter`]
+    /// if the filter looks for anything else than what the pass was made for; [`ImageSpaceError::MissingTexture`] if it
+    /// reads a texture that is not given; if a texture is not as [`crate::pass`] and [`SeparateTextures`] say.
     pub fn record(
         &self,
         device: &wgpu::Device,
@@ -107,17 +134,29 @@ impl SeparatePass {
         onto: &Onto<'_>,
     ) -> Result<(), ImageSpaceError> {
         let what = SeparateUniform::new(filter)?;
-        assert_eq!(Kind::from(filter), self.kind, "a pass for another filter");
+        if Kind::from(filter) != self.kind {
+            return Err(ImageSpaceError::OtherFilter);
+        }
+        let size = self.draw.check(onto)?;
         let what = uniform(device, bytemuck::bytes_of(&what));
-        let texture = |asked: bool, given: Option<&wgpu::TextureView>, none: &wgpu::TextureView| {
-            assert!(!asked || given.is_some(), "a texture that is filtered is not given");
-            if asked { given.unwrap_or(none).clone() } else { none.clone() }
-        };
+        let texture =
+            |what, asked: bool, given: Option<&wgpu::TextureView>, none: &wgpu::TextureView, accept: Accept| {
+                if !asked {
+                    return Ok(none.clone());
+                }
+                let given = given.ok_or(ImageSpaceError::MissingTexture { what })?;
+                let format = given.texture().format();
+                if !(accept.accepts)(format, device.features()) {
+                    return Err(ImageSpaceError::ViewFormat { what, format, needed: accept.needed });
+                }
+                check_samples_and_size(what, given, Some(size))?;
+                Ok(given.clone())
+            };
         let [no_float, no_whole] = &self.none;
         let views = [
-            texture(self.kind.normal, textures.normal, no_float),
-            texture(self.kind.depth != 0, textures.depth, no_float),
-            texture(self.kind.region, textures.region, no_whole),
+            texture("normals", self.kind.normal, textures.normal, no_float, NORMALS)?,
+            texture("depths", self.kind.depth != 0, textures.depth, no_float, DEPTHS)?,
+            texture("region numbers", self.kind.region, textures.region, no_whole, REGIONS)?,
         ];
         let [normal, depth, region] = views.each_ref().map(wgpu::BindingResource::TextureView);
         let nearest = wgpu::BindingResource::Sampler(&self.nearest);

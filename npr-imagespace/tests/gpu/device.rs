@@ -6,6 +6,8 @@ use std::sync::OnceLock;
 pub struct Gpu {
     pub device: wgpu::Device,
     pub queue: wgpu::Queue,
+    /// Whether a view can have another format than its texture, as far as sRGB goes.
+    pub view_formats: bool,
 }
 
 /// The device that the tests share, or `None`, having said so, where `NPR_GPU` is `off`, or there is no adapter and
@@ -37,7 +39,8 @@ fn open(required: bool) -> Option<Gpu> {
     };
     let descriptor = wgpu::DeviceDescriptor { required_limits, ..Default::default() };
     let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).expect("an adapter gives a device");
-    Some(Gpu { device, queue })
+    let view_formats = adapter.get_downlevel_capabilities().flags.contains(wgpu::DownlevelFlags::VIEW_FORMATS);
+    Some(Gpu { device, queue, view_formats })
 }
 
 impl Gpu {

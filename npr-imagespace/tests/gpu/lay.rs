@@ -26,7 +26,8 @@ const SIZES: [([u32; 2], [u32; 2]); 11] = [
 #[test]
 fn ink_of_any_size_is_laid_as_the_cpu_lays_it() {
     let Some(gpu) = gpu() else { return };
-    let (on_ink, on_picture) = (LayPass::new(&gpu.device, InkTarget::Ink), LayPass::new(&gpu.device, PICTURE));
+    let (on_ink, on_picture) =
+        (LayPass::new(&gpu.device, InkTarget::Ink).unwrap(), LayPass::new(&gpu.device, PICTURE).unwrap());
     let mut random = Random(7);
     let mut borderline = 0;
     for (size, ink_size) in SIZES {
@@ -34,7 +35,7 @@ fn ink_of_any_size_is_laid_as_the_cpu_lays_it() {
             let from = view(&gpu.upload(INK_FORMAT, ink_size, &ink));
             let expected = resample(&ink, px(ink_size), px(size)).unwrap();
             let got = drawn(gpu, size, InkTarget::Ink, &Composite::default(), None, |encoder, onto| {
-                on_ink.record(&gpu.device, encoder, &from, onto);
+                on_ink.record(&gpu.device, encoder, &from, onto).unwrap();
             });
             assert!(difference(&got, &expected) <= 1, "{size:?} {ink_size:?}");
             if size == ink_size {
@@ -42,7 +43,7 @@ fn ink_of_any_size_is_laid_as_the_cpu_lays_it() {
             }
             for composite in COMPOSITES {
                 let got = drawn(gpu, size, PICTURE, &composite, None, |encoder, onto| {
-                    on_picture.record(&gpu.device, encoder, &from, onto);
+                    on_picture.record(&gpu.device, encoder, &from, onto).unwrap();
                 });
                 let mut pixels: Vec<[u8; 4]> = bytemuck::pod_collect_to_vec(&before(size, PICTURE));
                 lay_picture(&mut pixels, px(size), &ink, px(ink_size), &composite).unwrap();
@@ -60,8 +61,10 @@ fn ink_is_laid_within_its_area() {
     for (size, ink_size) in [([61, 37], [61, 37]), ([61, 37], [30, 18])] {
         let from = view(&gpu.upload(INK_FORMAT, ink_size, &inks(ink_size, &mut Random(8))[4]));
         for target in [InkTarget::Ink, PICTURE] {
-            let pass = LayPass::new(&gpu.device, target);
-            assert_areas(gpu, size, target, |encoder, onto| pass.record(&gpu.device, encoder, &from, onto));
+            let pass = LayPass::new(&gpu.device, target).unwrap();
+            assert_areas(gpu, size, target, |encoder, onto| {
+                pass.record(&gpu.device, encoder, &from, onto).unwrap();
+            });
         }
     }
 }
@@ -74,22 +77,22 @@ fn other_formats_of_pictures_take_lines_too() {
     let from = view(&gpu.upload(INK_FORMAT, size, &ink));
     let red = Composite::Over { color: glam::Vec3::X, opacity: 1.0 };
     let bgra = wgpu::TextureFormat::Bgra8Unorm;
-    let pass = LayPass::new(&gpu.device, InkTarget::Picture(bgra));
+    let pass = LayPass::new(&gpu.device, InkTarget::Picture(bgra)).unwrap();
     let texture = gpu.upload(bgra, size, &[0, 0, 0, 9].repeat(20));
     let onto = view(&texture);
     gpu.run(|encoder| {
         let onto = npr_imagespace::pass::Onto { view: &onto, composite: &red, area: None };
-        pass.record(&gpu.device, encoder, &from, &onto);
+        pass.record(&gpu.device, encoder, &from, &onto).unwrap();
     });
     let expected: Vec<u8> = ink.iter().flat_map(|&ink| [0, 0, ink, 9]).collect();
     assert_eq!(gpu.read(&texture), expected);
     let half = wgpu::TextureFormat::Rgba16Float;
-    let pass = LayPass::new(&gpu.device, InkTarget::Picture(half));
+    let pass = LayPass::new(&gpu.device, InkTarget::Picture(half)).unwrap();
     let texture = gpu.upload(half, size, bytemuck::cast_slice(&[0u16, 0, 0, 0x3c00].repeat(20)));
     let onto = view(&texture);
     gpu.run(|encoder| {
         let onto = npr_imagespace::pass::Onto { view: &onto, composite: &red, area: None };
-        pass.record(&gpu.device, encoder, &from, &onto);
+        pass.record(&gpu.device, encoder, &from, &onto).unwrap();
     });
     let halves: Vec<u16> = bytemuck::pod_collect_to_vec(&gpu.read(&texture));
     for (got, &ink) in halves.chunks(4).zip(&ink) {

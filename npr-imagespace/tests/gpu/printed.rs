@@ -65,8 +65,8 @@ fn edges_are_those_of_the_cpu() {
             let edges = PrintedEdges { taps, ..edges };
             let filter = PrintedFilter::Edges(edges);
             let uniform = PrintedUniform::new(&edges).unwrap();
-            let on_ink = PrintedPass::new(&gpu.device, &filter, InkTarget::Ink);
-            let on_picture = PrintedPass::new(&gpu.device, &filter, PICTURE);
+            let on_ink = PrintedPass::new(&gpu.device, &filter, InkTarget::Ink).unwrap();
+            let on_picture = PrintedPass::new(&gpu.device, &filter, PICTURE).unwrap();
             for size in SIZES {
                 for texels in pictures(size, &mut random) {
                     if size != SIZES[8] && random.below(4) > 0 {
@@ -113,7 +113,7 @@ fn the_inker_is_that_of_the_cpu() {
                 ..inker
             });
             let filter = PrintedFilter::Inker(inker);
-            let pass = PrintedPass::new(&gpu.device, &filter, InkTarget::Ink);
+            let pass = PrintedPass::new(&gpu.device, &filter, InkTarget::Ink).unwrap();
             for size in SIZES {
                 for texels in pictures(size, &mut random) {
                     let from = view(&gpu.upload(wgpu::TextureFormat::Rgba8Unorm, size, texels.as_flattened()));
@@ -148,7 +148,7 @@ fn lines_are_drawn_within_their_area() {
     let from = view(&gpu.upload(wgpu::TextureFormat::Rgba8Unorm, size, texels.as_flattened()));
     for filter in [PrintedFilter::default(), PrintedFilter::Inker(Inker::default())] {
         for target in [InkTarget::Ink, PICTURE] {
-            let pass = PrintedPass::new(&gpu.device, &filter, target);
+            let pass = PrintedPass::new(&gpu.device, &filter, target).unwrap();
             assert_areas(gpu, size, target, |encoder, onto| {
                 pass.record(&gpu.device, encoder, &filter, &from, onto).unwrap();
             });
@@ -171,7 +171,7 @@ fn thresholds_out_of_range_are_refused() {
     }
     let Some(gpu) = gpu() else { return };
     let filter = PrintedFilter::Inker(Inker { softness: f32::NAN, ..Default::default() });
-    let pass = PrintedPass::new(&gpu.device, &filter, InkTarget::Ink);
+    let pass = PrintedPass::new(&gpu.device, &filter, InkTarget::Ink).unwrap();
     let from = view(&gpu.texture(wgpu::TextureFormat::Rgba8Unorm, [2, 2]));
     drawn(gpu, [2, 2], InkTarget::Ink, &Composite::default(), None, |encoder, onto| {
         let refused = pass.record(&gpu.device, encoder, &filter, &from, onto).unwrap_err();

@@ -152,8 +152,8 @@ fn ink_and_pictures_are_those_of_the_cpu() {
         for softness in [0.0, 0.3] {
             for filter in filters() {
                 let filter = SeparateFilter { taps, softness, ..filter };
-                let on_ink = SeparatePass::new(&gpu.device, &filter, InkTarget::Ink);
-                let on_picture = SeparatePass::new(&gpu.device, &filter, PICTURE);
+                let on_ink = SeparatePass::new(&gpu.device, &filter, InkTarget::Ink).unwrap();
+                let on_picture = SeparatePass::new(&gpu.device, &filter, PICTURE).unwrap();
                 for size in SIZES {
                     for texels in pictures(size, &mut random) {
                         if size != SIZES[8] && random.below(3) > 0 {
@@ -190,7 +190,7 @@ fn plain_tests_of_depth_are_those_of_the_cpu() {
         for softness in [0.0, 0.5] {
             let test = SeparateDepthTest::Plain { form, threshold: 0.02 };
             let filter = SeparateFilter { softness, ..depth_test(test) };
-            let pass = SeparatePass::new(&gpu.device, &filter, InkTarget::Ink);
+            let pass = SeparatePass::new(&gpu.device, &filter, InkTarget::Ink).unwrap();
             for size in SIZES {
                 let near: Texels = seen(size)
                     .iter()
@@ -268,7 +268,7 @@ fn depth_buffers_and_small_formats_are_read() {
         for softness in [0.0, 0.4] {
             let normal = Some(SeparateNormal { biased: true, ..Default::default() });
             let filter = SeparateFilter { normal, depth: Some(depth), softness, ..Default::default() };
-            let pass = SeparatePass::new(&gpu.device, &filter, InkTarget::Ink);
+            let pass = SeparatePass::new(&gpu.device, &filter, InkTarget::Ink).unwrap();
             for (what, texture) in [("depth buffer", &buffer), ("float", &floats)] {
                 let textures =
                     SeparateTextures { normal: Some(&normals), depth: Some(texture), region: Some(&regions) };
@@ -299,7 +299,7 @@ fn a_plain_measure_equal_to_its_threshold_is_ink() {
     // In a row each neighbour is two of the four taps; the first and the last are on one side of the pixel.
     for (form, threshold) in [(DepthPlain::Any, 0.25), (DepthPlain::Sum, 0.5), (DepthPlain::SumPrinted, 0.5)] {
         let filter = depth_test(SeparateDepthTest::Plain { form, threshold });
-        let pass = SeparatePass::new(&gpu.device, &filter, InkTarget::Ink);
+        let pass = SeparatePass::new(&gpu.device, &filter, InkTarget::Ink).unwrap();
         for (far, is_reached) in [(0.75f32, true), (0.75f32.next_down(), false), (0.75f32.next_up(), true)] {
             let texels: Texels =
                 [0.5, 0.5, 0.5, far, far, far].map(|depth| SeparateTexel { depth, ..NOTHING }).to_vec();
@@ -326,7 +326,7 @@ fn a_cleared_depth_buffer_is_background_even_beside_the_far_end() {
     ] {
         let depth = SeparateDepth { source, ..Default::default() };
         let filter = SeparateFilter { depth: Some(depth), ..NONE };
-        let pass = SeparatePass::new(&gpu.device, &filter, InkTarget::Ink);
+        let pass = SeparatePass::new(&gpu.device, &filter, InkTarget::Ink).unwrap();
         let buffer = view(&gpu.depth_buffer(size, &d));
         let got = drawn(gpu, size, InkTarget::Ink, &Composite::default(), None, |encoder, onto| {
             let textures = SeparateTextures { depth: Some(&buffer), ..Default::default() };
@@ -341,7 +341,7 @@ fn halves_and_signed_bytes_are_normals_too() {
     let Some(gpu) = gpu() else { return };
     let size = [61, 37];
     let filter = SeparateFilter { normal: Some(SeparateNormal::default()), ..NONE };
-    let pass = SeparatePass::new(&gpu.device, &filter, InkTarget::Ink);
+    let pass = SeparatePass::new(&gpu.device, &filter, InkTarget::Ink).unwrap();
     let mut count = Count::default();
     let scene = seen(size);
     let halves: Vec<[u16; 4]> =
@@ -404,7 +404,7 @@ fn lines_are_drawn_within_their_area() {
     let (size, filter) = ([61, 37], SeparateFilter::default());
     let views = textures(gpu, size, &seen(size));
     for target in [InkTarget::Ink, PICTURE] {
-        let pass = SeparatePass::new(&gpu.device, &filter, target);
+        let pass = SeparatePass::new(&gpu.device, &filter, target).unwrap();
         assert_areas(gpu, size, target, |encoder, onto| {
             pass.record(&gpu.device, encoder, &filter, &all(&views), onto).unwrap();
         });
@@ -439,15 +439,4 @@ fn what_makes_no_filter_is_refused() {
         filter_separate(&usual, &[SeparateTexel::default(); 3], px([2, 2])),
         Err(ImageSpaceError::Length { len: 3, size_px: px([2, 2]) })
     );
-}
-
-#[test]
-#[should_panic(expected = "is not given")]
-fn a_texture_that_is_missing_is_told() {
-    let Some(gpu) = gpu() else { panic!("is not given") };
-    let filter = SeparateFilter::default();
-    let pass = SeparatePass::new(&gpu.device, &filter, InkTarget::Ink);
-    drawn(gpu, [2, 2], InkTarget::Ink, &Composite::default(), None, |encoder, onto| {
-        pass.record(&gpu.device, encoder, &filter, &SeparateTextures::default(), onto).unwrap();
-    });
 }
