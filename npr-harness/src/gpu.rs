@@ -72,7 +72,8 @@ impl<'a> GpuRenderer<'a> {
                 &context.device,
                 targets::COLOR_FORMAT,
                 capabilities.can_find_lines(),
-            ),
+            )
+            .expect("a color format without sRGB"),
             capabilities,
             printed: OnceCell::new(),
             ink: Default::default(),
@@ -111,7 +112,10 @@ impl<'a> GpuRenderer<'a> {
     }
 
     fn printed(&self) -> &FinPass {
-        self.printed.get_or_init(|| FinPass::new(&self.context.device, targets::COLOR_FORMAT, NormalFormat::F32))
+        self.printed.get_or_init(|| {
+            FinPass::new(&self.context.device, targets::COLOR_FORMAT, NormalFormat::F32)
+                .expect("a color format without sRGB")
+        })
     }
 
     /// Makes targets of a size, for one sample a pixel.
@@ -213,7 +217,7 @@ impl<'a> GpuRenderer<'a> {
         {
             let view = camera.fin_view(size_px, f64::from(*width_px * scale), bounds);
             let ink = ink.extend(1.0).to_array();
-            self.printed().record(device, &mut encoder, fins, &view, ink, &canvas.color_view, &canvas.depth_view);
+            self.printed().record(device, &mut encoder, fins, &view, ink, &canvas.color_view, &canvas.depth_view)?;
         }
         if targets.samples > 1 {
             self.mean.record(device, &mut encoder, targets.samples, canvas.drawn(), &targets.color_view);

@@ -73,7 +73,9 @@ impl InkPasses {
         let target = if found.is_some() { InkTarget::Ink } else { PICTURE };
         let key = (filter.taps, filter.softness > 0.0, image.ink.layout, target);
         let mut filters = self.filters.borrow_mut();
-        let pass = filters.entry(key).or_insert_with(|| FusedPass::new(device, filter, image.ink.layout, target));
+        let pass = filters.entry(key).or_insert_with(|| {
+            FusedPass::new(device, filter, image.ink.layout, target).expect("a color format without sRGB")
+        });
         let view = found.unwrap_or(&targets.color_view);
         pass.record(device, encoder, filter, &image.code, &ink.texels, &onto(view, ink.size, 1))?;
         let Some(mut line) = found else { return Ok(()) };
@@ -82,7 +84,9 @@ impl InkPasses {
             let thick = ink.thick.as_ref();
             let target = if thick.is_some() { InkTarget::Ink } else { PICTURE };
             let mut brushes = self.brushes.borrow_mut();
-            let pass = brushes.entry(target).or_insert_with(|| DiscPass::new(device, target));
+            let pass = brushes
+                .entry(target)
+                .or_insert_with(|| DiscPass::new(device, target).expect("a color format without sRGB"));
             let onto = onto(thick.unwrap_or(&targets.color_view), ink.size, 1 + brush_px);
             pass.record(device, encoder, Operation::Dilate, disc, line, scratch, &onto)?;
             let Some(thick) = thick else { return Ok(()) };
@@ -90,7 +94,8 @@ impl InkPasses {
         }
         // A pixel of ink is at most two of the picture's, and reaches as far again.
         let onto = onto(&targets.color_view, picture_size, 4 + 2 * brush_px);
-        self.lay.get_or_init(|| LayPass::new(device, PICTURE)).record(device, encoder, line, &onto);
+        let lay = self.lay.get_or_init(|| LayPass::new(device, PICTURE).expect("a color format without sRGB"));
+        lay.record(device, encoder, line, &onto)?;
         Ok(())
     }
 }

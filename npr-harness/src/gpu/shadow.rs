@@ -207,28 +207,29 @@ impl ShadowPasses {
         if parallel && !capabilities.unclipped_depth {
             return Err(GpuError::ParallelVolumes);
         }
-        let pass = self.volumes[usize::from(parallel)].get_or_init(|| ShadowPass::new(device, format, parallel));
+        let pass = self.volumes[usize::from(parallel)]
+            .get_or_init(|| ShadowPass::new(device, format, parallel).expect("a format with a stencil"));
         let aspect = f64::from(frame.size.0) / f64::from(frame.size.1);
         let clip_from_world = frame.camera.clip_from_world(aspect);
         let casting = uploaded.casting.as_ref().expect("what a plan with volumes uploads");
         let endless = if parallel { frame.plan.casters.endless(frame.light, -frame.camera.axes()[2]) } else { 0 };
         let area = scene.bounds().map(|bounds| frame.camera.area(bounds, frame.size, 1));
         let mut draw = |casters: &CastersOnDevice| {
-            pass.record(device, encoder, casters, frame.light, clip_from_world, depth_stencil, endless, area);
+            pass.record(device, encoder, casters, frame.light, clip_from_world, depth_stencil, endless, area)
         };
         match casting {
-            ShadowCasting::OnDevice(casters) => draw(casters),
+            ShadowCasting::OnDevice(casters) => draw(casters)?,
             ShadowCasting::Scanned(last) => {
                 let is_same = last.borrow().as_ref().is_some_and(|(light, _)| *light == frame.light);
                 if !is_same {
                     let scanned = CastersOnDevice::scanned(device, &frame.plan.casters, frame.light)?;
                     *last.borrow_mut() = Some((frame.light, scanned));
                 }
-                draw(&Ref::map(last.borrow(), |last| &last.as_ref().expect("it was just made").1));
+                draw(&Ref::map(last.borrow(), |last| &last.as_ref().expect("it was just made").1))?;
             }
         }
-        let pass = self.mask.get_or_init(|| ShadowMaskPass::new(device, format));
-        pass.record(encoder, depth_stencil, mask, area);
+        let pass = self.mask.get_or_init(|| ShadowMaskPass::new(device, format).expect("a format with a stencil"));
+        pass.record(encoder, depth_stencil, mask, area)?;
         Ok(ShadowOnDevice { uniform, mask: Some(mask.clone()), map: None })
     }
 
