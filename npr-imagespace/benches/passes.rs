@@ -13,8 +13,8 @@
 //! | | 1280 × 720 | 1920 × 1080 |
 //! | --- | --- | --- |
 //! | copy of R8, R32, RG32, RGBA32 | 3.9, 5.9, 7.4, 8.5 | 15, 23, 27, 33 |
-//! | fused, one word, hard; soft | 25 (4.2); 28 (4.6) | 92 (3.9); 81 (3.5) |
-//! | fused, two words, hard; soft | 27 (3.7); 28 (3.7) | 64 (2.4); 106 (3.9) |
+//! | fused, 32 bits, hard; soft | 25 (4.2); 28 (4.6) | 92 (3.9); 81 (3.5) |
+//! | fused, 64 bits, hard; soft | 27 (3.7); 28 (3.7) | 64 (2.4); 106 (3.9) |
 //! | separate, three textures | 51 (6.0) | 178 (5.5) |
 //! | printed edges; inker | 18 (3.0); 13 (2.3) | 54 (2.3); 42 (1.8) |
 //! | step, diagonal; cross; 3 × 3 | 12 (3.1); 13 (3.2); 20 (5.2) | 34 (2.3); 38 (2.6); 79 (5.4) |
@@ -22,11 +22,11 @@
 //! | disc of 4 px | 31 (3.7); 29 (3.4) | 109 (3.4); 108 (3.3) |
 //! | disc of 16 px | 38 (4.5); 38 (4.5) | 149 (4.6); 148 (4.6) |
 //! | disc of 64 px | 54 (5.9); 58 (6.4) | 182 (5.2); 207 (6.0) |
-//! | 3 × 3 to and fro, 4 steps; 16 | 86 (14); 367 (43) | 328 (14); 1317 (41) |
-//! | lay; from half the size; from double | 7.7 (1.0); 15 (2.0); 17 (2.3) | 20 (0.7); 52 (1.9); 56 (2.1) |
+//! | 3 × 3 ping-pong, 4 steps; 16 | 86 (14); 367 (43) | 328 (14); 1317 (41) |
+//! | composite; from half the size; from double | 7.7 (1.0); 15 (2.0); 17 (2.3) | 20 (0.7); 52 (1.9); 56 (2.1) |
 //!
 //! A disc of 64 px takes 1.7 to 2.0 times as long as one of 4, and 2.2 to 2.9 times as long as one 3 × 3 step. Of its
-//! line pixels 0.004 % at most are wrong, where steps to and fro in as many steps are wrong in 3 to 11 % (diagonal, 3
+//! line pixels 0.004 % at most are wrong, where ping-pong of as many steps is wrong in 3 to 11 % (diagonal, 3
 //! × 3) and in 0 to 3.5 % (cross).
 //!
 //! With 1, 2, 3, 4 and 6 for the fan of the plan, a disc of 64 px took 2.7, 2.2, 2.2 to 3.2, 2.2 and 3.0 times as long
@@ -354,7 +354,9 @@ fn bench(gpu: &Gpu, size: [u32; 2]) {
             timed.add(&disc_name(&disc), bytes, run);
         }
     }
-    for (name, ink, bytes) in [("lay", &ink, 1.0), ("lay, half", &half_ink, 0.25), ("lay, double", &double_ink, 4.0)] {
+    for (name, ink, bytes) in
+        [("composite", &ink, 1.0), ("composite, half", &half_ink, 0.25), ("composite, double", &double_ink, 4.0)]
+    {
         let pass = LayPass::new(device, over).expect("a picture that blends");
         let run = move |encoder: &mut wgpu::CommandEncoder| {
             pass.record(device, encoder, ink, &onto_picture).expect("ink of any size");

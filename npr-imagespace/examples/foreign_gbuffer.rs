@@ -29,7 +29,7 @@ struct GBuffer {
     object: Vec<u8>,
 }
 
-/// Where a ray meets something: its parameter, the normal and the object's number.
+/// A hit of a ray: its parameter, the normal and the object's number.
 type Hit = Option<(f32, Vec3, u8)>;
 
 fn nearer(a: Hit, b: Hit) -> Hit {
@@ -64,9 +64,9 @@ fn cuboid(eye: Vec3, ray: Vec3, low: Vec3, high: Vec3, object: u8) -> Hit {
 }
 
 fn cast(eye: Vec3, ray: Vec3) -> Hit {
-    let turned = |v: Vec3| glam::Quat::from_rotation_y(0.6) * v;
+    let rotated = |v: Vec3| glam::Quat::from_rotation_y(0.6) * v;
     let back = |v: Vec3| glam::Quat::from_rotation_y(-0.6) * v;
-    let cube = cuboid(turned(eye), turned(ray), Vec3::new(-1.9, 0.0, -1.1), Vec3::new(-0.5, 1.1, 0.3), 3);
+    let cube = cuboid(rotated(eye), rotated(ray), Vec3::new(-1.9, 0.0, -1.1), Vec3::new(-0.5, 1.1, 0.3), 3);
     let cube = cube.map(|(along, normal, object)| (along, back(normal), object));
     let ball = sphere(eye, ray, Vec3::new(0.9, 0.8, 0.0), 0.8, 2);
     // One that is cut by the plane.
@@ -155,9 +155,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let pass = SeparatePass::new(&device, &filter, InkTarget::Picture(picture.format()))?;
     let textures = SeparateTextures { normal: Some(&normal), depth: Some(&depth), region: Some(&object) };
     let composite = Composite::Over { color: Vec3::new(0.08, 0.06, 0.10), opacity: 1.0 };
-    let onto = Onto { view: &picture_view, composite: &composite, area: None };
+    let target = Onto { view: &picture_view, composite: &composite, area: None };
     let mut encoder = device.create_command_encoder(&Default::default());
-    pass.record(&device, &mut encoder, &filter, &textures, &onto)?;
+    pass.record(&device, &mut encoder, &filter, &textures, &target)?;
 
     // And back to the CPU, to be looked at.
     let row = (4 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);

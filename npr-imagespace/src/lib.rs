@@ -1,5 +1,5 @@
-//! Lines found in the image: what a geometry pass writes for it, the filters, thicker lines, and how they come over
-//! the picture.
+//! Lines found in the image: the G-buffer formats that a geometry pass writes, edge filters over them, morphology that
+//! widens lines, and their composite over a picture.
 //!
 //! ```
 //! use glam::{UVec2, Vec3};
@@ -21,38 +21,38 @@
 //! })?;
 //! assert_eq!(ink[16..32], [0, 0, 0, 0, 0, 0, 0, 255, 255, 0, 0, 0, 0, 0, 0, 0]);
 //!
-//! let (brush, mut thick) = (Disc { radius_px: 1.5, antialias: true }, Vec::new());
-//! dilate_disc(&ink, size_px, &brush, &mut DiscBuffers::default(), &mut thick)?;
+//! let (disc, mut thick) = (Disc { radius_px: 1.5, antialias: true }, Vec::new());
+//! dilate_disc(&ink, size_px, &disc, &mut DiscBuffers::default(), &mut thick)?;
 //! assert_eq!(thick[64..80], [0, 0, 0, 0, 0, 128, 255, 255, 255, 255, 128, 0, 0, 0, 0, 0]);
 //! # Ok::<(), npr_imagespace::ImageSpaceError>(())
 //! ```
 //!
-//! The half of outline drawing that works on any primitive, well-formed or not: what interpenetrates, is cut by a clip
-//! plane or tessellated on the way has its lines where its pictures differ.
+//! Lines from the image need no connectivity and work on any primitive: surfaces that interpenetrate, are cut by a clip
+//! plane or are tessellated on the device have lines wherever neighbouring pixels differ.
 //!
 //! 1. [`mod@format`]: normal, region and depth of a pixel as a G-buffer holds them, encoded and decoded.
-//! 2. [`region`], [`artist`]: what else than the surface's own normals draws lines: numbers of regions, and directions
-//!    that no visible surface has.
-//!    [`shadow`]: whether they lie in shadow.
-//! 3. [`filter`]: where neighbouring pixels differ there is ink.
-//! 4. [`morphology`]: thicker, thinner, opened and closed.
-//! 5. [`composite`], [`resample`]: ink over a picture, also of another size.
+//! 2. [`region`], [`artist`], [`shadow`]: further sources of lines: region numbers, directions that no visible surface
+//!    has, and the states of light and shadow.
+//! 3. [`filter`]: ink where neighbouring pixels differ.
+//! 4. [`morphology`]: dilation, erosion, opening and closing of ink.
+//! 5. [`composite`], [`resample`]: ink over a picture of the same or of another size.
 //!
 //! With the feature `wgpu` the module `pass` has all of this as passes over textures.
 //!
-//! The same functions under the same names, `ink_`, stand here twice: in Rust, the reference, and in [`WGSL`], over
-//! values already loaded. What the papers got wrong is told where it is mended, and kept under a name that says
-//! `printed` where it can run.
+//! Functions whose names begin with `ink_` are written twice, with the same names and parameters: in Rust, the reference,
+//! and in [`WGSL`], over values already loaded. Errors of the papers are stated where they are corrected; the form as
+//! printed is kept, where it can run, under a name with `printed` in it.
 //!
-//! # What is exact
+//! # Exactness
 //!
-//! A decision on packed texels or on bytes is one of whole numbers, and the same on every machine: [`filter::fused`],
-//! hard; the filters on bytes; the steps of [`morphology`] and all but the last of [`morphology::flood`]. Soft ink is
-//! the same within 1/255. Decisions on floats may differ where an input is within a rounding of its threshold.
+//! Decisions on packed texels and on bytes are made with integers and are the same on every machine: [`filter::fused`]
+//! with hard lines, the filters on bytes, the steps of [`morphology`] and all passes but the last of
+//! [`morphology::flood`]. Soft ink agrees within 1/255. Decisions on floats may differ where an input is within rounding
+//! of its threshold.
 //!
 //! # Colours
 //!
-//! Display-referred: what is mixed is what is shown.
+//! Colours are display-referred and are mixed as they are displayed, without conversion to linear light.
 //!
 //! # Sources
 //!
@@ -91,9 +91,9 @@ macro_rules! library {
     ($($file:literal,)*) => {
         /// The functions of this crate in WGSL: no bindings, no entry points, every name begins with `ink_`, `INK_` or `Ink`.
         ///
-        /// It is all parts in a row: [`picture::PICTURE_WGSL`], [`format::FORMAT_WGSL`], [`shadow::SHADOW_WGSL`],
+        /// The concatenation of [`picture::PICTURE_WGSL`], [`format::FORMAT_WGSL`], [`shadow::SHADOW_WGSL`],
         /// [`filter::FILTER_WGSL`], [`morphology::MORPHOLOGY_WGSL`], [`composite::COMPOSITE_WGSL`], [`resample::RESAMPLE_WGSL`]
-        /// and [`artist::ARTIST_WGSL`]. Each stands alone, but for the filters, which need the formats and the shadows.
+        /// and [`artist::ARTIST_WGSL`]. Each compiles alone, except the filters, which need formats and shadows.
         pub const WGSL: &str = concat!($(include_str!($file)),*);
 
         /// The files of [`WGSL`]: name and text.

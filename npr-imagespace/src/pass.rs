@@ -1,20 +1,19 @@
-//! Passes on wgpu: filters, steps, discs, and ink over pictures.
+//! Passes on wgpu: edge filters, morphology, and compositing over pictures.
 //!
-//! - [`fused`]: packed texels ([`crate::format::texel`]) to ink, or at once over a picture: nothing is written in
-//!   between.
-//! - [`separate`]: the same from textures of one's own: normals, depth, region numbers, any of them.
-//! - [`printed`]: the filters and the inker of 2002 over an RGBA8 target ([`crate::format::printed`]), on its bytes.
+//! - [`fused`]: the fused filter over packed texels ([`crate::format::texel`]), written as ink or composited over a
+//!   picture in the same pass.
+//! - [`separate`]: the filters over separate textures of normals, depth and region numbers.
+//! - [`printed`]: the filters and the inker of 2002 over the bytes of an RGBA8 target ([`crate::format::printed`]).
 //! - [`step`]: one step of dilation or erosion, hard and soft, from ink to ink.
-//! - [`disc`]: the disc of any radius by [`crate::morphology::flood`].
-//! - [`lay`]: ink over a picture, also of another size.
+//! - [`disc`]: dilation and erosion by a disc of any radius by [`crate::morphology::flood`].
+//! - [`lay`]: composites ink of any size over a picture.
 //!
-//! Each is a struct with `new(&device, ..)` and `record(&device, &mut encoder, ..)`; it holds pipelines and nothing of
-//! a frame. Each draws a triangle over its target, so that it needs nothing but render targets:
-//! WebGL will do.
+//! Each is a struct with `new(&device, ..)` and `record(&device, &mut encoder, ..)`; it has pipelines and no
+//! state of a frame. Each draws a triangle over its target and needs render targets only, so that all run on WebGL2.
 //!
 //! # Targets
 //!
-//! Ink pictures are [`INK_FORMAT`]: 0 paper, 1 line. Pictures are of color formats that can be blended and whose stores
+//! Ink pictures are [`INK_FORMAT`]: 0 paper, 1 line. Pictures are of colour formats that can be blended and whose stores
 //! do not encode sRGB: `Rgba8Unorm`, `Bgra8Unorm`, `Rgba16Float`. With an `Srgb` format coverage would blend in linear
 //! light; a view without `Srgb` of such a texture is accepted. The alpha of pictures is not written.
 //!
@@ -42,15 +41,15 @@ fn assemble(files: &[(&str, &str)]) -> String {
     source
 }
 
-/// Of ink pictures.
+/// The format of ink pictures: 0 paper, 1 line.
 pub const INK_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
 
-/// What kind of target a pass is made for.
+/// The kind of target that a pass is made for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum InkTarget {
     /// An ink picture, [`INK_FORMAT`]. It is overwritten, with paper outside the area.
     Ink,
-    /// A picture of a format, over which lines are laid.
+    /// A picture of a format, over which lines are composited.
     Picture(wgpu::TextureFormat),
 }
 
@@ -121,15 +120,15 @@ fn check_ink(ink: &wgpu::TextureView, size_px: Option<[u32; 2]>) -> Result<(), I
     check_view("ink", ink, INK_FORMAT, "R8Unorm", size_px)
 }
 
-/// Where a pass puts its ink.
+/// The target of a pass.
 #[derive(Clone, Copy, Debug)]
 pub struct Onto<'a> {
-    /// Of the kind and the format that the pass was made for.
+    /// A view of the kind and the format that the pass was made for.
     pub view: &'a wgpu::TextureView,
-    /// How lines come over a picture; not looked at for an ink picture.
+    /// How lines are composited over a picture; ignored for an ink picture.
     pub composite: &'a Composite,
-    /// Where there may be lines: left, top, width and height in px, within the target. `None` for all of it. A pass
-    /// costs what its area does, and where a scene's bounds are known there is none outside them, and a pixel around.
+    /// The area in which lines are drawn: left, top, width and height, px, within the target; `None` for all of it. The
+    /// cost is proportional to the area. There are no lines farther than one pixel outside a scene's bounds.
     pub area: Option<[u32; 4]>,
 }
 

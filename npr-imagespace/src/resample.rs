@@ -1,11 +1,11 @@
-//! Ink of another size than the picture's: "line width from the size of the render texture" ("The Evolution of a
-//! Cartoon Renderer"). A line is a pixel or two of the texture that it is found in; stretched over the picture it is
-//! as many times as wide as the texture is smaller, and paler where the texture is larger.
+//! Bilinear resampling of ink to the size of a picture: "line width from the size of the render texture" ("The Evolution
+//! of a Cartoon Renderer"). A line is one or two pixels wide in the texture that it is found in. Scaled to the picture it
+//! is wider by the ratio of the sizes where the texture is smaller, and paler where it is larger.
 //!
 //! The ink is stretched to cover the picture, whatever the two sizes, and interpolated bilinearly at the centre of each
 //! pixel; texels beyond the border are those at it. At half the picture's size that is the usual tent of weights ¾ and
 //! ¼, at the same size the texel itself, at twice the size the mean of a pixel's 2 × 2 texels. Above twice the size
-//! texels are left out, and thin lines break.
+//! some texels are not sampled, and thin lines break.
 
 use crate::ImageSpaceError;
 use crate::composite::{Composite, composite_picture};
@@ -15,8 +15,8 @@ use glam::{IVec2, UVec2, Vec2};
 /// WGSL of this module: no bindings, no entry points.
 pub const RESAMPLE_WGSL: &str = include_str!("resample.wgsl");
 
-/// Where a pixel finds its ink: the upper left of 2 × 2 texels, which may lie outside by 1, and how far the pixel's
-/// centre is from that one's to the others', 0..1. `scale` is texels of ink for a pixel.
+/// The 2 × 2 texels that a pixel's ink is interpolated from: the upper left one, which may lie outside by 1, and the
+/// weights of the right and the lower ones, 0..1. `scale` is texels of ink a pixel.
 fn ink_resample_at(pixel: Vec2, scale: Vec2) -> (Vec2, Vec2) {
     let at = (pixel + 0.5) * scale - 0.5;
     let first = at.floor();
@@ -29,7 +29,7 @@ fn ink_resample_mix(taps: [f32; 4], weight: Vec2) -> f32 {
     row(taps[0], taps[1]) * (1.0 - weight.y) + row(taps[2], taps[3]) * weight.y
 }
 
-/// Ink for each pixel of a picture from ink of another size. A picture of ink without a texel is paper.
+/// Ink resampled to a picture's size. Ink of no texels is paper everywhere.
 ///
 /// # Errors
 /// If `ink` does not have one element for each of its own pixels.
@@ -55,11 +55,11 @@ pub fn resample(ink: &[u8], ink_size_px: UVec2, size_px: UVec2) -> Result<Vec<u8
     Ok(out)
 }
 
-/// A picture of 8-bit RGBA under lines of another size; its alpha stays.
+/// Composites ink of another size over a picture of 8-bit RGBA. Alpha does not change.
 ///
 /// # Errors
 /// If either does not have one element for each of its pixels.
-pub fn lay_picture(
+pub fn composite_resampled(
     pixels: &mut [[u8; 4]],
     size_px: UVec2,
     ink: &[u8],

@@ -65,7 +65,7 @@ fn directions_of_points_side_by_side_are_alike() {
 }
 
 /// A sphere whose patches are painted, seen from farther and farther away: from where on no painted direction is
-/// within the threshold of a visible normal, turned once for the object and turned for each point.
+/// within the threshold of a visible normal, rotated once for the object and rotated for each point.
 #[test]
 fn directions_turned_once_for_an_object_fail_near_it_as_the_formula_says() {
     let confused = |distance: f64, cos: f64, per_point: bool| {
@@ -80,9 +80,9 @@ fn directions_turned_once_for_an_object_fail_near_it_as_the_formula_says() {
                 if point_normal.dot(point) > 0.0 {
                     continue;
                 }
-                let turned = if per_point { point } else { centre };
+                let along = if per_point { point } else { centre };
                 for index in 0..4 {
-                    let direction = ink_artist_direction(index, turned.as_vec3()).as_dvec3();
+                    let direction = ink_artist_direction(index, along.as_vec3()).as_dvec3();
                     // The visible normal nearest to it: itself pressed into the half space that faces the eye.
                     let view = point.normalize();
                     let nearest = (direction - view * direction.dot(view).max(0.0)).normalize();
@@ -100,7 +100,7 @@ fn directions_turned_once_for_an_object_fail_near_it_as_the_formula_says() {
         println!("threshold {cos:.2}: fails nearer than {found:.2} radii, formula {limit:.2}");
         assert!(found <= limit + 0.01 && found > 0.85 * limit, "{found} {limit}");
         for distance in [1.1, 2.0, 5.0, 100.0] {
-            assert!(!confused(distance, cos, true), "turned for each point, at {distance}");
+            assert!(!confused(distance, cos, true), "rotated for each point, at {distance}");
         }
     }
     assert!((artist_object_distance(0.8) - 7.07).abs() < 0.01 && (artist_object_distance(0.85) - 4.38).abs() < 0.01);
@@ -139,16 +139,16 @@ fn regions_are_never_background_and_pairs_stay_apart() {
 
 #[test]
 fn hashed_pairs_of_regions_stay_apart_and_fit_a_texel() {
-    let (mut known, mut alike) = (std::collections::HashSet::new(), 0);
-    // Patches with colours, whose low bits are alike.
+    let (mut known, mut duplicates) = (std::collections::HashSet::new(), 0);
+    // Patches with colours, with the same low bits.
     for patch in 1..=40u32 {
         for color in (1..=0x00ff_ffffu32).step_by(65_793) {
             let pair = ink_region_pair(patch, color);
             assert!((1..=0x00ff_ffff).contains(&pair), "{pair}");
-            alike += u32::from(!known.insert(pair));
+            duplicates += u32::from(!known.insert(pair));
         }
     }
     // Of so many numbers among 2^24 three are expected to be there already.
-    assert!(known.len() > 10_000 && alike < 12, "{alike} of {}", known.len());
+    assert!(known.len() > 10_000 && duplicates < 12, "{duplicates} of {}", known.len());
     assert_eq!((ink_region_pair(0, 5), ink_region_pair(5, 0)), (0, 0));
 }

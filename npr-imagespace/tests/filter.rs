@@ -249,7 +249,7 @@ fn the_inker_on_bytes_is_the_inker_on_what_they_stand_for() {
             taps[place] = texel((128 + step) as u8);
             assert_eq!(ink(InkerForm::Explicit, taps), expected, "{place} {step}");
         }
-        // A normal to the side, and one turned round.
+        // A perpendicular normal, and an opposite one.
         for normal in [[255, 128, 128], [128, 0, 128], [128, 128, 0]] {
             let mut taps = [texel(128); 4];
             taps[place] = [normal[0], normal[1], normal[2], 128];
@@ -286,7 +286,7 @@ fn the_inker_and_its_two_faults() {
     assert_eq!(ink(InkerForm::Repaired, [far; 4]), 0.0);
     assert_eq!(ink(InkerForm::Repaired, [far, far, far + 1e-4, far]), 1.0);
     // Flat and near: ink below 0.03 as printed and below 0.1 repaired, and never with thresholds of their own.
-    let n = |z: f64| ink_inker_alike(&Inker::default(), flat, z);
+    let n = |z: f64| ink_inker_similarity(&Inker::default(), flat, z);
     assert!((n(0.0) - 0.64).abs() < 1e-6 && (n(0.05) - 0.81).abs() < 1e-6 && n(0.1001) == 1.0);
     for (z, printed, repaired) in [(0.02, 1.0, 1.0), (0.04, 0.0, 1.0), (0.09, 0.0, 1.0), (0.11, 0.0, 0.0)] {
         assert_eq!(ink(InkerForm::Printed, [z; 4]), printed, "{z}");
@@ -447,7 +447,7 @@ proptest! {
     #[test]
     fn the_fused_filter_is_its_formula(
         centre in any_tap(127, 0x00ff_ffff), taps in prop::array::uniform4(any_tap(127, 0x00ff_ffff)),
-        near in prop::array::uniform4(-200_000i32..200_000), close: bool, asked in 0u32..16, step in 0f32..0.1,
+        near in prop::array::uniform4(-200_000i32..200_000), close: bool, tests in 0u32..16, step in 0f32..0.1,
     ) {
         let mut taps = taps;
         if close {
@@ -457,7 +457,7 @@ proptest! {
             });
         }
         let filter = FusedFilter { depth: Some(DepthTest { step, plain: false }), ..Default::default() };
-        let uniform = FilterUniform { asked, ..uniform(&filter, TexelLayout::Wide) };
+        let uniform = FilterUniform { tests, ..uniform(&filter, TexelLayout::Wide) };
         let threshold = |nearest: i32| {
             let growth = (i64::from(nearest) / 256) * i64::from(uniform.depth_step) / 256;
             i64::from(uniform.depth_slack).max(i64::from(uniform.depth_base) + growth)
@@ -468,18 +468,18 @@ proptest! {
             if tap.region == 0 || centre.region == 0 {
                 continue;
             }
-            ink |= asked & ASKED_REGION != 0 && tap.region != centre.region;
-            ink |= asked & ASKED_STEP != 0
+            ink |= tests & TEST_REGION != 0 && tap.region != centre.region;
+            ink |= tests & TEST_STEP != 0
                 && i64::from((tap.depth - centre.depth).abs()) > threshold(tap.depth.max(centre.depth));
-            ink |= asked & ASKED_NORMAL != 0 && ink_tap_normal_differs(&uniform, tap.normal, centre.normal);
+            ink |= tests & TEST_NORMAL != 0 && ink_tap_normal_differs(&uniform, tap.normal, centre.normal);
         }
         for (a, b) in [(taps[0], taps[2]), (taps[1], taps[3])] {
             let surfaces = a.region != 0 && b.region != 0 && centre.region != 0;
             let bend = i64::from(a.depth) - 2 * i64::from(centre.depth) + i64::from(b.depth);
             let nearest = a.depth.max(b.depth).max(centre.depth);
-            ink |= asked & ASKED_BEND != 0 && surfaces && bend.abs() > threshold(nearest);
+            ink |= tests & TEST_BEND != 0 && surfaces && bend.abs() > threshold(nearest);
         }
-        // What is neither background nor asked for leaves paper.
+        // Differences that no enabled test looks for are no lines.
         prop_assert_eq!(ink_fused_hard(&uniform, &centre, &taps), ink);
         let soft = ink_fused_soft(&FilterUniform { softness: 1e-6, ..uniform }, &centre, &taps);
         prop_assert!((0.0..=1.0).contains(&soft));

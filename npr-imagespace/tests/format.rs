@@ -1,4 +1,4 @@
-//! What each format tells apart, and that the codes come back.
+//! The precision of each format, and round trips of codes.
 #![allow(clippy::print_stdout)]
 
 use glam::{DVec3, IVec2, Vec3};
@@ -132,7 +132,7 @@ fn largest_fused_gap(format: DepthFormat, depth: f64, range: &DepthRange) -> f64
 #[test]
 fn depths_a_gap_apart_are_told_apart_and_half_a_gap_are_not() {
     let range = DepthRange::new(0.5, 400.0).unwrap();
-    println!("smallest gap told apart, near {} far {}", range.near, range.far);
+    println!("smallest difference resolved, near {} far {}", range.near, range.far);
     for format in DepthFormat::ALL {
         for depth in [1.0, 3.3, 10.0, 47.0, 100.0, 300.0] {
             // Within 8 bits' rounding of near everything is clamped.

@@ -149,7 +149,7 @@ fn soft_a_shadows_border_is_full_ink_and_fades_where_others_are() {
     let weight = f64::from(lines.weight);
     assert_eq!(ink_fused_soft(&lines, &a, &[b, a, a, a]), weight.min(1.0));
     assert_eq!(ink_fused_soft(&soft(ShadowTest::Alone, 0.8), &a, &[b, a, a, a]), weight.min(1.0));
-    let turned = tap(layout, Vec3::Y, cast, 3.0);
-    let alone = ink_fused_soft(&soft(ShadowTest::Alone, 0.8), &a, &[turned; 4]);
+    let tilted = tap(layout, Vec3::Y, cast, 3.0);
+    let alone = ink_fused_soft(&soft(ShadowTest::Alone, 0.8), &a, &[tilted; 4]);
     assert_eq!(alone, 0.0, "an object's line is there");
 }

@@ -1,4 +1,4 @@
-//! The WGSL is valid, and the uniforms lie in memory as naga lays them out.
+//! The WGSL is valid, its functions have the signatures of the Rust ones, and uniforms have the same memory layout.
 
 #[path = "wgsl/twins.rs"]
 mod twins;
@@ -109,7 +109,7 @@ const TWINS: Twins<'_> = Twins {
     exceptions: &[
         ("ink_any", Except::Missing, "any() of the four taps' booleans, as a number"),
         ("ink_bytes", Except::Missing, "Rust reads bytes, where a shader's texture yields floats"),
-        ("ink_depth_decode", Except::Missing, "DepthFormat::decode, which is in f64 and knows the formats"),
+        ("ink_depth_decode", Except::Missing, "DepthFormat::decode, which is in f64 and has a case for each format"),
         ("ink_depth_fraction", Except::Missing, "DepthRange::fraction, which has the range as a type"),
         ("ink_depth_join2", Except::Missing, "Rust keeps codes as numbers and splits them for targets alone"),
         ("ink_depth_join4", Except::Missing, "Rust keeps codes as numbers and splits them for targets alone"),
@@ -191,7 +191,7 @@ fn uniforms_have_the_layout_of_the_shader() {
         "InkFilter",
         FilterUniform,
         [
-            asked,
+            tests,
             normal_cos2,
             depth_slack,
             depth_base,

@@ -1,4 +1,4 @@
-//! A teapot of one's own pass with the crate's lines over it:
+//! A teapot drawn by a render pass of this example, with the crate's lines over it:
 //! `cargo run --release -p npr-outline --features wgpu --example wgpu_lines -- teapot.ppm`.
 
 use glam::dcamera::rh::proj::directx::perspective_infinite_reverse;
@@ -52,7 +52,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         depth_per_px: DVec2::new(2.0 * (0.5 * FOV_Y_RAD).tan() / SIZE_PX.y, 0.0),
     };
 
-    // The pass of one's own. Depth is reversed: 1 at the near plane, 0 at infinity.
+    // The example's own render pass. Depth is reversed: 1 at the near plane, 0 at infinity.
     let buffer =
         |contents: &[u8], usage| device.create_buffer_init(&BufferInitDescriptor { label: None, contents, usage });
     let positions = buffer(bytemuck::cast_slice(&model.positions), BufferUsages::VERTEX);

@@ -23,7 +23,7 @@ fn compact(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocati
     if !is_line && edge < view.edge_count {
         is_line = outline_is_silhouette(planes[2u * edge], planes[2u * edge + 1u], view.local_eye);
     }
-    // One addition to the common counter a workgroup instead of one a line.
+    // One atomic addition to the global counter for each workgroup instead of one for each line.
     var slot = 0u;
     if is_line {
         slot = atomicAdd(&found, 1u);

@@ -1,10 +1,10 @@
-// Which edges are lines. The twin of `contour.rs`. No bindings and no entry points.
+// Classifies edges as lines. The twin of `contour.rs`. No bindings and no entry points.
 
 // Numbers of `LineKind`.
 const OUTLINE_SILHOUETTE: u32 = 0u;
 const OUTLINE_BOUNDARY: u32 = 1u;
 
-// On which side of a plane the eye is. The order of the sum is that of the Rust twin.
+// The signed distance of a homogeneous eye from a plane. The order of the sum is that of the Rust twin.
 fn outline_facing(plane: vec4<f32>, eye: vec4<f32>) -> f32 {
     return plane.x * eye.x + plane.y * eye.y + plane.z * eye.z + plane.w * eye.w;
 }

@@ -1,32 +1,32 @@
-//! What can be wrong with what this crate is given.
+//! The errors of this crate.
 
-/// A rule that the input breaks.
+/// A rule that an input or a render target breaks.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum OutlineError {
-    /// A line's width is negative, infinite or no number.
+    /// A line width that is negative or not finite.
     #[error("a line width of {width_px} px: it must be finite and not negative")]
     Width {
-        /// What was asked for.
+        /// The width, px.
         width_px: f32,
     },
-    /// A crease angle that is no angle between two faces.
+    /// A crease angle outside 0..=π.
     #[error("a crease angle of {angle_rad} rad: it must lie in 0..=π")]
     CreaseAngle {
-        /// What was asked for.
+        /// The angle, radians.
         angle_rad: f32,
     },
-    /// More edges than one buffer of the device may hold.
+    /// More edges than fit into one buffer of the device.
     #[error("{bytes} bytes of edge records exceed the device's limit of {limit} for one buffer")]
     TooManyEdges {
-        /// What is needed.
+        /// The bytes that are needed.
         bytes: u64,
-        /// What there is.
+        /// The device's limit, bytes.
         limit: u64,
     },
     /// A colour format whose stores encode sRGB, in which coverage would blend in linear light.
     #[cfg(feature = "wgpu")]
-    #[error("a color target of format {format:?}: stores must not encode sRGB")]
+    #[error("a colour target of format {format:?}: stores must not encode sRGB")]
     SrgbTarget {
         /// The format that was given.
         format: wgpu::TextureFormat,

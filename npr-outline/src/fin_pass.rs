@@ -1,4 +1,4 @@
-//! The chapter's fins on wgpu: see [`crate::fin_printed`].
+//! Draws the fins of Card & Mitchell 2002 on wgpu: see [`crate::fin_printed`].
 //!
 //! Needs the scene drawn before, with its depth buffer, `Depth32Float` and reversed. Fins are solid ink without
 //! antialiasing, as in 2002.
@@ -50,11 +50,11 @@ pub struct FinPass {
 }
 
 impl FinPass {
-    /// Makes the pipeline for a color target of `color_format`, of floats and without sRGB, and face normals stored in
+    /// Makes the pipeline for a colour target of `color_format`, of floats and without sRGB, and face normals stored in
     /// `format`.
     ///
     /// # Errors
-    /// [`OutlineError::SrgbTarget`]; [`OutlineError::ViewFormat`] for a format that is no color of floats.
+    /// [`OutlineError::SrgbTarget`]; [`OutlineError::ViewFormat`] for a format that is no colour of floats.
     pub fn new(
         device: &wgpu::Device,
         color_format: wgpu::TextureFormat,
@@ -130,7 +130,7 @@ impl FinPass {
         Ok(Self { layout, pipeline, format, color_format })
     }
 
-    /// Sends fins to the device: [`NormalFormat::bytes_per_fin`] and 24 bytes of indices each.
+    /// Uploads fins: [`NormalFormat::bytes_per_fin`] and 24 bytes of indices each.
     ///
     /// # Errors
     /// [`OutlineError::TooManyEdges`] where a buffer would be larger than the device allows.
@@ -166,7 +166,7 @@ impl FinPass {
     /// Records drawing a frame's fins.
     ///
     /// - `view`: with reversed depth.
-    /// - `ink`: display-referred color and alpha, 0..=1, written as they are.
+    /// - `ink`: display-referred colour and alpha, 0..=1, written as they are.
     /// - `color`: of the format that the pass was made for, `RENDER_ATTACHMENT`; kept outside the fins.
     /// - `depth`: the scene's, `Depth32Float`, reversed, `RENDER_ATTACHMENT`, of the same size; only read.
     ///
@@ -233,7 +233,7 @@ impl FinUniform {
     fn new(view: &FinView, ink: [f32; 4]) -> Self {
         let (near, far, as_printed) = match view.depth {
             FinDepth::Printed { near, far } => (near as f32, far as f32, 1),
-            // Any two that differ keep the unused branch finite.
+            // Two different values keep the unused branch finite.
             FinDepth::Eye => (0.0, 1.0, 0),
         };
         Self {

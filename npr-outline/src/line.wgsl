@@ -1,5 +1,5 @@
-// A line on the screen: an edge clipped, projected, widened, and hidden where its centreline is hidden.
-// The twin of `segment.rs`, with the same names. No bindings and no entry points.
+// Lines on the screen: edges clipped, projected, with a width in px, and hidden where their centreline is hidden. The
+// twin of `segment.rs`. No bindings and no entry points.
 
 struct OutlineView {
     clip_from_world: mat4x4<f32>,
@@ -34,8 +34,8 @@ const OUTLINE_PLANE_SLACK_PER_SLOPE: f32 = 0.0078125;
 // In an edge's traits: its faces are cut out by alpha.
 const OUTLINE_TRAIT_CUT_OUT: u32 = 512u;
 
-// The part of a segment before the near plane and within the widened viewport: fractions, the first above the second
-// where nothing is left.
+// The part of a segment in front of the near plane and within the widened viewport, as fractions; the first is above the
+// second where nothing is left.
 fn outline_clip(end0: vec4<f32>, end1: vec4<f32>, viewport_px: vec2<f32>, margin_px: f32) -> vec2<f32> {
     let guard = vec2<f32>(1.0) + 2.0 * margin_px / viewport_px;
     var in_a = array<f32, 5>(
@@ -121,7 +121,7 @@ fn outline_project(
     let second = outline_face_slope(cross(normal1, -edge), middle, segment, view);
     let edge_on = OUTLINE_EDGE_ON_SLOPE
         * (0.5 * (segment.depths.x + segment.depths.y) * view.depth_per_px.x + view.depth_per_px.y);
-    // What is edge-on, or no number, has no slope.
+    // Faces that are edge-on, and slopes that are NaN, count as 0.
     let slope0 = select(0.0, first.y, first.y < edge_on);
     let slope1 = select(0.0, second.y, second.y < edge_on);
     segment.slopes = vec2<f32>(
@@ -170,7 +170,8 @@ fn outline_coverage_at(on_line: vec2<f32>, direction: vec2<f32>, point_px: vec2<
     return min(beside, clamp(0.5 * width_px + 0.5 - distance, 0.0, 1.0));
 }
 
-// (seen, surface) votes of one of the four pixels around a point of the centreline.
+// For one of the four pixels around a point of the centreline: whether its surface is not in front of the line, and
+// whether it may be one of the edge's own faces.
 fn outline_vote(scene_depth: f32, depth: f32, offset: f32, slopes: vec2<f32>, per_px: f32) -> vec2<bool> {
     let slope = min(select(slopes.x, slopes.y, offset < 0.0), OUTLINE_MAX_SLOPE * per_px);
     let allowed = OUTLINE_DEPTH_SLACK_PX * per_px + slope * abs(offset);
@@ -178,9 +179,9 @@ fn outline_vote(scene_depth: f32, depth: f32, offset: f32, slopes: vec2<f32>, pe
     return vec2<bool>(behind <= allowed, abs(behind) <= (OUTLINE_DEPTH_SLACK_PX + OUTLINE_MAX_SLOPE) * per_px);
 }
 
-// How far in front of a line's point, `within` px from the first one's centre, the plane through four pixels passes
-// there, less what rounding and their not lying in one plane explain.
-fn outline_plane_before(quad: vec4<f32>, within: vec2<f32>, depth: f32, per_px: f32) -> f32 {
+// How far in front of a point of a line, `within` px from the first pixel's centre, the plane through four pixels is, less
+// the tolerance for rounding and for the deviation of the four from a plane.
+fn outline_plane_in_front(quad: vec4<f32>, within: vec2<f32>, depth: f32, per_px: f32) -> f32 {
     let along_x = 0.5 * (quad.y - quad.x + quad.w - quad.z);
     let along_y = 0.5 * (quad.z - quad.x + quad.w - quad.y);
     let there = 0.25 * (quad.x + quad.y + quad.z + quad.w) + along_x * (within.x - 0.5) + along_y * (within.y - 0.5);
@@ -189,7 +190,7 @@ fn outline_plane_before(quad: vec4<f32>, within: vec2<f32>, depth: f32, per_px: 
         - OUTLINE_PLANE_SLACK_PER_SLOPE * (abs(along_x) + abs(along_y)) - twist;
 }
 
-// The greater of the second differences of four depths in a row.
-fn outline_bend(depths: vec4<f32>) -> f32 {
+// The greater of the two second differences of four consecutive depths.
+fn outline_second_difference(depths: vec4<f32>) -> f32 {
     return max(abs(depths.x - 2.0 * depths.y + depths.z), abs(depths.y - 2.0 * depths.z + depths.w));
 }

@@ -1,9 +1,9 @@
-//! Lines on wgpu, in one small pass over the lines' rectangles.
+//! Draws lines on wgpu, as rectangles in one pass.
 //!
-//! Where segments of a polyline overlap at their joints, no pixel may be inked twice: the pixel's ink is that of the
-//! line that covers most of it. So each fragment computes the final colour, from the picture without lines, and puts its
-//! coverage out as depth; a depth test keeps the greatest. The order of the lines does not matter, and no pixel is touched
-//! that has no line near it.
+//! Where segments of a polyline overlap at their joints, no pixel may be inked twice: a pixel's ink is that of the line
+//! with the greatest coverage. Each fragment computes the final colour from the picture without lines and writes its
+//! coverage as depth; a depth test keeps the greatest. The result does not depend on the order of the lines, and only
+//! pixels near lines are drawn.
 //!
 //! Needs the scene's depth buffer as a texture of the same size, `Depth32Float`, reversed, and the picture twice: as a
 //! texture to read, and as a target that starts as its copy.
@@ -41,7 +41,7 @@ pub(crate) fn compaction_wgsl() -> String {
     assemble(&[CONTOUR, LINE, COMPACTION])
 }
 
-/// Of the target that keeps the greatest coverage.
+/// The format of the depth target that keeps the greatest coverage.
 pub const WINNER_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth16Unorm;
 
 /// `OutlineView` of `line.wgsl`.
@@ -62,25 +62,25 @@ struct OutlineUniform {
 
 const _: () = assert!(size_of::<OutlineUniform>() == 144);
 
-/// A line as a scan on the CPU sends it: 52 bytes.
+/// A line found by a scan on the CPU, as it is uploaded: 52 bytes.
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub struct LineRecord {
-    /// World space, in the order in which the first face runs over the edge.
+    /// The first end, world space, in the winding order of the first face.
     pub end0: [f32; 3],
     /// [`crate::LineKind`] in the two lowest bits, and the edge's traits.
     pub kind_traits: u32,
-    /// World space.
+    /// The second end, world space.
     pub end1: [f32; 3],
-    /// Of the first face, unit.
+    /// The unit normal of the first face.
     pub normal0: [f32; 3],
-    /// Of the second face, wound like the first; zero at a boundary.
+    /// The unit normal of the second face for the winding of the first; zero at a boundary.
     pub normal1: [f32; 3],
 }
 
 const _: () = assert!(size_of::<LineRecord>() == 52);
 
-/// Gathers the records of the lines that a scan found. `eye` as for [`ContourEdges::scan`].
+/// Makes the records of the lines that a scan found; `records` is cleared first. `eye` as for [`ContourEdges::scan`].
 pub fn line_records(
     contours: &ContourEdges,
     positions: &[Vec3],
@@ -100,7 +100,7 @@ pub fn line_records(
     }));
 }
 
-/// All edges of a model on the device, for finding lines there.
+/// All edges of a model in buffers of the device, for finding lines there.
 #[derive(Debug)]
 pub struct EdgesOnDevice {
     compaction_group: wgpu::BindGroup,
@@ -115,9 +115,9 @@ pub struct EdgesOnDevice {
 /// Where the lines of a frame come from.
 #[derive(Clone, Copy, Debug)]
 pub enum LineSource<'a> {
-    /// Scanned on the CPU, sent as records. The way of choice where vertex and compute work run on the same cores.
+    /// Found by a scan on the CPU and uploaded as records. Faster on software adapters.
     Records(&'a [LineRecord]),
-    /// Found by a compute pass and drawn indirectly, nothing sent. The way of choice on hardware.
+    /// Found by a compute pass and drawn indirectly, without uploads. Faster on hardware.
     OnDevice(&'a EdgesOnDevice),
 }
 
@@ -125,7 +125,7 @@ pub enum LineSource<'a> {
 /// with one sample a pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct LineTargets<'a> {
-    /// The picture without lines: a color format of floats, `TEXTURE_BINDING`.
+    /// The picture without lines: a colour format of floats, `TEXTURE_BINDING`.
     pub painted: &'a wgpu::TextureView,
     /// The scene's depth, reversed: the depth aspect of a depth format, or `R32Float`; `TEXTURE_BINDING`.
     pub depth: &'a wgpu::TextureView,
@@ -170,7 +170,7 @@ const EDGE_NUMBER_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBuffer
 };
 
 impl LinePass {
-    /// Makes the pipelines for a color target of `color_format`, of floats and without sRGB: coverage blends in display
+    /// Makes the pipelines for a colour target of `color_format`, of floats and without sRGB: coverage blends in display
     /// space.
     ///
     /// `on_device`: also those of [`LineSource::OnDevice`], which need compute shaders, storage buffers in vertex shaders and
@@ -178,7 +178,7 @@ impl LinePass {
     /// [`wgpu::DownlevelFlags::INDIRECT_EXECUTION`]).
     ///
     /// # Errors
-    /// [`OutlineError::SrgbTarget`]; [`OutlineError::ViewFormat`] for a format that is no color of floats.
+    /// [`OutlineError::SrgbTarget`]; [`OutlineError::ViewFormat`] for a format that is no colour of floats.
     pub fn new(
         device: &wgpu::Device,
         color_format: wgpu::TextureFormat,
@@ -238,7 +238,7 @@ impl LinePass {
         })
     }
 
-    /// Sends a model's edges to the device: 52 bytes an edge and 12 a position.
+    /// Uploads a model's edges: 52 bytes an edge and 12 a position.
     ///
     /// # Errors
     /// [`OutlineError::TooManyEdges`] where a buffer would be larger than the device allows.
@@ -257,7 +257,7 @@ impl LinePass {
         if bytes > limit {
             return Err(OutlineError::TooManyEdges { bytes, limit });
         }
-        // A binding of no bytes is refused; one blank record stands in where there are no edges.
+        // Empty bindings are invalid; without edges the buffer has one blank record.
         let buffer = |label, contents: &[u8], usage| {
             let contents = if contents.is_empty() { &[0u8; 32][..] } else { contents };
             filled_buffer(device, label, contents, usage)
@@ -274,7 +274,7 @@ impl LinePass {
             usage: storage | wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_SRC,
             mapped_at_creation: false,
         });
-        // Four corners, no instance yet.
+        // Four vertices; the compute pass counts the instances.
         let copied = wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
         let arguments = buffer(
             "outline draw arguments",
@@ -390,17 +390,17 @@ impl LinePass {
         };
         let is_depth =
             |format: wgpu::TextureFormat| format.has_depth_aspect() || format == wgpu::TextureFormat::R32Float;
-        check_view("a picture without lines", targets.painted, "a color format of floats", is_float, size_px)?;
+        check_view("a picture without lines", targets.painted, "a colour format of floats", is_float, size_px)?;
         check_view("the scene's depth", targets.depth, "a depth format or R32Float", is_depth, size_px)?;
         let needed = "the format that the pass was made for";
         check_view("a target", targets.inked, needed, |format| is_same(format, self.color_format), size_px)?;
         check_view("the coverage target", targets.winner, "Depth16Unorm", |format| format == WINNER_FORMAT, size_px)
     }
 
-    /// Records the compute pass alone: afterwards [`EdgesOnDevice::lines`] holds the lines' numbers.
+    /// Records the compute pass; afterwards [`EdgesOnDevice::lines`] holds the lines' numbers.
     fn record_compaction(&self, encoder: &mut wgpu::CommandEncoder, view: &wgpu::BindGroup, edges: &EdgesOnDevice) {
         let pipelines = self.on_device.as_ref().expect("the edges were uploaded by this pass");
-        // The vertex count stays what it is; the instances are counted from 0.
+        // The instance count starts at 0; the other arguments do not change.
         encoder.clear_buffer(&edges.arguments, 4, Some(4));
         let mut pass = encoder
             .begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("line scan"), timestamp_writes: None });
@@ -417,7 +417,7 @@ impl EdgesOnDevice {
         workgroups(self.edge_count)
     }
 
-    /// The numbers of the lines that the last frame's compute pass found, in no order; the first
+    /// The numbers of the lines that the last frame's compute pass found, in no particular order; the first
     /// [`EdgesOnDevice::arguments`]' instance count of them are valid. `COPY_SRC`.
     pub fn lines(&self) -> &wgpu::Buffer {
         &self.lines
@@ -454,19 +454,19 @@ impl OutlineUniform {
     }
 }
 
-/// Workgroups of 64 for so many invocations, in rows of at most 65,535, which every device can dispatch.
+/// The numbers of columns and rows of workgroups of 64 invocations, at most 65,535 a row, which every device supports.
 fn workgroups(invocations: u32) -> (u32, u32) {
     let groups = invocations.div_ceil(64).max(1);
     let rows = groups.div_ceil(65_535);
     (groups.div_ceil(rows), rows)
 }
 
-/// The most bytes that a storage buffer can have.
+/// The largest size of a storage buffer, bytes.
 fn storage_limit(device: &wgpu::Device) -> u64 {
     device.limits().max_storage_buffer_binding_size.min(device.limits().max_buffer_size)
 }
 
-/// A group of resources, bound in their order.
+/// A bind group of resources with consecutive bindings.
 pub(crate) fn bind_group(
     device: &wgpu::Device,
     label: &str,
@@ -496,7 +496,7 @@ pub(crate) fn buffer_entry(
     wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None }
 }
 
-/// Group 1 of `line_ink.wgsl`: depth and picture, read texel by texel, and the sampler for depth.
+/// The layout of group 1 of `line_ink.wgsl`: depth, the picture without lines, and the sampler for depth.
 fn picture_layout(device: &wgpu::Device, visibility: wgpu::ShaderStages) -> wgpu::BindGroupLayout {
     let texture = wgpu::BindingType::Texture {
         sample_type: wgpu::TextureSampleType::Float { filterable: false },
@@ -511,7 +511,7 @@ fn picture_layout(device: &wgpu::Device, visibility: wgpu::ShaderStages) -> wgpu
     })
 }
 
-/// What [`picture_layout`] is for.
+/// The bind group of [`picture_layout`].
 fn picture_group(
     device: &wgpu::Device,
     layout: &wgpu::BindGroupLayout,
@@ -527,7 +527,7 @@ fn picture_group(
     bind_group(device, "outline picture", layout, &resources)
 }
 
-/// Filters nothing, and repeats the border outside of a texture.
+/// A sampler without filtering that repeats the border texels outside a texture.
 fn nearest_sampler(device: &wgpu::Device) -> wgpu::Sampler {
     device.create_sampler(&wgpu::SamplerDescriptor { label: Some("nearest"), ..Default::default() })
 }

@@ -1,19 +1,19 @@
-//! The verdict of a stencil buffer of shadow volumes, as a colour texture.
+//! Converts the counts in a stencil buffer of shadow volumes to a texture.
 //!
 //! [`crate::shadow_pass`] leaves counts in a stencil. Few GLES 3.0 and WebGL2 devices can read a stencil in a shader, so
-//! this pass lets the stencil test itself write 1 where [`crate::shadow_volume::outline_in_shadow`] holds, 0 elsewhere.
+//! this pass uses the stencil test to write 1 where [`crate::shadow_volume::outline_in_shadow`] holds, 0 elsewhere.
 //! Reading the mask takes one load of an unsigned byte.
 
 use crate::OutlineError;
 use crate::shadow_pass::check_depth_stencil_format;
 use crate::target::{check_area, check_view, size};
 
-/// Of the mask: 0 lit, 1 in shadow.
+/// The format of the mask: 0 lit, 1 in shadow.
 pub const MASK_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Uint;
 
 const MASK_WGSL: &str = include_str!("shadow_mask.wgsl");
 
-/// The pipelines: one for counts other than 0, one that takes back those from 128 on.
+/// The pipelines: one writes 1 for counts other than 0, the other writes 0 for counts of 128 and more.
 #[derive(Debug)]
 pub struct ShadowMaskPass {
     some: wgpu::RenderPipeline,

@@ -1,15 +1,15 @@
-//! Shadow volumes into a stencil buffer on wgpu.
+//! Counts shadow volumes in a stencil buffer on wgpu.
 //!
-//! Counted behind the surface (depth fail), so that the eye may stand inside a volume: where
-//! [`crate::shadow_volume::outline_in_shadow`] says so of the stencil after the pass, what the depth buffer holds is in
-//! shadow, or turned away from the light. Volumes end at infinity, so the
-//! matrix must have no far plane, or the pass be made without depth clipping.
+//! Volumes are counted behind the surface (depth fail), so that the eye may be inside a volume. Where
+//! [`crate::shadow_volume::outline_in_shadow`] holds for the stencil after the pass, the surface in the depth buffer is in
+//! shadow or faces away from the light. Volumes reach to infinity, so that either the matrix has no far plane or the pass
+//! is made without depth clipping.
 //!
 //! The depth buffer must hold the same faces, placed by the same product of matrix and position with an `@invariant`
-//! result: a cap lies exactly on its face, equal depth counts as behind, and so a lit face does not shadow itself. No
-//! bias is needed, and none is there.
+//! result: a cap lies exactly on its face, equal depth counts as behind, and so a lit face does not shadow itself. There
+//! is no depth bias.
 //!
-//! 8 bits: a pixel under 128 to 256 layers of faces between it and the light is taken for lit.
+//! The stencil has 8 bits: a pixel with 128 to 256 layers of faces between it and the light is classified as lit.
 
 use crate::OutlineError;
 use crate::filled_buffer::filled_buffer;
@@ -31,7 +31,7 @@ struct ShadowUniform {
     local_light: [f32; 4],
 }
 
-/// What casts, on the device.
+/// The shadow casters of a model in buffers of the device.
 #[derive(Debug)]
 pub struct CastersOnDevice {
     origin: glam::Vec3,
@@ -40,14 +40,14 @@ pub struct CastersOnDevice {
 
 #[derive(Debug)]
 enum Source {
-    /// All of a model, of which the device takes its own.
+    /// All edges and faces of a model, from which vertex shaders select those that bound volumes.
     All { edges: Option<wgpu::Buffer>, edge_count: u32, faces: Option<wgpu::Buffer>, face_count: u32, open: bool },
     /// The triangles of one light's volumes: those of sides and of caps towards the light, then the other caps.
     Triangles { vertices: Option<wgpu::Buffer>, towards: u32, away: u32 },
 }
 
 impl CastersOnDevice {
-    /// Uploads all that can cast, for lights that the device sorts out itself: 64 bytes an edge and a face.
+    /// Uploads all edges and faces that can cast, for any light: 64 bytes for each edge and each face.
     ///
     /// # Errors
     /// [`OutlineError::TooManyEdges`].
@@ -62,8 +62,8 @@ impl CastersOnDevice {
         Ok(Self { origin: casters.origin, source })
     }
 
-    /// Uploads the volumes of one light, found on the CPU: [`ShadowCasters::triangles`]. The way of choice where the
-    /// device is software, which is slow at many small instances. Good for as long as the light stays where it is.
+    /// Uploads the volumes of one light, found on the CPU: [`ShadowCasters::triangles`]. Faster on software
+    /// adapters, which are slow at many small instances. Valid until the light changes.
     ///
     /// # Errors
     /// [`OutlineError::TooManyEdges`].
@@ -84,11 +84,11 @@ impl CastersOnDevice {
 #[derive(Debug)]
 pub struct ShadowPass {
     layout: wgpu::BindGroupLayout,
-    /// For a light far away, and for one near.
+    /// For a directional light, and for a point light.
     sides: [wgpu::RenderPipeline; 2],
-    /// Turned towards the light, and away from it.
+    /// For faces towards the light, and for faces away from it.
     caps: [wgpu::RenderPipeline; 2],
-    /// The same of triangles that are there already.
+    /// The same for triangles made on the CPU.
     placed: [wgpu::RenderPipeline; 2],
     format: wgpu::TextureFormat,
     unclipped: bool,
@@ -102,7 +102,7 @@ impl ShadowPass {
     /// Makes the pipelines.
     ///
     /// - `format`: of the depth buffer, reversed, with a stencil: `Depth32FloatStencil8` where there is that.
-    /// - `unclipped`: needed for parallel views and others with a far plane; asks for `Features::DEPTH_CLIP_CONTROL`.
+    /// - `unclipped`: needed for parallel views and others with a far plane; needs `Features::DEPTH_CLIP_CONTROL`.
     ///
     /// # Errors
     /// [`OutlineError::ViewFormat`] for a format without depth or without stencil.
@@ -136,9 +136,9 @@ impl ShadowPass {
             depth_fail_op: operation,
             pass_op: wgpu::StencilOperation::Keep,
         };
-        let pipeline = |entry_point, buffer, constants: &[(&str, f64)], turned: bool| {
+        let pipeline = |entry_point, buffer, constants: &[(&str, f64)], faces_away: bool| {
             let (more, less) = (wgpu::StencilOperation::IncrementWrap, wgpu::StencilOperation::DecrementWrap);
-            let (front, back) = if turned { (more, less) } else { (less, more) };
+            let (front, back) = if faces_away { (more, less) } else { (less, more) };
             device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
                 label: Some(entry_point),
                 layout: Some(&pipeline_layout),
@@ -152,7 +152,7 @@ impl ShadowPass {
                 depth_stencil: Some(wgpu::DepthStencilState {
                     format,
                     depth_write_enabled: Some(false),
-                    // Reversed: what is strictly nearer than the surface is not counted.
+                    // Reversed depth: fragments strictly nearer than the surface are not counted.
                     depth_compare: Some(wgpu::CompareFunction::Greater),
                     stencil: wgpu::StencilState {
                         front: counted(front),
@@ -198,7 +198,7 @@ impl ShadowPass {
             step_mode: wgpu::VertexStepMode::Vertex,
             attributes: &wgpu::vertex_attr_array![0 => Float32x4],
         };
-        let placed = [false, true].map(|turned| pipeline("vs_placed", placed_buffer.clone(), &[], turned));
+        let placed = [false, true].map(|faces_away| pipeline("vs_placed", placed_buffer.clone(), &[], faces_away));
         let (sides, caps) = (SWEEP_VERTICES.map(side), [cap(1.0), cap(-1.0)]);
         Ok(Self { sides, caps, placed, layout, format, unclipped })
     }
@@ -208,8 +208,8 @@ impl ShadowPass {
     /// - `light`: world space, a point with w = 1 or the direction to the light with w = 0;
     /// - `clip_from_world`: of the depth buffer, reversed, rounded to f32 as the scene's own was;
     /// - `endless`: of a parallel view what [`ShadowCasters::endless`] says of its direction, else 0;
-    /// - `area`: left, top, width and height, px, in which there are surfaces: volumes reach to infinity, and what is
-    ///   counted before nothing is of no use. All of it without.
+    /// - `area`: left, top, width and height, px, in which there are surfaces: volumes reach to infinity, and counting
+    ///   where there is no surface is wasted. `None` for the whole target.
     ///
     /// # Errors
     /// If `depth_stencil` is no view of the first level of a texture of the pass's format with one sample a pixel;
@@ -270,7 +270,7 @@ impl ShadowPass {
         let near = usize::from(light.w != 0.0);
         match &casters.source {
             Source::All { edges, edge_count, faces, face_count, open } => {
-                // Of a closed model no edge sweeps twice, and no face casts that is turned away.
+                // In a closed model no edge sweeps twice, and no face casts that faces away from the light.
                 let times = if *open { 2 } else { 1 };
                 if let Some(edges) = edges {
                     pass.set_pipeline(&self.sides[near]);

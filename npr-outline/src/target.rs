@@ -1,9 +1,9 @@
-//! What passes refuse: textures and matrices that they cannot draw right with.
+//! Checks of textures, areas and matrices, whose errors the passes return before they record anything.
 
 use crate::OutlineError;
 use glam::{DMat4, DVec3, Vec4Swizzles};
 
-/// Refuses color formats whose stores encode sRGB, and those that are no colors of floats.
+/// Refuses colour formats whose stores encode sRGB, and those that are no colours of floats.
 pub(crate) fn check_color_format(device: &wgpu::Device, format: wgpu::TextureFormat) -> Result<(), OutlineError> {
     if format.is_srgb() {
         return Err(OutlineError::SrgbTarget { format });
@@ -11,7 +11,7 @@ pub(crate) fn check_color_format(device: &wgpu::Device, format: wgpu::TextureFor
     let is_float =
         matches!(format.sample_type(None, Some(device.features())), Some(wgpu::TextureSampleType::Float { .. }));
     if !is_float || format.has_depth_aspect() {
-        return Err(OutlineError::ViewFormat { what: "a color target", format, needed: "a color format of floats" });
+        return Err(OutlineError::ViewFormat { what: "a colour target", format, needed: "a colour format of floats" });
     }
     Ok(())
 }
@@ -67,7 +67,7 @@ enum Depth {
     Parallel(DVec3),
 }
 
-/// Below this share of what it is compared with a number is rounding: f32 has 2^-24.
+/// Relative differences below this are rounding: f32 has 2^-24.
 const ROUNDING: f64 = 1e-6;
 
 /// `None` for matrices in which depth is no function of the distance alone, or that are degenerate.
@@ -88,7 +88,7 @@ fn depth_of(clip_from_world: &DMat4) -> Option<Depth> {
     Some(Depth::Perspective { limit, fall: z.w - limit * w.w })
 }
 
-/// Refuses a matrix whose depth grows with distance. What cannot be judged is accepted.
+/// Refuses a matrix whose depth grows with distance. Matrices that cannot be judged are accepted.
 ///
 /// In perspective the third row is k times the fourth and c in its last column, so that depth is k + c/w: it falls with
 /// the distance w where c > 0. In a parallel view depth must grow in the direction `towards_viewer`, world space, if
@@ -116,7 +116,7 @@ pub(crate) fn towards_viewer(clip_from_world: &DMat4) -> DVec3 {
     clip_from_world.row(0).xyz().cross(clip_from_world.row(1).xyz())
 }
 
-/// Refuses a matrix that clips what is infinitely far. What cannot be judged is accepted.
+/// Refuses a matrix with a far plane. Matrices that cannot be judged are accepted.
 pub(crate) fn check_no_far_plane(clip_from_world: &DMat4) -> Result<(), OutlineError> {
     match depth_of(clip_from_world) {
         Some(Depth::Parallel(_)) => Err(OutlineError::FarPlane { far: f64::INFINITY }),

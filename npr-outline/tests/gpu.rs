@@ -24,7 +24,7 @@ use npr_outline::normal_format::{NormalFormat, fibonacci_sphere};
 use npr_outline::segment::{LineView, ScreenSegment, outline_coverage, outline_is_visible, outline_project};
 use npr_outline::shadow_mask::{MASK_FORMAT, ShadowMaskPass};
 use npr_outline::shadow_pass::SHADOW_WGSL;
-use npr_outline::shadow_volume::{outline_in_shadow, outline_turn};
+use npr_outline::shadow_volume::{outline_in_shadow, outline_light_side};
 use std::collections::BTreeSet;
 
 const FOV: f64 = 1.0;
@@ -302,7 +302,7 @@ fn coverage_is_that_of_the_twin() {
             let covered = outline_coverage(&segment, point, width);
             if covered > 0.0 && visible(&segment, point) { covered } else { 0.0 }
         };
-        // Decided alike for segments a thousandth of a px, of depth or of slope beside it: f32 is better than that.
+        // The same decision for segments a thousandth of a px, of depth or of slope beside it: f32 is better than that.
         let shaken = shaken(&segment, &view);
         let is_firm = |point: DVec2| {
             let seen = visible(&segment, point);
@@ -425,7 +425,7 @@ fn a_face_exactly_edge_on_is_turned_towards_the_light() {
                 {cases}
                 default: {{}}
             }}
-            return vec4<u32>(u32(outline_turn(plane, vec4<f32>(1.0, 2.0, 3.0, 1.0)) + 1));
+            return vec4<u32>(u32(outline_light_side(plane, vec4<f32>(1.0, 2.0, 3.0, 1.0)) + 1));
         }}"
     );
     let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
@@ -483,7 +483,7 @@ fn a_face_exactly_edge_on_is_turned_towards_the_light() {
     let found: Vec<i32> = gpu.read_texture(&texture, 1).into_iter().map(|turn| i32::from(turn) - 1).collect();
     assert_eq!(found, expected);
     let light = Vec4::new(1.0, 2.0, 3.0, 1.0);
-    assert_eq!(planes.map(|[x, w]| outline_turn([x, 0.0, 0.0, w], light)), expected);
+    assert_eq!(planes.map(|[x, w]| outline_light_side([x, 0.0, 0.0, w], light)), expected);
 }
 
 /// All counts that a stencil can hold, in bands of the picture; nothing outside of the area.

@@ -16,8 +16,8 @@ struct InkInker {
     padding2: u32,
 }
 
-// 1 where both pairs of normals are alike, falling to 0.
-fn ink_inker_alike(
+// 1 where both pairs of normals are similar, falling to 0.
+fn ink_inker_similarity(
     inker: InkInker,
     normal0: vec3<f32>,
     normal1: vec3<f32>,
@@ -39,7 +39,7 @@ fn ink_inker(
     normal3: vec3<f32>,
     depths: vec4<f32>,
 ) -> f32 {
-    let unlike = 1.0 - ink_inker_alike(inker, normal0, normal1, normal2, normal3, depths.x);
+    let unlike = 1.0 - ink_inker_similarity(inker, normal0, normal1, normal2, normal3, depths.x);
     let d = depths.xy - depths.zw;
     if inker.form == INK_INKER_PRINTED {
         return select(0.0, 1.0, unlike + (d.x * d.x + 0.25 + d.y) > 0.5);

@@ -1,11 +1,11 @@
 //! Discontinuities of normals: Card & Mitchell 2002, listing 9, and the slides of SIGGRAPH 2002.
 //!
-//! Ink where n · nᵢ < t for any of the four neighbours i. Both sources do the same with thresholds of their own,
-//! [`COS_CM`] and [`COS_OS`], and neither brings what it reads to unit length.
+//! Ink where n · nᵢ < t for any of the four neighbours i. The two sources differ in the threshold,
+//! [`COS_CM`] and [`COS_OS`]; neither normalises the normals that it reads.
 //!
 //! On bytes the comparison is one of integers ([`ink_normal_bytes_edge`]): Σ (2a − 255)(2b − 255) < t · 255².
 //!
-//! Background is no normal. What says so differs from every normal and not from itself, whatever its dot products
+//! Background has a vector that is no normal. It differs from every normal and not from itself, whatever the dot products
 //! are; the printed form has no such rule ([`crate::format::printed`]).
 
 use crate::filter::ink_ramp;
@@ -16,7 +16,7 @@ pub const COS_CM: f32 = 0.85;
 /// The slides' threshold, 36.9°.
 pub const COS_OS: f32 = 0.80;
 
-/// Ink where any neighbour's normal is farther off than the cosine says. Zero vectors are no normal.
+/// Ink where the cosine between the normal and that of any neighbour is below `cos`. Zero vectors are no normal.
 ///
 /// 1 where n · nᵢ < t for any i. With a `softness` s > 0: clamp(weight · Σ clamp((t − n · nᵢ) / s + ½, 0, 1), 0, 1).
 pub fn ink_normal(centre: DVec3, taps: [DVec3; 4], cos: f64, softness: f64, weight: f64) -> f64 {
@@ -41,7 +41,7 @@ pub fn ink_normal_printed(centre: DVec3, taps: [DVec3; 4], cos: f64) -> f64 {
     f64::from(u8::from(taps.iter().any(|&tap| centre.dot(tap) < cos)))
 }
 
-/// t · 255², rounded up: [`ink_normal_bytes_edge`] takes it.
+/// t · 255², rounded up: the threshold of [`ink_normal_bytes_edge`].
 pub fn normal_bytes_threshold(cos: f32) -> i32 {
     (f64::from(cos) * 65025.0).ceil() as i32
 }
@@ -60,7 +60,7 @@ pub fn ink_normal_bytes_dot(a: [u8; 3], b: [u8; 3]) -> i32 {
     a.iter().zip(b).map(|(&a, b)| (2 * i32::from(a) - 255) * (2 * i32::from(b) - 255)).sum()
 }
 
-/// Ink where any neighbour's bytes differ; hard.
+/// Whether the normal differs from that of any neighbour, on biased bytes.
 pub fn ink_normal_bytes_edge(centre: [u8; 3], taps: [[u8; 3]; 4], threshold: i32) -> bool {
     taps.iter().any(|&tap| ink_normal_bytes_differ(centre, tap, threshold))
 }

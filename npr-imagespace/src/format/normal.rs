@@ -1,14 +1,14 @@
 //! Normals in five formats, and the octahedral codes that filters compare as integers.
 //!
 //! The octahedral formats unfold the octahedron |x| + |y| + |z| = 1 into a square (Meyer, Süßmuth, Sußner, Stamminger &
-//! Greiner 2010, "On Floating-Point Normal Vectors") and store two numbers −m..=m, rounded to the nearest, as
-//! number + m + 1. So 0 is 0, which `_bx2` has no code for, and the code (0, 0) is left over and stands for no normal.
+//! Greiner 2010, "On Floating-Point Normal Vectors") and store two integers −m..=m, rounded to the nearest, as
+//! integer + m + 1. 0 is represented exactly, which `_bx2` cannot, and the unused code (0, 0) stands for no normal.
 //!
-//! The largest angle between a normal and what comes back, and the mean, over 100,000 directions (`tests/format.rs`):
+//! The largest and the mean angle between a normal and the decoded one, over 100,000 directions (`tests/format.rs`):
 //! bytes 0.38° and 0.17°, octahedral 2 × 5 bits 7.9° and 2.8°, 2 × 8 0.92° and 0.34°, 2 × 16 0.0036° and 0.0013°,
 //! half floats 0.022° and 0.006°.
 //!
-//! Folded back ([`ink_oct_vector`]) a code is a vector of integers with |x| + |y| + |z| = m in the direction of the
+//! Decoded to integers ([`ink_oct_vector`]) a code is a vector of integers with |x| + |y| + |z| = m in the direction of the
 //! normal. Dot products of such vectors are exact on every machine, which is what the filters use.
 
 use crate::format::half::{ink_half_decode, ink_half_encode};
@@ -30,7 +30,7 @@ pub enum NormalFormat {
     Half,
 }
 
-/// What an octahedral number of so many bits runs to: from −m to m in steps of 1.
+/// m, the largest octahedral integer of a number of `bits`.
 pub const fn oct_most(bits: u32) -> i32 {
     (1 << (bits - 1)) - 1
 }
@@ -51,7 +51,7 @@ pub fn ink_oct_encode(normal: Vec3, most: i32) -> UVec2 {
     ((flat * most as f32 + 0.5).floor().as_ivec2() + most + 1).as_uvec2()
 }
 
-/// The direction of octahedral numbers as integers, |x| + |y| + |z| = `most`.
+/// The direction of an octahedral code as integers with |x| + |y| + |z| = `most`.
 pub fn ink_oct_vector(code: IVec2, most: i32) -> IVec3 {
     let z = most - code.x.abs() - code.y.abs();
     if z >= 0 {
@@ -86,7 +86,7 @@ impl NormalFormat {
         }
     }
 
-    /// A normal of unit length, or one that is no normal, as a code in the lowest [`NormalFormat::bits`].
+    /// A unit normal, or a vector that is no normal, as a code in the lowest [`NormalFormat::bits`].
     pub fn encode(self, normal: Vec3) -> u64 {
         let oct = |bits: u32| {
             let stored = ink_oct_encode(normal, oct_most(bits));
@@ -108,7 +108,8 @@ impl NormalFormat {
     }
 
     /// The normal of a code: unit length in the octahedral formats, to the format's precision in the others.
-    /// No normal is zero in the octahedral formats, (−1, −1, −1) in bytes, and itself in halves.
+    /// A vector that is no normal is decoded to zero in the octahedral formats, to (−1, −1, −1) in bytes, and unchanged in
+    /// half floats.
     pub fn decode(self, code: u64) -> Vec3 {
         let oct = |bits: u32| {
             let mask = (1 << bits) - 1;

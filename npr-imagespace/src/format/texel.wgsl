@@ -1,4 +1,4 @@
-// Normal, region and depth of a pixel in one word or two. The twin of `texel.rs`. No bindings and no entry points.
+// Normal, region and depth of a pixel packed into 32 or 64 bits. The twin of `texel.rs`. No bindings and no entry points.
 
 struct InkDepthCode {
     // Codes per unit of v, which is 1/z, or z in a parallel view.
@@ -11,9 +11,9 @@ struct InkDepthCode {
     parallel: u32,
 }
 
-// What a filter knows of a pixel.
+// A decoded texel, as the filter compares it.
 struct InkTap {
-    // Whole numbers, |x| + |y| + |z| = 15 in one word, 127 in two; zero for no normal.
+    // Integers with |x| + |y| + |z| = 15 in 32-bit texels and 127 in 64-bit ones; zero for no normal.
     normal: vec3<f32>,
     // 0 is background.
     region: u32,
@@ -38,13 +38,13 @@ fn ink_fold_region(region: u32, most: u32) -> u32 {
     return select(1u + (region - 1u) % most, 0u, region == 0u);
 }
 
-// A surface in one word, for an r32uint target. The region is folded.
+// A surface as a 32-bit texel, for an r32uint target. The region is folded.
 fn ink_narrow_word(normal: vec3<f32>, folded: u32, depth_code: u32) -> u32 {
     let oct = ink_oct_encode(normal, INK_OCT5_MOST);
     return depth_code | (folded << 14u) | (oct.x << 22u) | (oct.y << 27u);
 }
 
-// One word, for an r32uint target. Region 0, and a depth that no surface has, give background.
+// A 32-bit texel, for an r32uint target. Region 0, and a depth that is not valid for a surface, give background.
 fn ink_narrow_pack(normal: vec3<f32>, region: u32, depth: f32, code: InkDepthCode) -> u32 {
     if region == 0u || !ink_is_surface(depth) {
         return 0u;
@@ -57,13 +57,13 @@ fn ink_narrow_tap(word: u32) -> InkTap {
     return InkTap(ink_oct_load(oct, INK_OCT5_MOST), (word >> 14u) & 255u, i32(word & 0x3fffu));
 }
 
-// A surface in two words, for an rg32uint target. The region is folded.
+// A surface as a 64-bit texel, for an rg32uint target. The region is folded.
 fn ink_wide_words(normal: vec3<f32>, folded: u32, depth_code: u32) -> vec2<u32> {
     let oct = ink_oct_encode(normal, INK_OCT8_MOST);
     return vec2<u32>(depth_code | (folded << 24u), oct.x | (oct.y << 8u) | ((folded >> 8u) << 16u));
 }
 
-// Two words, for an rg32uint target. Region 0, and a depth that no surface has, give background.
+// A 64-bit texel, for an rg32uint target. Region 0, and a depth that is not valid for a surface, give background.
 fn ink_wide_pack(normal: vec3<f32>, region: u32, depth: f32, code: InkDepthCode) -> vec2<u32> {
     if region == 0u || !ink_is_surface(depth) {
         return vec2<u32>(0u);

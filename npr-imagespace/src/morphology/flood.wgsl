@@ -19,7 +19,7 @@ fn ink_flood_distance2(site: u32) -> u32 {
     return select(u32(vector.x * vector.x + vector.y * vector.y), 0xffffffffu, site == INK_FLOOD_NONE);
 }
 
-// The nearer of what a pixel knows and of what the texel `offset` px away knows.
+// The nearer of the line pixel of a texel, `best`, and that of the texel `offset` px away, `tap`.
 fn ink_flood_take(best: u32, tap: u32, offset: vec2<i32>) -> u32 {
     let vector = ink_flood_vector(tap) + offset;
     let away = abs(vector);

@@ -1,14 +1,14 @@
-//! The disc of any radius, by the passes of [`crate::morphology::flood`].
+//! Dilation and erosion by a disc of any radius, by the passes of [`crate::morphology::flood`].
 //!
-//! Every pixel learns its nearest line pixel, along the rows and then along the columns. What is nearest along the row
-//! is exact in any plan and found in the bits of its lines, at once; the columns take the passes of [`disc_plan`], whose
-//! number grows with the logarithm of the radius. A last pass makes it ink, at once over a picture if that is what the
-//! pass is made for. The result is that of [`crate::morphology::flood::flood`] with that plan.
+//! The nearest line pixel of each pixel is found along rows, then along columns. Along rows one pass finds it exactly from
+//! line pixels stored as bits; along columns there are the passes of [`disc_plan`], whose number grows with the logarithm
+//! of the radius. A last pass converts distances to ink, composited over a picture if the pass is made for one. The result
+//! is that of [`crate::morphology::flood::flood`] with that plan.
 //!
-//! Along a row 32 px are read at a time, up to the radius: some thousand px make that the largest part.
+//! The row pass reads 32 px a load up to the radius; from a radius of about a thousand px on it takes most of the time.
 //!
 //! Erosion is the complement of the dilated complement, as in [`crate::morphology::disc::erode_disc`]: the nearest
-//! paper is sought, and there is none outside the picture, so that its border eats nothing.
+//! paper is searched for, and there is none outside the picture, so that the picture's border removes no ink.
 
 use super::fullscreen::{Bound, Fullscreen, Output, size_px, uniform};
 use super::{INK_FORMAT, InkTarget, Onto, check_ink, check_view};
@@ -20,13 +20,13 @@ use crate::morphology::flood::{FloodPlan, disc_plan};
 use bytemuck::{Pod, Zeroable};
 
 pub(super) const DISC: (&str, &str) = ("pass/disc.wgsl", include_str!("disc.wgsl"));
-/// Of lines as bits.
+/// The format of line pixels as bits.
 const WORD_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
-/// Pixels in a texel of them.
+/// Pixels in a texel of bits.
 const WORD_PX: u32 = 32;
-/// Of steps to the nearest.
+/// The format of steps to the nearest line pixel.
 const SITE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
-/// Pixels in a texel of them.
+/// Pixels in a texel of steps.
 const SITE_PX: u32 = 4;
 /// `Pass` of the WGSL.
 #[repr(C)]
@@ -41,12 +41,12 @@ struct PassUniform {
     padding: [u32; 2],
 }
 
-/// Textures that a disc needs on the way, to be kept between frames: 9 bytes a pixel and an eighth.
+/// Intermediate textures of a disc, to be kept between frames: 9⅛ bytes a pixel.
 #[derive(Debug)]
 pub struct DiscScratch {
     words: wgpu::TextureView,
     sites: [wgpu::TextureView; 2],
-    /// Between the halves of an operation.
+    /// Ink between the two halves of an opening or closing.
     ink: wgpu::TextureView,
 }
 
@@ -81,11 +81,11 @@ pub struct DiscPass {
     row: Fullscreen,
     column: Fullscreen,
     resolve: Fullscreen,
-    /// The last of an operation's first half.
+    /// The last pass of the first half of an opening or closing.
     resolve_half: Fullscreen,
 }
 
-/// What is done to ink.
+/// One half of an operation.
 #[derive(Clone, Copy, Debug)]
 struct Half<'a> {
     disc: &'a Disc,
@@ -125,25 +125,25 @@ impl DiscPass {
         disc: &Disc,
         ink: &wgpu::TextureView,
         scratch: &DiscScratch,
-        onto: &Onto<'_>,
+        target: &Onto<'_>,
     ) -> Result<(), ImageSpaceError> {
         if !(0.0..=RADIUS_MOST_PX).contains(&disc.radius_px) {
             return Err(ImageSpaceError::Radius { radius_px: disc.radius_px });
         }
-        let size = self.resolve.check(onto)?;
+        let size = self.resolve.check(target)?;
         check_ink(ink, Some(size))?;
         check_view("the scratch textures", &scratch.ink, INK_FORMAT, "R8Unorm", Some(size))?;
         let plan = disc_plan(disc);
         let halves: Vec<_> = operation.halves().map(|eroding| Half { disc, plan: &plan, eroding }).collect();
         if let [first, second] = halves[..] {
-            // As far as the second half will read.
+            // The first half must be correct as far as the second half reads.
             let reach = plan.row_reach_px();
-            let area = onto.area.map(|area| grown(area, [reach, reach], size));
+            let area = target.area.map(|area| grown(area, [reach, reach], size));
             let between = Onto { view: &scratch.ink, composite: &Composite::Multiply, area };
             self.record_half(device, encoder, &first, ink, &self.resolve_half, scratch, &between);
-            self.record_half(device, encoder, &second, &scratch.ink, &self.resolve, scratch, onto);
+            self.record_half(device, encoder, &second, &scratch.ink, &self.resolve, scratch, target);
         } else {
-            self.record_half(device, encoder, &halves[0], ink, &self.resolve, scratch, onto);
+            self.record_half(device, encoder, &halves[0], ink, &self.resolve, scratch, target);
         }
         Ok(())
     }
@@ -157,11 +157,11 @@ impl DiscPass {
         ink: &wgpu::TextureView,
         resolve: &Fullscreen,
         scratch: &DiscScratch,
-        onto: &Onto<'_>,
+        target: &Onto<'_>,
     ) {
         let size = size_px(ink);
         let reach = half.plan.row_reach_px();
-        // A longer row has no more.
+        // A row has no more words than its width takes.
         let words = reach.min(size[0]).div_ceil(WORD_PX);
         let mut record = |draw: &Fullscreen, from, step: u32, fan: u32, to, area| {
             let what = PassUniform {
@@ -175,11 +175,11 @@ impl DiscPass {
             };
             let what = uniform(device, bytemuck::bytes_of(&what));
             let resources = [what.as_entire_binding(), wgpu::BindingResource::TextureView(from)];
-            draw.draw(encoder, &draw.group(device, &resources, onto.composite), to, area);
+            draw.draw(encoder, &draw.group(device, &resources, target.composite), to, area);
         };
-        // Each pass is to be right wherever those after it read.
+        // Each pass must be correct wherever the passes after it read.
         let columns: Vec<_> = half.plan.passes.iter().filter(|pass| pass.along_y).collect();
-        let mut areas = vec![onto.area];
+        let mut areas = vec![target.area];
         for pass in columns.iter().rev() {
             areas.push(areas[areas.len() - 1].map(|area| grown(area, [0, pass.step * pass.fan], size)));
         }
@@ -194,11 +194,11 @@ impl DiscPass {
             record(&self.column, &scratch.sites[from], pass.step, pass.fan, &scratch.sites[to], texels(area, SITE_PX));
             [from, to] = [to, from];
         }
-        record(resolve, &scratch.sites[from], 0, 0, onto.view, onto.area);
+        record(resolve, &scratch.sites[from], 0, 0, target.view, target.area);
     }
 }
 
-/// An area and so many px around it, within the picture.
+/// An area grown by `reach` px to each side, within the picture.
 fn grown([x, y, width, height]: [u32; 4], reach: [u32; 2], size: [u32; 2]) -> [u32; 4] {
     let along = |from: u32, len: u32, reach: u32, size: u32| {
         let low = from.saturating_sub(reach);
@@ -209,7 +209,7 @@ fn grown([x, y, width, height]: [u32; 4], reach: [u32; 2], size: [u32; 2]) -> [u
     [left, top, width, height]
 }
 
-/// An area in texels of so many px side by side.
+/// An area in texels of `px` horizontally adjacent pixels.
 fn in_texels([x, y, width, height]: [u32; 4], px: u32) -> [u32; 4] {
     let left = x / px;
     [left, y, (x + width).div_ceil(px) - left, height]

@@ -9,7 +9,7 @@ use crate::picture::Taps;
 
 pub(super) const FUSED: (&str, &str) = ("pass/fused.wgsl", include_str!("fused.wgsl"));
 
-/// The format of a texture of packed texels. It is to be cleared to 0, which is background.
+/// The format of a texture of packed texels. It must be cleared to 0, which is background.
 pub fn texel_format(layout: TexelLayout) -> wgpu::TextureFormat {
     match layout {
         TexelLayout::Narrow => wgpu::TextureFormat::R32Uint,
@@ -65,13 +65,13 @@ impl FusedPass {
         filter: &FusedFilter,
         code: &DepthCode,
         texels: &wgpu::TextureView,
-        onto: &Onto<'_>,
+        target: &Onto<'_>,
     ) -> Result<(), ImageSpaceError> {
         let what = FilterUniform::new(filter, self.layout, code)?;
         if (filter.taps, filter.softness > 0.0) != (self.taps, self.soft) {
             return Err(ImageSpaceError::OtherFilter);
         }
-        let size = self.draw.check(onto)?;
+        let size = self.draw.check(target)?;
         let needed = match self.layout {
             TexelLayout::Narrow => "R32Uint",
             TexelLayout::Wide => "Rg32Uint",
@@ -79,7 +79,7 @@ impl FusedPass {
         check_view("packed texels", texels, texel_format(self.layout), needed, Some(size))?;
         let what = uniform(device, bytemuck::bytes_of(&what));
         let resources = [what.as_entire_binding(), wgpu::BindingResource::TextureView(texels)];
-        self.draw.record(device, encoder, &resources, onto);
+        self.draw.record(device, encoder, &resources, target);
         Ok(())
     }
 }

@@ -3,7 +3,7 @@
 @group(0) @binding(1) var<uniform> what: InkFilter;
 @group(0) @binding(2) var texels: texture_2d<u32>;
 
-// Known when the pipeline is made: a software rasteriser runs through what it branches around.
+// Constants of the pipeline, since software rasterisers execute both sides of branches.
 override narrow: bool;
 override cross_taps: bool;
 override soft: bool;

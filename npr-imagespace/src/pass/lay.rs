@@ -1,4 +1,4 @@
-//! Ink over a picture, also of another size: see [`crate::resample`].
+//! Compositing ink of any size over a picture: see [`crate::resample`].
 
 use super::fullscreen::{Bound, Fullscreen, Output, flag, size_px, uniform};
 use super::{InkTarget, Onto, check_ink};
@@ -36,16 +36,16 @@ impl LayPass {
         device: &wgpu::Device,
         encoder: &mut wgpu::CommandEncoder,
         ink: &wgpu::TextureView,
-        onto: &Onto<'_>,
+        target: &Onto<'_>,
     ) -> Result<(), ImageSpaceError> {
-        let to = self.same.check(onto)?;
+        let to = self.same.check(target)?;
         check_ink(ink, None)?;
         let from = size_px(ink);
         let scale = [from[0] as f32 / to[0] as f32, from[1] as f32 / to[1] as f32, 0.0, 0.0];
         let scale = uniform(device, bytemuck::bytes_of(&scale));
         let resources = [scale.as_entire_binding(), wgpu::BindingResource::TextureView(ink)];
         let draw = if from == to { &self.same } else { &self.scaled };
-        draw.record(device, encoder, &resources, onto);
+        draw.record(device, encoder, &resources, target);
         Ok(())
     }
 }

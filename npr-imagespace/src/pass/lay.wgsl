@@ -1,4 +1,4 @@
-// Ink over a picture, also of another size.
+// Compositing ink of any size over a picture.
 
 @group(0) @binding(1) var<uniform> scale: vec4<f32>;
 @group(0) @binding(2) var ink: texture_2d<f32>;

@@ -10,10 +10,10 @@ use crate::picture::Taps;
 
 pub(super) const PRINTED: (&str, &str) = ("pass/printed.wgsl", include_str!("printed.wgsl"));
 
-/// What a pipeline is made for.
+/// The tests that a pipeline is made for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
-    /// Whether normals are asked for, and as printed, and whether depth is.
+    /// Whether normals are tested, with `true` for background as printed, and whether depth is tested.
     Edges {
         normal: Option<bool>,
         depth: bool,
@@ -35,7 +35,7 @@ impl From<&PrintedFilter> for Kind {
     }
 }
 
-/// The pipeline of a filter: for what it looks for and its taps.
+/// The pipeline of a filter, for its tests and taps.
 #[derive(Debug)]
 pub struct PrintedPass {
     draw: Fullscreen,
@@ -75,12 +75,12 @@ impl PrintedPass {
         encoder: &mut wgpu::CommandEncoder,
         filter: &PrintedFilter,
         texels: &wgpu::TextureView,
-        onto: &Onto<'_>,
+        target: &Onto<'_>,
     ) -> Result<(), ImageSpaceError> {
         if Kind::from(filter) != self.kind {
             return Err(ImageSpaceError::OtherFilter);
         }
-        let size = self.draw.check(onto)?;
+        let size = self.draw.check(target)?;
         check_view("texels", texels, wgpu::TextureFormat::Rgba8Unorm, "Rgba8Unorm", Some(size))?;
         let what = match filter {
             PrintedFilter::Edges(edges) => uniform(device, bytemuck::bytes_of(&PrintedUniform::new(edges)?)),
@@ -90,7 +90,7 @@ impl PrintedPass {
             PrintedFilter::Inker(inker) => uniform(device, bytemuck::bytes_of(&InkerUniform::from(inker))),
         };
         let resources = [what.as_entire_binding(), wgpu::BindingResource::TextureView(texels)];
-        self.draw.record(device, encoder, &resources, onto);
+        self.draw.record(device, encoder, &resources, target);
         Ok(())
     }
 }

@@ -4,7 +4,7 @@
 @group(0) @binding(1) var<uniform> inker: InkInker;
 @group(0) @binding(2) var texels: texture_2d<f32>;
 
-// Known when the pipeline is made: a software rasteriser runs through what it branches around.
+// Constants of the pipeline, since software rasterisers execute both sides of branches.
 override with_normal: bool;
 override printed_background: bool;
 override with_depth: bool;

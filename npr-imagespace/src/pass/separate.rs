@@ -1,4 +1,4 @@
-//! The filters over someone else's G-buffer: see [`crate::filter::separate`] for what they decide, and how the numbers
+//! The filters over separate textures: see [`crate::filter::separate`] for what they decide, and how the numbers
 //! of a depth buffer are read.
 
 use super::fullscreen::{Bound, Fullscreen, Output, flag, uniform};
@@ -9,14 +9,14 @@ use crate::picture::Taps;
 
 pub(super) const SEPARATE: (&str, &str) = ("pass/separate.wgsl", include_str!("separate.wgsl"));
 
-/// The textures of a G-buffer, all of the target's size. What the filter does not ask for may be `None`.
+/// The textures of a G-buffer, all of the target's size. Those of tests that the filter does not have may be `None`.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SeparateTextures<'a> {
-    /// Any format of floats with three channels or more.
+    /// Any format of floats with three channels or more, without sRGB.
     pub normal: Option<&'a wgpu::TextureView>,
     /// Any format of floats, the first channel; or a depth buffer, `Depth32Float` or the depth alone of another.
     pub depth: Option<&'a wgpu::TextureView>,
-    /// Any format of unsigned whole numbers, the first channel: `R8Uint`, `R16Uint`, `R32Uint`.
+    /// Any format of unsigned integers, the first channel: `R8Uint`, `R16Uint`, `R32Uint`.
     pub region: Option<&'a wgpu::TextureView>,
 }
 
@@ -36,7 +36,7 @@ const DEPTHS: Accept = Accept {
     accepts: |format, features| format.has_depth_aspect() || is_float(format, features),
 };
 const REGIONS: Accept = Accept {
-    needed: "a format of unsigned whole numbers",
+    needed: "a format of unsigned integers",
     accepts: |format, features| format.sample_type(None, Some(features)) == Some(wgpu::TextureSampleType::Uint),
 };
 
@@ -44,11 +44,11 @@ fn is_float(format: wgpu::TextureFormat, features: wgpu::Features) -> bool {
     matches!(format.sample_type(None, Some(features)), Some(wgpu::TextureSampleType::Float { .. }))
 }
 
-/// What a pipeline is made for.
+/// The tests that a pipeline is made for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Kind {
     normal: bool,
-    /// 0 none, 1 bends, 2 steps, 3 plain.
+    /// 0 none, 1 second differences, 2 first differences, 3 plain.
     depth: u8,
     region: bool,
     taps: Taps,
@@ -72,12 +72,12 @@ impl From<&SeparateFilter> for Kind {
     }
 }
 
-/// The pipeline of a filter: for what it looks for, its taps, and hard or soft lines.
+/// The pipeline of a filter, for its tests, its taps, and hard or soft lines.
 #[derive(Debug)]
 pub struct SeparatePass {
     draw: Fullscreen,
     kind: Kind,
-    /// For what is not asked for: a texel of floats and one of whole numbers.
+    /// Placeholders for textures that are not read: one texel of floats, one of integers.
     none: [wgpu::TextureView; 2],
     nearest: wgpu::Sampler,
 }
@@ -100,7 +100,7 @@ impl SeparatePass {
         let bound = [Bound::Uniform, Bound::Float, Bound::Float, Bound::Whole, Bound::Nearest];
         let none = [wgpu::TextureFormat::R8Unorm, wgpu::TextureFormat::R8Uint].map(|format| {
             let texture = device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("not asked for"),
+                label: Some("placeholder"),
                 size: wgpu::Extent3d::default(),
                 mip_level_count: 1,
                 sample_count: 1,
@@ -131,13 +131,13 @@ impl SeparatePass {
         encoder: &mut wgpu::CommandEncoder,
         filter: &SeparateFilter,
         textures: &SeparateTextures<'_>,
-        onto: &Onto<'_>,
+        target: &Onto<'_>,
     ) -> Result<(), ImageSpaceError> {
         let what = SeparateUniform::new(filter)?;
         if Kind::from(filter) != self.kind {
             return Err(ImageSpaceError::OtherFilter);
         }
-        let size = self.draw.check(onto)?;
+        let size = self.draw.check(target)?;
         let what = uniform(device, bytemuck::bytes_of(&what));
         let texture =
             |what, asked: bool, given: Option<&wgpu::TextureView>, none: &wgpu::TextureView, accept: Accept| {
@@ -160,7 +160,7 @@ impl SeparatePass {
         ];
         let [normal, depth, region] = views.each_ref().map(wgpu::BindingResource::TextureView);
         let nearest = wgpu::BindingResource::Sampler(&self.nearest);
-        self.draw.record(device, encoder, &[what.as_entire_binding(), normal, depth, region, nearest], onto);
+        self.draw.record(device, encoder, &[what.as_entire_binding(), normal, depth, region, nearest], target);
         Ok(())
     }
 }

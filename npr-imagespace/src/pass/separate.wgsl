@@ -8,11 +8,11 @@
 // sampler that does not filter.
 @group(0) @binding(5) var nearest: sampler;
 
-// Known when the pipeline is made: a software rasteriser runs through what it branches around. What is not asked for
-// has a texture of one texel, which is not read.
+// Constants of the pipeline, since software rasterisers execute both sides of branches. Tests that are not enabled have
+// a texture of one texel, which is not read.
 override with_normal: bool;
 override with_region: bool;
-// Which test of depth, if any.
+// The test of depth; 0 for none.
 override depth_test: u32;
 override cross_taps: bool;
 override soft: bool;

@@ -10,7 +10,7 @@ use crate::morphology::{Kernel, Operation};
 
 pub(super) const STEP: (&str, &str) = ("pass/step.wgsl", include_str!("step.wgsl"));
 
-/// What one step does.
+/// One step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Step {
     /// The largest ink of the kernel's pixels: [`crate::morphology::dilate`].
@@ -82,11 +82,11 @@ impl StepPass {
         device: &wgpu::Device,
         encoder: &mut wgpu::CommandEncoder,
         ink: &wgpu::TextureView,
-        onto: &Onto<'_>,
+        target: &Onto<'_>,
     ) -> Result<(), ImageSpaceError> {
-        let size = self.draw.check(onto)?;
+        let size = self.draw.check(target)?;
         check_ink(ink, Some(size))?;
-        self.draw.record(device, encoder, &[wgpu::BindingResource::TextureView(ink)], onto);
+        self.draw.record(device, encoder, &[wgpu::BindingResource::TextureView(ink)], target);
         Ok(())
     }
 }
@@ -121,7 +121,7 @@ impl PingPong {
     ) -> Result<usize, ImageSpaceError> {
         check_ink(ink[0], None)?;
         check_ink(ink[1], Some(size_px(ink[0])))?;
-        // All that is needed, once for all steps.
+        // The bind groups for all steps.
         let groups = |draw: &Fullscreen| {
             ink.map(|from| draw.group(device, &[wgpu::BindingResource::TextureView(from)], &Composite::Multiply))
         };

@@ -2,7 +2,7 @@
 
 use crate::device::{gpu, view};
 use crate::inputs::{Random, SIZES, inks, px};
-use crate::targets::{PICTURE, assert_areas, difference, drawn, laid};
+use crate::targets::{PICTURE, assert_areas, composited, difference, drawn};
 use npr_imagespace::ImageSpaceError;
 use npr_imagespace::composite::Composite;
 use npr_imagespace::morphology::Operation;
@@ -44,8 +44,8 @@ fn discs_are_the_floods_of_the_cpu() {
                         if random.below(4) > 0 {
                             continue;
                         }
-                        let got = drawn(gpu, size, InkTarget::Ink, &Composite::default(), None, |encoder, onto| {
-                            pass.record(&gpu.device, encoder, operation, &disc, &from, &scratch, onto).unwrap();
+                        let got = drawn(gpu, size, InkTarget::Ink, &Composite::default(), None, |encoder, target| {
+                            pass.record(&gpu.device, encoder, operation, &disc, &from, &scratch, target).unwrap();
                         });
                         let expected = flooded(&ink, size, operation, &disc);
                         if antialias {
@@ -63,7 +63,7 @@ fn discs_are_the_floods_of_the_cpu() {
     println!("{off} of {soft} soft pictures are off by 1/255 somewhere");
 }
 
-/// Where a flood misses, it misses alike: what is nearest is asked for in the same order.
+/// Both find the same wrong pixels, since they compare texels in the same order.
 #[test]
 fn floods_go_wrong_where_those_of_the_cpu_do() {
     let Some(gpu) = gpu() else { return };
@@ -72,13 +72,13 @@ fn floods_go_wrong_where_those_of_the_cpu_do() {
     let scratch = DiscScratch::new(&gpu.device, size);
     let mut random = Random(10);
     let (mut pixels, mut misses) = (0, 0);
-    // Specks about as far apart as the disc is wide, which compete most.
+    // Specks at distances of about the width of the disc, for which most errors occur.
     for (one_in, radius_px) in [(100, 9.0), (250, 9.0), (250, 16.0)] {
         let ink: Vec<u8> = (0..size[0] * size[1]).map(|_| if random.below(one_in) == 0 { 255 } else { 0 }).collect();
         let from = view(&gpu.upload(INK_FORMAT, size, &ink));
         let disc = Disc { radius_px, antialias: true };
-        let got = drawn(gpu, size, InkTarget::Ink, &Composite::default(), None, |encoder, onto| {
-            pass.record(&gpu.device, encoder, Operation::Dilate, &disc, &from, &scratch, onto).unwrap();
+        let got = drawn(gpu, size, InkTarget::Ink, &Composite::default(), None, |encoder, target| {
+            pass.record(&gpu.device, encoder, Operation::Dilate, &disc, &from, &scratch, target).unwrap();
         });
         assert!(difference(&got, &flooded(&ink, size, Operation::Dilate, &disc)) <= 1, "{disc:?}");
         let mut exact = Vec::new();
@@ -102,8 +102,8 @@ fn the_widest_disc_covers_all_and_the_next_is_refused() {
     let run = |radius_px| {
         let disc = Disc { radius_px, antialias: false };
         let mut result = Ok(());
-        let got = drawn(gpu, size, InkTarget::Ink, &Composite::default(), None, |encoder, onto| {
-            result = pass.record(&gpu.device, encoder, Operation::Dilate, &disc, &from, &scratch, onto);
+        let got = drawn(gpu, size, InkTarget::Ink, &Composite::default(), None, |encoder, target| {
+            result = pass.record(&gpu.device, encoder, Operation::Dilate, &disc, &from, &scratch, target);
         });
         result.map(|()| got)
     };
@@ -129,8 +129,8 @@ fn a_disc_goes_at_once_over_a_picture_and_within_its_area() {
             (Operation::Erode, Disc { radius_px: 7.0, antialias: false }),
             (Operation::Close, Disc { radius_px: 5.0, antialias: true }),
         ] {
-            let record = |encoder: &mut wgpu::CommandEncoder, onto: &npr_imagespace::pass::Onto<'_>| {
-                pass.record(&gpu.device, encoder, operation, &disc, &from, &scratch, onto).unwrap();
+            let record = |encoder: &mut wgpu::CommandEncoder, target: &npr_imagespace::pass::Onto<'_>| {
+                pass.record(&gpu.device, encoder, operation, &disc, &from, &scratch, target).unwrap();
             };
             if operation != Operation::Erode {
                 assert_areas(gpu, size, target, record);
@@ -138,7 +138,7 @@ fn a_disc_goes_at_once_over_a_picture_and_within_its_area() {
             if target == PICTURE {
                 let over = Composite::default();
                 let got = drawn(gpu, size, target, &over, None, record);
-                assert!(difference(&got, &laid(size, &flooded(ink, size, operation, &disc), &over)) <= 1);
+                assert!(difference(&got, &composited(size, &flooded(ink, size, operation, &disc), &over)) <= 1);
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::device::{gpu, view};
 use crate::inputs::{Random, SIZES, direction, px, scene};
-use crate::targets::{COMPOSITES, PICTURE, assert_areas, assert_laid, difference, drawn, laid};
+use crate::targets::{COMPOSITES, PICTURE, assert_areas, assert_composited, composited, difference, drawn};
 use npr_imagespace::composite::Composite;
 use npr_imagespace::filter::fused::{DepthTest, FilterUniform, FusedFilter, ShadowTest, ink_fused};
 use npr_imagespace::format::texel::*;
@@ -100,9 +100,9 @@ fn ink_and_pictures_are_those_of_the_cpu() {
                             let filter = FusedFilter { taps, softness, ..filter };
                             let expected = by_cpu(&texels, size, &filter, layout);
                             let draw = |pass: &FusedPass, target, composite: &Composite| {
-                                drawn(gpu, size, target, composite, None, |encoder, onto| {
+                                drawn(gpu, size, target, composite, None, |encoder, target| {
                                     let code = code(layout);
-                                    pass.record(&gpu.device, encoder, &filter, &code, &from, onto).unwrap();
+                                    pass.record(&gpu.device, encoder, &filter, &code, &from, target).unwrap();
                                 })
                             };
                             let got = draw(&on_ink, InkTarget::Ink, &Composite::default());
@@ -116,8 +116,8 @@ fn ink_and_pictures_are_those_of_the_cpu() {
                             // What it gives is the same whatever is done with it: each form now and then.
                             let composite = &random.one_of(&COMPOSITES);
                             let got = draw(&on_picture, PICTURE, composite);
-                            let over = laid(size, &expected, composite);
-                            borderline += assert_laid(&got, &over, &expected, composite, softness > 0.0);
+                            let over = composited(size, &expected, composite);
+                            borderline += assert_composited(&got, &over, &expected, composite, softness > 0.0);
                         }
                     }
                 }
@@ -137,8 +137,8 @@ fn lines_are_drawn_within_their_area() {
     let from = view(&gpu.upload(texel_format(layout), size, &bytes(texels, layout)));
     for target in [InkTarget::Ink, PICTURE] {
         let pass = FusedPass::new(&gpu.device, &filter, layout, target).unwrap();
-        assert_areas(gpu, size, target, |encoder, onto| {
-            pass.record(&gpu.device, encoder, &filter, &code(layout), &from, onto).unwrap();
+        assert_areas(gpu, size, target, |encoder, target| {
+            pass.record(&gpu.device, encoder, &filter, &code(layout), &from, target).unwrap();
         });
     }
 }

@@ -40,35 +40,37 @@ fn passes(gpu: &Gpu, target: InkTarget) -> Result<Vec<(&'static str, TextureForm
         let code = DepthCode::perspective(0.5, 60.0, layout).unwrap();
         let pass = FusedPass::new(device, &filter, layout, target)?;
         let record: Record<'_> =
-            Box::new(move |texels, encoder, onto| pass.record(device, encoder, &filter, &code, texels, onto));
+            Box::new(move |texels, encoder, target| pass.record(device, encoder, &filter, &code, texels, target));
         passes.push(("fused", format, record));
     }
     let filter = PrintedFilter::default();
     let pass = PrintedPass::new(device, &filter, target)?;
-    let record: Record<'_> = Box::new(move |texels, encoder, onto| pass.record(device, encoder, &filter, texels, onto));
+    let record: Record<'_> =
+        Box::new(move |texels, encoder, target| pass.record(device, encoder, &filter, texels, target));
     passes.push(("printed", TextureFormat::Rgba8Unorm, record));
     let pass = StepPass::new(device, Step::Dilate(Kernel::Cross), target)?;
-    let record: Record<'_> = Box::new(move |ink, encoder, onto| pass.record(device, encoder, ink, onto));
+    let record: Record<'_> = Box::new(move |ink, encoder, target| pass.record(device, encoder, ink, target));
     passes.push(("step", TextureFormat::R8Unorm, record));
     let pass = DiscPass::new(device, target)?;
     let scratch = DiscScratch::new(device, SIZE);
-    let record: Record<'_> =
-        Box::new(move |ink, encoder, onto| pass.record(device, encoder, Operation::Dilate, &DISC, ink, &scratch, onto));
+    let record: Record<'_> = Box::new(move |ink, encoder, target| {
+        pass.record(device, encoder, Operation::Dilate, &DISC, ink, &scratch, target)
+    });
     passes.push(("disc", TextureFormat::R8Unorm, record));
     let separate = SeparateFilter { normal: None, depth: None, ..Default::default() };
     let pass = SeparatePass::new(device, &separate, target)?;
-    let record: Record<'_> = Box::new(move |region, encoder, onto| {
+    let record: Record<'_> = Box::new(move |region, encoder, target| {
         let textures = SeparateTextures { region: Some(region), ..Default::default() };
-        pass.record(device, encoder, &separate, &textures, onto)
+        pass.record(device, encoder, &separate, &textures, target)
     });
     passes.push(("separate", TextureFormat::R32Uint, record));
     let pass = LayPass::new(device, target)?;
-    let record: Record<'_> = Box::new(move |ink, encoder, onto| pass.record(device, encoder, ink, onto));
+    let record: Record<'_> = Box::new(move |ink, encoder, target| pass.record(device, encoder, ink, target));
     passes.push(("lay", TextureFormat::R8Unorm, record));
     Ok(passes)
 }
 
-/// A texture, with four samples a pixel where that is asked for.
+/// A texture with a number of samples a pixel.
 fn texture(gpu: &Gpu, format: TextureFormat, [width, height]: [u32; 2], samples: u32) -> wgpu::TextureView {
     view(&gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: None,
@@ -161,7 +163,7 @@ fn textures_of_another_format_size_or_number_of_samples_are_refused() {
             let Err(ImageSpaceError::ViewSize { size_px, needed_px, .. }) = refused else { panic!("{name}") };
             assert_eq!((size_px, needed_px), (OTHER_SIZE.into(), SIZE.into()));
         }
-        // No device need have several samples of whole numbers.
+        // Multisampled integer textures are not required of devices.
         if format == TextureFormat::R8Unorm || format == TextureFormat::Rgba8Unorm {
             let refused = outcome(&texture(gpu, format, SIZE, 4)).unwrap_err();
             assert!(matches!(refused, ImageSpaceError::ViewSamples { samples: 4, .. }), "{name}");
@@ -191,8 +193,8 @@ fn a_view_without_srgb_of_an_srgb_texture_is_accepted() {
     let ink = texture(gpu, TextureFormat::R8Unorm, SIZE, 1);
     let pass = LayPass::new(&gpu.device, PICTURE).unwrap();
     gpu.run(|encoder| {
-        let onto = Onto { view: &picture, composite: &Composite::default(), area: None };
-        pass.record(&gpu.device, encoder, &ink, &onto).unwrap();
+        let target = Onto { view: &picture, composite: &Composite::default(), area: None };
+        pass.record(&gpu.device, encoder, &ink, &target).unwrap();
     });
 }
 
@@ -200,13 +202,13 @@ fn a_view_without_srgb_of_an_srgb_texture_is_accepted() {
 fn scratch_textures_and_pairs_of_another_size_are_refused() {
     let Some(gpu) = gpu() else { return };
     let [ink, target] = [(); 2].map(|()| texture(gpu, TextureFormat::R8Unorm, SIZE, 1));
-    let onto = Onto { view: &target, composite: &Composite::default(), area: None };
+    let target = Onto { view: &target, composite: &Composite::default(), area: None };
     let disc = DiscPass::new(&gpu.device, InkTarget::Ink).unwrap();
     for (size, is_right) in [(SIZE, true), (OTHER_SIZE, false)] {
         let scratch = DiscScratch::new(&gpu.device, size);
         let mut outcome = Ok(());
         gpu.run(|encoder| {
-            outcome = disc.record(&gpu.device, encoder, Operation::Open, &DISC, &ink, &scratch, &onto);
+            outcome = disc.record(&gpu.device, encoder, Operation::Open, &DISC, &ink, &scratch, &target);
         });
         assert_eq!(outcome.is_ok(), is_right, "{outcome:?}");
     }
@@ -229,7 +231,7 @@ fn scratch_textures_and_pairs_of_another_size_are_refused() {
 fn separate_textures_of_a_wrong_kind_and_missing_ones_are_refused() {
     let Some(gpu) = gpu() else { return };
     let target = texture(gpu, TextureFormat::R8Unorm, SIZE, 1);
-    let onto = Onto { view: &target, composite: &Composite::default(), area: None };
+    let target = Onto { view: &target, composite: &Composite::default(), area: None };
     let filter = SeparateFilter::default();
     let pass = SeparatePass::new(&gpu.device, &filter, InkTarget::Ink).unwrap();
     let formats = [TextureFormat::Rgba8Unorm, TextureFormat::Depth32Float, TextureFormat::R32Uint];
@@ -239,7 +241,7 @@ fn separate_textures_of_a_wrong_kind_and_missing_ones_are_refused() {
         let mut outcome = Ok(());
         gpu.run(|encoder| {
             let textures = SeparateTextures { normal, depth, region };
-            outcome = pass.record(&gpu.device, encoder, &filter, &textures, &onto);
+            outcome = pass.record(&gpu.device, encoder, &filter, &textures, &target);
         });
         outcome
     };
@@ -270,7 +272,7 @@ fn separate_textures_of_a_wrong_kind_and_missing_ones_are_refused() {
 fn filters_of_another_kind_are_refused() {
     let Some(gpu) = gpu() else { return };
     let (device, target) = (&gpu.device, texture(gpu, TextureFormat::R8Unorm, SIZE, 1));
-    let onto = Onto { view: &target, composite: &Composite::default(), area: None };
+    let target = Onto { view: &target, composite: &Composite::default(), area: None };
     let hard = FusedFilter::default();
     let layout = TexelLayout::Narrow;
     let code = DepthCode::perspective(0.5, 60.0, layout).unwrap();
@@ -282,14 +284,14 @@ fn filters_of_another_kind_are_refused() {
     let other = Err(ImageSpaceError::OtherFilter);
     gpu.run(|encoder| {
         for filter in [FusedFilter { softness: 0.1, ..hard }, FusedFilter { taps: Taps::Cross, ..hard }] {
-            assert_eq!(fused.record(device, encoder, &filter, &code, &texels, &onto), other);
+            assert_eq!(fused.record(device, encoder, &filter, &code, &texels, &target), other);
         }
         // Thresholds may change.
         let filter = FusedFilter { normal_cos: Some(0.1), ..hard };
-        assert_eq!(fused.record(device, encoder, &filter, &code, &texels, &onto), Ok(()));
+        assert_eq!(fused.record(device, encoder, &filter, &code, &texels, &target), Ok(()));
         let inker = PrintedFilter::Inker(Default::default());
-        assert_eq!(printed.record(device, encoder, &inker, &bytes, &onto), other);
+        assert_eq!(printed.record(device, encoder, &inker, &bytes, &target), other);
         let filter = SeparateFilter { regions: false, ..Default::default() };
-        assert_eq!(separate.record(device, encoder, &filter, &SeparateTextures::default(), &onto), other);
+        assert_eq!(separate.record(device, encoder, &filter, &SeparateTextures::default(), &target), other);
     });
 }

@@ -1,8 +1,8 @@
-//! The filters over textures of one's own.
+//! The filters over separate textures.
 
 use crate::device::{gpu, view};
 use crate::inputs::{Random, SIZES, direction, px, scene};
-use crate::targets::{COMPOSITES, PICTURE, assert_areas, assert_laid, drawn, laid};
+use crate::targets::{COMPOSITES, PICTURE, assert_areas, assert_composited, composited, drawn};
 use glam::Vec3;
 use npr_imagespace::ImageSpaceError;
 use npr_imagespace::composite::Composite;
@@ -161,8 +161,8 @@ fn ink_and_pictures_are_those_of_the_cpu() {
                         }
                         let views = textures(gpu, size, &texels);
                         let draw = |pass: &SeparatePass, target, composite: &Composite| {
-                            drawn(gpu, size, target, composite, None, |encoder, onto| {
-                                pass.record(&gpu.device, encoder, &filter, &all(&views), onto).unwrap();
+                            drawn(gpu, size, target, composite, None, |encoder, target| {
+                                pass.record(&gpu.device, encoder, &filter, &all(&views), target).unwrap();
                             })
                         };
                         let got = draw(&on_ink, InkTarget::Ink, &Composite::default());
@@ -170,8 +170,13 @@ fn ink_and_pictures_are_those_of_the_cpu() {
                         // What comes over a picture is what the ink picture holds, whichever way rounding went.
                         let composite = &random.one_of(&COMPOSITES);
                         let over = draw(&on_picture, PICTURE, composite);
-                        at_reference +=
-                            assert_laid(&over, &laid(size, &got, composite), &got, composite, softness > 0.0);
+                        at_reference += assert_composited(
+                            &over,
+                            &composited(size, &got, composite),
+                            &got,
+                            composite,
+                            softness > 0.0,
+                        );
                     }
                 }
             }
@@ -202,9 +207,9 @@ fn plain_tests_of_depth_are_those_of_the_cpu() {
                     .collect();
                 for texels in [near, random] {
                     let views = textures(gpu, size, &texels);
-                    let got = drawn(gpu, size, InkTarget::Ink, &Composite::default(), None, |encoder, onto| {
+                    let got = drawn(gpu, size, InkTarget::Ink, &Composite::default(), None, |encoder, target| {
                         let depth = SeparateTextures { depth: Some(&views[1]), ..Default::default() };
-                        pass.record(&gpu.device, encoder, &filter, &depth, onto).unwrap();
+                        pass.record(&gpu.device, encoder, &filter, &depth, target).unwrap();
                     });
                     count.compare(&got, &filter, &texels, size, "plain");
                 }
@@ -272,8 +277,8 @@ fn depth_buffers_and_small_formats_are_read() {
             for (what, texture) in [("depth buffer", &buffer), ("float", &floats)] {
                 let textures =
                     SeparateTextures { normal: Some(&normals), depth: Some(texture), region: Some(&regions) };
-                let got = drawn(gpu, size, InkTarget::Ink, &Composite::default(), None, |encoder, onto| {
-                    pass.record(&gpu.device, encoder, &filter, &textures, onto).unwrap();
+                let got = drawn(gpu, size, InkTarget::Ink, &Composite::default(), None, |encoder, target| {
+                    pass.record(&gpu.device, encoder, &filter, &textures, target).unwrap();
                 });
                 count.compare(&got, &filter, &texels, size, what);
             }
@@ -304,9 +309,9 @@ fn a_plain_measure_equal_to_its_threshold_is_ink() {
             let texels: Texels =
                 [0.5, 0.5, 0.5, far, far, far].map(|depth| SeparateTexel { depth, ..NOTHING }).to_vec();
             let views = textures(gpu, size, &texels);
-            let got = drawn(gpu, size, InkTarget::Ink, &Composite::default(), None, |encoder, onto| {
+            let got = drawn(gpu, size, InkTarget::Ink, &Composite::default(), None, |encoder, target| {
                 let depth = SeparateTextures { depth: Some(&views[1]), ..Default::default() };
-                pass.record(&gpu.device, encoder, &filter, &depth, onto).unwrap();
+                pass.record(&gpu.device, encoder, &filter, &depth, target).unwrap();
             });
             assert_eq!(got, filter_separate(&filter, &texels, px(size)).unwrap(), "{form:?} {far}");
             assert_eq!(got.contains(&255), is_reached, "{form:?} {far}");
@@ -314,7 +319,7 @@ fn a_plain_measure_equal_to_its_threshold_is_ink() {
     }
 }
 
-/// Beside the far end what was drawn is told from what was not by the number alone.
+/// Near the far plane surfaces differ from the background by the depth value alone.
 #[test]
 fn a_cleared_depth_buffer_is_background_even_beside_the_far_end() {
     let Some(gpu) = gpu() else { return };
@@ -328,9 +333,9 @@ fn a_cleared_depth_buffer_is_background_even_beside_the_far_end() {
         let filter = SeparateFilter { depth: Some(depth), ..NONE };
         let pass = SeparatePass::new(&gpu.device, &filter, InkTarget::Ink).unwrap();
         let buffer = view(&gpu.depth_buffer(size, &d));
-        let got = drawn(gpu, size, InkTarget::Ink, &Composite::default(), None, |encoder, onto| {
+        let got = drawn(gpu, size, InkTarget::Ink, &Composite::default(), None, |encoder, target| {
             let textures = SeparateTextures { depth: Some(&buffer), ..Default::default() };
-            pass.record(&gpu.device, encoder, &filter, &textures, onto).unwrap();
+            pass.record(&gpu.device, encoder, &filter, &textures, target).unwrap();
         });
         assert_eq!(got, [0, 0, 255, 255, 0, 0], "{source:?}");
     }
@@ -369,9 +374,9 @@ fn halves_and_signed_bytes_are_normals_too() {
         });
         gpu.write(&texture, uploaded);
         let normals = view(&texture);
-        let got = drawn(gpu, size, InkTarget::Ink, &Composite::default(), None, |encoder, onto| {
+        let got = drawn(gpu, size, InkTarget::Ink, &Composite::default(), None, |encoder, target| {
             let textures = SeparateTextures { normal: Some(&normals), ..Default::default() };
-            pass.record(&gpu.device, encoder, &filter, &textures, onto).unwrap();
+            pass.record(&gpu.device, encoder, &filter, &textures, target).unwrap();
         });
         count.compare(&got, &filter, &texels, size, "small normals");
     }
@@ -405,8 +410,8 @@ fn lines_are_drawn_within_their_area() {
     let views = textures(gpu, size, &seen(size));
     for target in [InkTarget::Ink, PICTURE] {
         let pass = SeparatePass::new(&gpu.device, &filter, target).unwrap();
-        assert_areas(gpu, size, target, |encoder, onto| {
-            pass.record(&gpu.device, encoder, &filter, &all(&views), onto).unwrap();
+        assert_areas(gpu, size, target, |encoder, target| {
+            pass.record(&gpu.device, encoder, &filter, &all(&views), target).unwrap();
         });
     }
 }

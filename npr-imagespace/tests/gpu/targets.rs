@@ -1,4 +1,4 @@
-//! Running a pass onto its targets, whole and in part.
+//! Runs a pass over its target, the whole and areas of it.
 
 use crate::device::{Gpu, view};
 use crate::inputs::Random;
@@ -46,15 +46,15 @@ pub fn drawn(
 }
 
 /// Ink over the picture that [`before`] makes.
-pub fn laid(size: [u32; 2], ink: &[u8], composite: &Composite) -> Vec<u8> {
+pub fn composited(size: [u32; 2], ink: &[u8], composite: &Composite) -> Vec<u8> {
     let mut pixels: Vec<[u8; 4]> = bytemuck::pod_collect_to_vec(&before(size, PICTURE));
     composite_picture(&mut pixels, ink, composite).unwrap();
     pixels.concat()
 }
 
-/// The pixels of a picture are within 1/255 of those with `ink` laid over it by the CPU. Returns how many are not and
-/// need not be, since they lie at the reference of an alpha test, which rounding decides where ink is `soft`.
-pub fn assert_laid(got: &[u8], expected: &[u8], ink: &[u8], composite: &Composite, soft: bool) -> usize {
+/// The pixels of a picture are within 1/255 of those with `ink` composited over it by the CPU. Returns the
+/// number of pixels that may differ: those at the reference of an alpha test, which rounding decides where ink is `soft`.
+pub fn assert_composited(got: &[u8], expected: &[u8], ink: &[u8], composite: &Composite, soft: bool) -> usize {
     let mut borderline = 0;
     for ((got, expected), &ink) in got.chunks(4).zip(expected.chunks(4)).zip(ink) {
         let may_differ = match composite {

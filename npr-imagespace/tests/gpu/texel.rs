@@ -5,7 +5,7 @@ use npr_imagespace::format::FORMAT_WGSL;
 use npr_imagespace::format::texel::ink_fold_region;
 use wgpu::TextureFormat;
 
-/// Each region folded to one 32-bit word's numbers and to two words'.
+/// Each region folded to one 32-bit word's numbers and to 64 bits'.
 fn folded(gpu: &Gpu, regions: &[u32]) -> Vec<[u32; 2]> {
     let size = [regions.len() as u32, 1];
     let source = format!(

@@ -56,7 +56,7 @@ fn a_cube_seen_from_a_corner_has_six_silhouettes_and_six_creases() {
         // Three of them towards the eye, three away from it.
         assert_eq!(lines_of_kind(&contours, eye, LineKind::Crease).len(), 6);
     }
-    // Seen straight on, and from within, where nothing is turned away.
+    // Seen straight on, and from within, where no face is back-facing.
     assert_eq!(lines_of_kind(&contours, point(DVec3::Z * 9.0), LineKind::Silhouette).len(), 4);
     assert_eq!(lines_of_kind(&contours, point(DVec3::ZERO), LineKind::Silhouette).len(), 0);
 }
@@ -92,7 +92,7 @@ fn silhouettes_of_closed_surfaces_are_closed_loops() {
 #[test]
 fn an_eye_in_the_plane_of_a_face_loses_no_loop() {
     let contours = contours_of(&embedded::cube(), &NO_CREASES);
-    // In the top's plane, and in the planes of the top and the right side: both count as turned towards the eye.
+    // In the top's plane, and in the planes of the top and the right side: both count as front-facing.
     for (eye, silhouettes) in [(DVec3::new(0.3, 1.0, 7.0), 6), (DVec3::new(1.0, 1.0, 7.0), 6)] {
         let lines = lines_of_kind(&contours, point(eye), LineKind::Silhouette);
         assert_eq!(lines.len(), silhouettes, "{eye}");
@@ -149,15 +149,15 @@ fn boundaries_are_always_drawn() {
 #[test]
 fn faces_wound_the_other_way_change_nothing() {
     for model in [embedded::sphere(24), embedded::torus(1.0, 0.4, 32, 16)] {
-        let mut turned = model.clone();
-        turned.faces.iter_mut().step_by(10).for_each(|face| face.swap(1, 2));
-        let (contours, of_turned) = (contours_of(&model, &smooth(0.9)), contours_of(&turned, &smooth(0.9)));
-        assert_eq!(contours.always, of_turned.always);
+        let mut flipped = model.clone();
+        flipped.faces.iter_mut().step_by(10).for_each(|face| face.swap(1, 2));
+        let (contours, of_flipped) = (contours_of(&model, &smooth(0.9)), contours_of(&flipped, &smooth(0.9)));
+        assert_eq!(contours.always, of_flipped.always);
         for direction in crate::normal_format::fibonacci_sphere(300) {
             let eye = point(2.7 * direction);
             for kind in [LineKind::Silhouette, LineKind::Crease] {
                 let lines = lines_of_kind(&contours, eye, kind);
-                assert_eq!(lines, lines_of_kind(&of_turned, eye, kind));
+                assert_eq!(lines, lines_of_kind(&of_flipped, eye, kind));
             }
         }
     }
@@ -204,7 +204,7 @@ fn a_sliver_between_two_faces_passes_silhouette_and_crease_on() {
     assert!(along_ridge(lines_of_kind(&contours, point(DVec3::Y * 9.0), LineKind::Crease)));
 }
 
-/// A cube whose top is turned by 40° against its bottom, which warps its sides.
+/// A cube whose top is rotated by 40° against its bottom, which warps its sides.
 fn twisted_cube() -> Model {
     let mut model = embedded::cube();
     let turn = Mat4::from_rotation_y(40f32.to_radians());
@@ -252,9 +252,9 @@ fn a_fold_is_no_crease_however_sharp() {
 fn a_warped_quad_wound_the_other_way_changes_nothing() {
     let model = twisted_cube();
     for polygon in 0..6 {
-        let mut turned = model.clone();
-        turned.faces[2 * polygon..2 * polygon + 2].iter_mut().for_each(|face| face.swap(1, 2));
-        let (expected, found) = (contours_of(&model, &NO_CREASES), contours_of(&turned, &NO_CREASES));
+        let mut flipped = model.clone();
+        flipped.faces[2 * polygon..2 * polygon + 2].iter_mut().for_each(|face| face.swap(1, 2));
+        let (expected, found) = (contours_of(&model, &NO_CREASES), contours_of(&flipped, &NO_CREASES));
         for direction in crate::normal_format::fibonacci_sphere(100) {
             let eye = point(4.0 * direction);
             let of = |contours| lines_of_kind(contours, eye, LineKind::Silhouette);
@@ -446,7 +446,7 @@ fn long_chains_and_large_polygons_end() {
     assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
 }
 
-/// A coordinate of any size and sign, often one of a few, so that corners meet and lie in line.
+/// A coordinate of any size and sign, often one of a few, so that corners coincide and are collinear.
 fn coordinate() -> impl Strategy<Value = f32> {
     prop_oneof![
         (-2i8..3).prop_map(f32::from),
@@ -456,8 +456,8 @@ fn coordinate() -> impl Strategy<Value = f32> {
 }
 
 proptest! {
-    /// Of any soup, seen from anywhere: no number that is none, every index within its array, and a scan that tells what
-    /// each record tells.
+    /// For any set of triangles and any eye: no NaN, all indices within their arrays, and a scan that agrees with the test of
+    /// each record.
     #[test]
     fn records_of_any_soup_are_finite_and_within_bounds(
         corners in prop::collection::vec([coordinate(), coordinate(), coordinate()], 3..12),

@@ -113,14 +113,14 @@ fn width_is_as_asked_with_w_and_too_small_as_printed() {
 #[test]
 fn a_face_wound_the_other_way_keeps_its_fins() {
     let model = embedded::sphere(16);
-    let mut turned = model.clone();
-    turned.faces.iter_mut().step_by(10).for_each(|face| face.swap(1, 2));
+    let mut flipped = model.clone();
+    flipped.faces.iter_mut().step_by(10).for_each(|face| face.swap(1, 2));
     let count = |model: &Model| {
         let fins = printed_fins(model, &edges_of(model));
         fin_printed_triangles(&fins, &view(DVec3::new(2.0, 1.5, 3.0), FinDepth::Eye)).len()
     };
     assert!(count(&model) > 20);
-    assert_eq!(count(&model), count(&turned));
+    assert_eq!(count(&model), count(&flipped));
 }
 
 fn pixels(triangles: &[[DVec4; 3]], size: u32) -> Vec<(u32, u32)> {

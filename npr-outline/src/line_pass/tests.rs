@@ -2,7 +2,7 @@ use super::*;
 use crate::fin_pass::FinUniform;
 use std::mem::offset_of;
 
-/// Name and offset of each member of a struct, and its size, as naga lays it out.
+/// Name and offset of each member of a struct, and its size, in the layout of naga.
 fn layout(source: &str, name: &str) -> (Vec<(String, usize)>, usize) {
     let module = naga::front::wgsl::parse_str(source).unwrap();
     let (_, found) = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name)).expect("the struct is there");

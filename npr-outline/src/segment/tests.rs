@@ -138,8 +138,8 @@ fn a_segment_through_the_eyes_plane_is_cut_at_the_near_plane() {
     assert!(segment.ends_px.iter().all(|p| p.is_finite()) && (segment.depths[1] - 1.0).abs() < 1e-12);
     assert!(segment.slopes.iter().all(|s| s.is_finite()));
     // The other way round it is the same segment.
-    let turned = project([ends[1], ends[0]], [DVec3::X, DVec3::Y], &view);
-    assert!(turned.ends_px[0].distance(segment.ends_px[1]) < 1e-9);
+    let flipped = project([ends[1], ends[0]], [DVec3::X, DVec3::Y], &view);
+    assert!(flipped.ends_px[0].distance(segment.ends_px[1]) < 1e-9);
 }
 
 #[test]
@@ -234,7 +234,7 @@ fn a_line_on_a_plane_is_seen_however_it_slants() {
 fn the_plane_through_four_pixels_is_before_a_point_by_its_depth_there_less_the_slack() {
     // Depths of the plane a + b x + c y at the centres of four pixels, x to the right and y down.
     let quad = |a: f64, b: f64, c: f64| DVec4::new(a, a + b, a + c, a + b + c);
-    let before = |quad, x: f64, y: f64, depth, per_px| outline_plane_before(quad, DVec2::new(x, y), depth, per_px);
+    let before = |quad, x: f64, y: f64, depth, per_px| outline_plane_in_front(quad, DVec2::new(x, y), depth, per_px);
     let cases = [
         // A plane at one depth, wherever the point is.
         (before(quad(0.5, 0.0, 0.0), 0.5, 0.5, 0.25, 0.0), 0.25),

@@ -147,9 +147,9 @@ fn of_a_cube_half_casts_and_its_contour_sweeps_once() {
         let local = casters.local_light(light);
         assert!(edges.iter().all(|edge| outline_sweeps(edge, local).abs() == 1));
     }
-    // Straight above, and within, where every face is turned away and nothing casts.
+    // Straight above, and within, where every face faces away from the light and nothing casts.
     casters.scan(far(DVec3::Y), &mut edges, &mut faces);
-    assert_eq!(faces.len(), 2 + 8, "edge-on counts as turned towards the light");
+    assert_eq!(faces.len(), 2 + 8, "edge-on counts as facing the light");
     casters.scan(near(DVec3::ZERO), &mut edges, &mut faces);
     assert_eq!((edges.len(), faces.len()), (0, 0));
 }
@@ -264,7 +264,7 @@ fn a_way_without_end_through_a_closed_solid_ends_in_one_volume_and_from_within_i
     for light in [DVec3::new(2.5, 3.0, 3.5), DVec3::new(-4.0, 1.5, 0.2), DVec3::new(0.1, -3.0, 0.2)] {
         let light = middle + half * light;
         for aside in [DVec3::new(0.01, 0.02, 0.03), DVec3::new(0.3, -0.4, 0.2), DVec3::new(-0.45, 0.15, -0.4)] {
-            // In through one face that is turned to the light, out through one that is turned away and does not cast.
+            // In through one face towards the light, out through one that faces away from it and does not cast.
             let direction = middle + half * aside - light;
             assert_eq!(casters.endless(near(light), direction), 1, "{light} {aside}");
             assert_eq!(casters.endless(near(light), -direction), 0, "away: {light} {aside}");
@@ -273,7 +273,7 @@ fn a_way_without_end_through_a_closed_solid_ends_in_one_volume_and_from_within_i
             assert_eq!(casters.endless(near(light), beside), 0, "beside: {light} {aside}");
         }
     }
-    // Within, every face is turned away from the light.
+    // Within, every face faces away from the light.
     for direction in [DVec3::new(1.0, 0.2, 0.3), DVec3::new(-0.1, -1.0, 0.3), DVec3::new(0.2, 0.1, -1.0)] {
         assert_eq!(casters.endless(near(middle + half * 0.1), direction), 0, "{direction}");
     }
