@@ -7,8 +7,8 @@
 //! # Measured
 //!
 //! On lavapipe (Mesa 22.3.6, LLVM 15, 256 bits) and two cores of a Xeon at 2.5 GHz that did other work, too, 15 rounds;
-//! minima in ms, and in brackets how often a copy of as many bytes. The larger picture at another time than the smaller,
-//! and more of the machine was taken.
+//! minima in ms, and in brackets how often a copy of as many bytes. The larger picture at another time than the
+//! smaller, and more of the machine was taken.
 //!
 //! | | 1280 × 720 | 1920 × 1080 |
 //! | --- | --- | --- |

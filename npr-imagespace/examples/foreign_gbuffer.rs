@@ -2,9 +2,9 @@
 //!
 //! `cargo run -p npr-imagespace --features wgpu --example foreign_gbuffer [picture.png]`
 //!
-//! A sphere and a box on a plane, cast ray by ray on the CPU, stand for another renderer. It leaves four textures, as an
-//! engine would: the shaded picture, world-space normals biased into bytes, the numbers of a reversed depth buffer, and
-//! the number of each object.
+//! A sphere and a box on a plane, cast ray by ray on the CPU, stand for another renderer. It leaves four textures, as
+//! an engine would: the shaded picture, world-space normals biased into bytes, the numbers of a reversed depth buffer,
+//! and the number of each object.
 #![allow(clippy::print_stdout)]
 
 use glam::Vec3;

@@ -7,9 +7,9 @@
 //!
 //! # The four directions
 //!
-//! They point away from the eye, 45° from the plane of the screen and equally spaced around the view: (±½, ±½, 1/√2) with z
-//! along the view. Error in print: the caption of figure 3 puts 45° between them, which is their angle to the plane;
-//! neighbours are 60° and opposite ones 90° apart, so that both are below every threshold in use (cos 60° =
+//! They point away from the eye, 45° from the plane of the screen and equally spaced around the view: (±½, ±½, 1/√2)
+//! with z along the view. Error in print: the caption of figure 3 puts 45° between them, which is their angle to the
+//! plane; neighbours are 60° and opposite ones 90° apart, so that both are below every threshold in use (cos 60° =
 //! 0.5).
 //!
 //! [`ink_artist_direction`] rotates z to the direction from the eye to a point. All is in view space, where the eye
@@ -100,8 +100,9 @@ pub fn ink_alpha_kept(alpha: f32, reference: f32) -> bool {
     alpha >= reference
 }
 
-/// The distance of an object's centre, in its own radii, below which directions rotated once for the object are within the
-/// threshold of a visible normal, so that lines may vanish: 1 / sin(45° − acos t). Infinite where t is cos 45° or less.
+/// The distance of an object's centre, in its own radii, below which directions rotated once for the object are within
+/// the threshold of a visible normal, so that lines may vanish: 1 / sin(45° − acos t). Infinite where t is cos 45° or
+/// less.
 pub fn artist_object_distance(normal_cos: f64) -> f64 {
     let spare_rad = std::f64::consts::FRAC_PI_4 - normal_cos.acos();
     if spare_rad > 0.0 { 1.0 / spare_rad.sin() } else { f64::INFINITY }

@@ -7,8 +7,8 @@
 //!   alpha above the reference, which is the paper, and discards the lines; and the reference `(DWORD) 0.5f` is 0, of
 //!   0–255 ([`AlphaTest::PRINTED`]): the picture does not change, at the cost of writing all of it. Corrected: LESS and
 //!   128 ([`AlphaTest::CORRECTED`]).
-//! - [`Composite::Over`]: a line of any colour, by its coverage: c + opacity · ink · (line − c). The default. With a black
-//!   opaque line it is the multiplication.
+//! - [`Composite::Over`]: a line of any colour, by its coverage: c + opacity · ink · (line − c). The default. With a
+//!   black opaque line it is the multiplication.
 //!
 //! Colours are display-referred, and coverage blends in display space.
 

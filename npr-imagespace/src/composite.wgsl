@@ -1,4 +1,5 @@
-// Compositing ink over a picture. The twin of `composite.rs`. No bindings and no entry points. Colours are display-referred.
+// Compositing ink over a picture. The twin of `composite.rs`. No bindings and no entry points. Colours are
+// display-referred.
 
 struct InkComposite {
     // rgb, and opacity.

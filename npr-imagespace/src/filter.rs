@@ -2,7 +2,8 @@
 //!
 //! - [`normal`], [`depth`], [`region`]: the filters of 2002, each alone and on decoded values or bytes, as printed and
 //!   corrected.
-//! - [`fused`]: the three at once over the packed texels of [`crate::format::texel`], decided with integers. The default.
+//! - [`fused`]: the three at once over the packed texels of [`crate::format::texel`], decided with integers. The
+//!   default.
 //! - [`inker`]: a filter of four taps that compares opposite pixels.
 //! - [`separate`]: any of the three over separate textures of normals, depth and regions.
 //! - [`mod@printed`]: the filters and the inker over the bytes of [`crate::format::printed`].

@@ -2,14 +2,14 @@
 //!
 //! - [`printed`]: the one RGBA8 target of Card & Mitchell 2002.
 //! - [`depth`]: linear eye-space depth in six formats, and the smallest difference that each resolves.
-//! - [`normal`]: normals in four formats.
+//! - [`normal`]: normals in five formats.
 //! - [`texel`]: normal, region and depth packed into 32 or 64 bits, which the fused filter reads in one load.
 //!
 //! # Background
 //!
-//! A depth that is NaN, infinite, zero or negative is background ([`ink_is_surface`]); so is whatever no surface was
-//! drawn on. Background is a surface of its own: it differs from every other and not from itself. A
-//! direction that is zero or not finite is no normal, and *no normal* differs from every normal and not from itself.
+//! A depth that is NaN, infinite, zero or negative is background ([`ink_is_surface`]); so are pixels without a surface.
+//! Background differs from every surface and not from itself. A direction that is zero or not finite is no normal, and
+//! *no normal* differs from every normal and not from itself.
 
 pub mod depth;
 pub mod half;

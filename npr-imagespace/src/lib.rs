@@ -39,16 +39,16 @@
 //!
 //! With the feature `wgpu` the module `pass` has all of this as passes over textures.
 //!
-//! Functions whose names begin with `ink_` are written twice, with the same names and parameters: in Rust, the reference,
-//! and in [`WGSL`], over values already loaded. Errors of the papers are stated where they are corrected; the form as
-//! printed is kept, where it can run, under a name with `printed` in it.
+//! Functions whose names begin with `ink_` are written twice, with the same names and parameters: in Rust, the
+//! reference, and in [`WGSL`], over values already loaded. Errors of the papers are stated where they are corrected;
+//! the form as printed is kept, where it can run, under a name with `printed` in it.
 //!
 //! # Exactness
 //!
 //! Decisions on packed texels and on bytes are made with integers and are the same on every machine: [`filter::fused`]
 //! with hard lines, the filters on bytes, the steps of [`morphology`] and all passes but the last of
-//! [`morphology::flood`]. Soft ink agrees within 1/255. Decisions on floats may differ where an input is within rounding
-//! of its threshold.
+//! [`morphology::flood`]. Soft ink agrees within 1/255. Decisions on floats may differ where an input is within
+//! rounding of its threshold.
 //!
 //! # Colours
 //!
@@ -89,11 +89,13 @@ pub use error::ImageSpaceError;
 /// Makes the library's text, and for the passes the list of its files.
 macro_rules! library {
     ($($file:literal,)*) => {
-        /// The functions of this crate in WGSL: no bindings, no entry points, every name begins with `ink_`, `INK_` or `Ink`.
+        /// The functions of this crate in WGSL: no bindings, no entry points, every name begins with `ink_`, `INK_` or
+        /// `Ink`.
         ///
         /// The concatenation of [`picture::PICTURE_WGSL`], [`format::FORMAT_WGSL`], [`shadow::SHADOW_WGSL`],
-        /// [`filter::FILTER_WGSL`], [`morphology::MORPHOLOGY_WGSL`], [`composite::COMPOSITE_WGSL`], [`resample::RESAMPLE_WGSL`]
-        /// and [`artist::ARTIST_WGSL`]. Each compiles alone, except the filters, which need formats and shadows.
+        /// [`filter::FILTER_WGSL`], [`morphology::MORPHOLOGY_WGSL`], [`composite::COMPOSITE_WGSL`],
+        /// [`resample::RESAMPLE_WGSL`] and [`artist::ARTIST_WGSL`]. Each compiles alone, except the filters, which need
+        /// formats and shadows.
         pub const WGSL: &str = concat!($(include_str!($file)),*);
 
         /// The files of [`WGSL`]: name and text.

@@ -13,9 +13,9 @@
 //!
 //! # Targets
 //!
-//! Ink pictures are [`INK_FORMAT`]: 0 paper, 1 line. Pictures are of colour formats that can be blended and whose stores
-//! do not encode sRGB: `Rgba8Unorm`, `Bgra8Unorm`, `Rgba16Float`. With an `Srgb` format coverage would blend in linear
-//! light; a view without `Srgb` of such a texture is accepted. The alpha of pictures is not written.
+//! Ink pictures are [`INK_FORMAT`]: 0 paper, 1 line. Pictures are of colour formats that can be blended and whose
+//! stores do not encode sRGB: `Rgba8Unorm`, `Bgra8Unorm`, `Rgba16Float`. With an `Srgb` format coverage would blend in
+//! linear light; a view without `Srgb` of such a texture is accepted. The alpha of pictures is not written.
 //!
 //! All textures have one sample a pixel, and views show their first level and layer. Unless a pass says otherwise, what
 //! it reads has the size of its target. A pass that is given anything else records nothing and returns an error.
@@ -158,7 +158,7 @@ mod tests {
 
     #[test]
     fn modules_name_their_files_and_validate() {
-        for file in [disc::DISC, fused::FUSED, lay::LAY, printed::PRINTED, separate::SEPARATE, step::STEP] {
+        for file in [disc::DISC, fused::FUSED, lay::COMPOSITE, printed::PRINTED, separate::SEPARATE, step::STEP] {
             let source = fullscreen::module_source(file);
             let (head, rest) = source.split_once('\n').unwrap();
             let names: Vec<_> = head.strip_prefix("// Made of: ").unwrap().split(", ").collect();

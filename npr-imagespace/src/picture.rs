@@ -3,9 +3,9 @@
 //! # Borders
 //!
 //! In the first and the last column the horizontal part of a filter's steps is 0, in the first and the last row the
-//! vertical part. All taps then lie in the picture and opposite taps stay opposite, so that second differences over them
-//! are valid. A picture of one pixel has no line, one of 1 × n px is filtered along its length, and a border between the
-//! outermost two columns is drawn on the inner one. The papers do not say what lies outside.
+//! vertical part. All taps then lie in the picture and opposite taps stay opposite, so that second differences over
+//! them are valid. A picture of one pixel has no line, one of 1 × n px is filtered along its length, and a border
+//! between the outermost two columns is drawn on the inner one. The papers do not say what lies outside.
 
 use crate::ImageSpaceError;
 use glam::{IVec2, UVec2};

@@ -1,7 +1,7 @@
 //! Region numbers: what the region filter draws borders between. 0 is background, so numbers start at 1.
 //!
-//! Regions can be materials, meshes, smoothly connected patches, colours of a texture, and combinations of these. Numbers
-//! are of 32 bits here; [`crate::format::texel`] folds them to the bits of a packed texel.
+//! Regions can be materials, meshes, smoothly connected patches, colours of a texture, and combinations of these.
+//! Numbers are of 32 bits here; [`crate::format::texel`] folds them to the bits of a packed texel.
 
 use crate::ImageSpaceError;
 use std::collections::HashMap;
@@ -14,8 +14,8 @@ pub fn region_of_index(index: u32) -> u32 {
 /// The regions of faces that are connected by smooth edges, numbered in the order of their first faces.
 ///
 /// - `faces`: the number of faces;
-/// - `smooth_pairs`: pairs of faces that share an edge over which the surface is smooth. The caller decides that, by the
-///   dihedral angle, by equal normals on both sides, or by material.
+/// - `smooth_pairs`: pairs of faces that share an edge over which the surface is smooth. The caller decides that, by
+///   the dihedral angle, by equal normals on both sides, or by material.
 ///
 /// The borders of these patches are exactly the creases, which interpolated smooth normals do not show.
 ///
@@ -66,8 +66,8 @@ pub fn region_of_pairs(pairs: impl IntoIterator<Item = [u32; 2]>) -> Vec<u32> {
         .collect()
 }
 
-/// The region number of a texture's colour: the colour as a 24-bit number, plus 1; alpha is ignored. The texture must be
-/// sampled without filtering, since a mixture of two regions' colours is a third region.
+/// The region number of a texture's colour: the colour as a 24-bit number, plus 1; alpha is ignored. The texture must
+/// be sampled without filtering, since a mixture of two regions' colours is a third region.
 pub fn ink_region_of_color(rgb: [u8; 3]) -> u32 {
     u32::from_le_bytes([rgb[0], rgb[1], rgb[2], 0]) + 1
 }

@@ -1,6 +1,6 @@
-//! Bilinear resampling of ink to the size of a picture: "line width from the size of the render texture" ("The Evolution
-//! of a Cartoon Renderer"). A line is one or two pixels wide in the texture that it is found in. Scaled to the picture it
-//! is wider by the ratio of the sizes where the texture is smaller, and paler where it is larger.
+//! Bilinear resampling of ink to the size of a picture: "line width from the size of the render texture" ("The
+//! Evolution of a Cartoon Renderer"). A line is one or two pixels wide in the texture that it is found in. Scaled to
+//! the picture it is wider by the ratio of the sizes where the texture is smaller, and paler where it is larger.
 //!
 //! The ink is stretched to cover the picture, whatever the two sizes, and interpolated bilinearly at the centre of each
 //! pixel; texels beyond the border are those at it. At half the picture's size that is the usual tent of weights ¾ and
@@ -32,7 +32,7 @@ fn ink_resample_mix(taps: [f32; 4], weight: Vec2) -> f32 {
 /// Ink resampled to a picture's size. Ink of no texels is paper everywhere.
 ///
 /// # Errors
-/// If `ink` does not have one element for each of its own pixels.
+/// [`ImageSpaceError::Length`] if `ink` does not have one element for each of its pixels.
 pub fn resample(ink: &[u8], ink_size_px: UVec2, size_px: UVec2) -> Result<Vec<u8>, ImageSpaceError> {
     checked_len(ink.len(), ink_size_px)?;
     let count = size_px.x as usize * size_px.y as usize;

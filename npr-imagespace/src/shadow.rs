@@ -9,14 +9,14 @@
 //!
 //! - a surface in shadow with normal n has the stored normal of a lit one with −n, and there is no line between them;
 //! - negated depth needs a signed format, and the target of the same chapter is unsigned;
-//! - surfaces that face away from the light are shadow in the stencil as well, so that the terminator, the border between
-//!   light-facing and back-facing parts of a smooth surface, becomes a line.
+//! - surfaces that face away from the light are shadow in the stencil as well, so that the terminator, the border
+//!   between light-facing and back-facing parts of a smooth surface, becomes a line.
 //!
 //! # Here
 //!
-//! Two bits beside the region number hold a state ([`ink_shadow_region`]): lit, in a cast shadow, or facing away from the
-//! light. Only lit beside cast shadow is a border ([`ink_shadow_differs`]). Back-facing surfaces have no border with
-//! either, so the terminator is no line, and the outline of a cast shadow ends at the terminator.
+//! Two bits beside the region number hold a state ([`ink_shadow_region`]): lit, in a cast shadow, or facing away from
+//! the light. Only lit beside cast shadow is a border ([`ink_shadow_differs`]). Back-facing surfaces have no border
+//! with either, so the terminator is no line, and the outline of a cast shadow ends at the terminator.
 
 use crate::format::texel::TexelLayout;
 use glam::Vec3;
@@ -39,7 +39,7 @@ pub enum ShadowState {
 
 impl ShadowState {
     /// All states, each at the index of its number.
-    pub const ALL: [Self; 3] = [Self::Turned, Self::Lit, Self::Cast];
+    pub const ALL: [Self; 3] = [ShadowState::Turned, ShadowState::Lit, ShadowState::Cast];
 }
 
 /// A region number with a shadow state in its two highest bits. 0, background, stays 0.
@@ -55,8 +55,8 @@ pub fn ink_shadow_state(region: u32, layout: TexelLayout) -> ShadowState {
     ShadowState::ALL[(region / (layout.shadowed_region_most() + 1)).min(2) as usize]
 }
 
-/// Whether one of two states, each masked by `bits` of a region number, is lit and the other in a cast shadow. The bitwise
-/// or of these two has all bits set, and that of no other pair does.
+/// Whether one of two states, each masked by `bits` of a region number, is lit and the other in a cast shadow. The
+/// bitwise or of these two has all bits set, and that of no other pair does.
 pub fn ink_shadow_differs(a: u32, b: u32, bits: u32) -> bool {
     a | b == bits
 }

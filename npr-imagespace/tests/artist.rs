@@ -54,7 +54,7 @@ fn no_visible_normal_is_within_45_degrees_wherever_a_point_is_seen() {
 }
 
 #[test]
-fn directions_of_points_side_by_side_are_alike() {
+fn directions_of_neighbouring_points_are_similar() {
     // A pixel of a wide view is some 0.1° of it.
     for to in view_directions() {
         for step in [Vec3::X, Vec3::Y] {
@@ -67,7 +67,7 @@ fn directions_of_points_side_by_side_are_alike() {
 /// A sphere whose patches are painted, seen from farther and farther away: from where on no painted direction is
 /// within the threshold of a visible normal, rotated once for the object and rotated for each point.
 #[test]
-fn directions_turned_once_for_an_object_fail_near_it_as_the_formula_says() {
+fn directions_rotated_once_for_an_object_fail_near_it_as_the_formula_says() {
     let confused = |distance: f64, cos: f64, per_point: bool| {
         let centre = DVec3::NEG_Z * distance;
         for i in 0..=90 {
@@ -130,7 +130,7 @@ fn patches_do_not_depend_on_the_order_of_their_pairs() {
 }
 
 #[test]
-fn regions_are_never_background_and_pairs_stay_apart() {
+fn regions_are_never_background_and_pairs_stay_different() {
     assert_eq!([region_of_index(0), region_of_index(41), region_of_index(u32::MAX)], [1, 42, 1]);
     assert_eq!(region_of_pairs([[1, 1], [1, 2], [2, 1], [1, 1], [0, 3], [3, 0]]), [1, 2, 3, 1, 0, 0]);
     assert_ne!(ink_region_of_color([0, 0, 0]), 0);
@@ -138,7 +138,7 @@ fn regions_are_never_background_and_pairs_stay_apart() {
 }
 
 #[test]
-fn hashed_pairs_of_regions_stay_apart_and_fit_a_texel() {
+fn hashed_pairs_of_regions_are_different_and_fit_a_texel() {
     let (mut known, mut duplicates) = (std::collections::HashSet::new(), 0);
     // Patches with colours, with the same low bits.
     for patch in 1..=40u32 {
@@ -148,7 +148,7 @@ fn hashed_pairs_of_regions_stay_apart_and_fit_a_texel() {
             duplicates += u32::from(!known.insert(pair));
         }
     }
-    // Of so many numbers among 2^24 three are expected to be there already.
+    // Of this many numbers among 2^24 three duplicates are expected.
     assert!(known.len() > 10_000 && duplicates < 12, "{duplicates} of {}", known.len());
     assert_eq!((ink_region_pair(0, 5), ink_region_pair(5, 0)), (0, 0));
 }

@@ -1,4 +1,4 @@
-//! Lines over pictures.
+//! Compositing lines over pictures.
 
 use glam::{DVec3, Vec3};
 use npr_imagespace::ImageSpaceError;
@@ -36,7 +36,7 @@ fn a_black_line_over_is_the_multiplication() {
 }
 
 #[test]
-fn the_printed_alpha_test_kills_the_lines() {
+fn the_printed_alpha_test_discards_the_lines() {
     let printed = Composite::AlphaTested(AlphaTest::PRINTED);
     assert_eq!(over(255, &printed), GRAY, "the line is not drawn");
     assert!(ink_alpha_passes(0.0, AlphaTest::PRINTED), "the paper is");
@@ -51,7 +51,7 @@ fn the_printed_alpha_test_kills_the_lines() {
 }
 
 #[test]
-fn uniforms_say_what_is_asked_for() {
+fn uniforms_have_the_values_of_the_composite() {
     let uniform = CompositeUniform::from(&Composite::AlphaTested(AlphaTest::CORRECTED));
     assert_eq!((uniform.form, uniform.alpha_less, uniform.alpha_reference), (1, 1, 128));
     let uniform = CompositeUniform::from(&Composite::Over { color: Vec3::new(0.1, 0.2, 0.3), opacity: 0.4 });
@@ -66,7 +66,7 @@ fn pictures_of_two_sizes_are_refused() {
 }
 
 #[test]
-fn a_blend_unit_gives_the_same_color() {
+fn a_blend_unit_has_the_same_result() {
     let color = DVec3::new(0.8, 0.4, 0.1);
     let soft = Composite::Over { color: Vec3::new(0.2, 0.9, 0.5), opacity: 0.7 };
     let tested = [AlphaTest::PRINTED, AlphaTest::CORRECTED].map(Composite::AlphaTested);

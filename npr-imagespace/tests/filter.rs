@@ -1,4 +1,4 @@
-//! Filters on hand-computed taps, against their definitions, on borders of the picture and on what is no number.
+//! Filters on hand-computed taps, against their definitions, on borders of the picture and on NaN.
 
 use glam::{DVec3, IVec2, IVec3, UVec2, Vec3};
 use npr_imagespace::ImageSpaceError;
@@ -139,7 +139,7 @@ fn listing_10_counts_two_of_four() {
 }
 
 #[test]
-fn bends_are_found_and_slopes_and_what_is_no_depth_are_not() {
+fn second_differences_are_found_and_slopes_and_invalid_depths_are_not() {
     let bend = |centre, taps| ink_depth_bend(centre, taps, 0.01, false, 0.0, 0.5);
     // 1/z falls by 30% from pixel to pixel: a plane, and no line.
     let z = |inverse: f32| 1.0 / inverse;
@@ -149,7 +149,7 @@ fn bends_are_found_and_slopes_and_what_is_no_depth_are_not() {
     // A step by 2% and one by ½%, on either side of it.
     assert_eq!([bend(10.0, [10.0, 10.0, 10.2, 10.2]), bend(10.2, [10.2, 10.2, 10.0, 10.0])], [1.0, 1.0]);
     assert_eq!(bend(10.0, [10.0, 10.0, 10.05, 10.05]), 0.0);
-    // Background differs from surfaces and not from itself; it has many names.
+    // Background differs from surfaces and not from itself, whichever invalid depth it has.
     for none in [f32::INFINITY, f32::NAN, 0.0, -1.0, f32::NEG_INFINITY] {
         assert_eq!(bend(none, [f32::INFINITY, f32::NAN, 0.0, -2.0]), 0.0);
         assert_eq!(bend(none, [f32::INFINITY, 5.0, none, none]), 1.0);
@@ -238,7 +238,7 @@ fn a_soft_inker_ramps_around_the_square_of_its_step_and_twice_what_normals_diffe
 }
 
 #[test]
-fn the_inker_on_bytes_is_the_inker_on_what_they_stand_for() {
+fn the_inker_on_bytes_is_the_inker_on_decoded_values() {
     // 128 stands for 1/255, as close to 0 as bytes are.
     let texel = |depth: u8| [128, 128, 255, depth];
     let ink = |form, taps| ink_printed_inker(&Inker { form, ..Default::default() }, taps);
@@ -264,7 +264,7 @@ fn the_inker_on_bytes_is_the_inker_on_what_they_stand_for() {
 }
 
 #[test]
-fn signed_sums_take_red_for_green() {
+fn signed_sums_do_not_distinguish_red_from_green() {
     let printed = |a, b| ink_region_printed(a, [b; 4], f64::from(SUM_OS));
     assert_eq!(printed(DVec3::X, DVec3::Y), 0.0);
     assert_eq!(printed(DVec3::X, DVec3::ZERO), 1.0);
@@ -274,7 +274,7 @@ fn signed_sums_take_red_for_green() {
 }
 
 #[test]
-fn the_inker_and_its_two_faults() {
+fn the_inker_and_its_two_errors() {
     let with = |form| Inker { form, ..Default::default() };
     let flat = [DVec3::Z; 4];
     let ink = |form, depths| ink_inker(&with(form), flat, depths);
@@ -285,7 +285,7 @@ fn the_inker_and_its_two_faults() {
     // Repaired: the least difference is ink.
     assert_eq!(ink(InkerForm::Repaired, [far; 4]), 0.0);
     assert_eq!(ink(InkerForm::Repaired, [far, far, far + 1e-4, far]), 1.0);
-    // Flat and near: ink below 0.03 as printed and below 0.1 repaired, and never with thresholds of their own.
+    // Flat and near: ink below 0.03 as printed and below 0.1 repaired, and nowhere with explicit thresholds.
     let n = |z: f64| ink_inker_similarity(&Inker::default(), flat, z);
     assert!((n(0.0) - 0.64).abs() < 1e-6 && (n(0.05) - 0.81).abs() < 1e-6 && n(0.1001) == 1.0);
     for (z, printed, repaired) in [(0.02, 1.0, 1.0), (0.04, 0.0, 1.0), (0.09, 0.0, 1.0), (0.11, 0.0, 0.0)] {
@@ -404,7 +404,7 @@ fn depth_thresholds_follow_the_distance_in_finite_and_infinite_ranges() {
             let test = FusedFilter { normal_cos: None, ..Default::default() };
             let uniform = FilterUniform::new(&test, layout, &code).unwrap();
             for depth in [1.5, 4.0, 12.0, 45.0] {
-                // 14 bits of an infinite range do not part 1% at 45.
+                // 14 bits of an infinite range do not distinguish 1 % at 45.
                 if layout == TexelLayout::Narrow && depth > 40.0 {
                     continue;
                 }

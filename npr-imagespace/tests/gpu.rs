@@ -4,6 +4,8 @@
 #![cfg(feature = "wgpu")]
 #![allow(clippy::print_stdout)]
 
+#[path = "gpu/composite.rs"]
+mod composite;
 #[path = "gpu/device.rs"]
 mod device;
 #[path = "gpu/discs.rs"]
@@ -12,8 +14,6 @@ mod discs;
 mod fused;
 #[path = "gpu/inputs.rs"]
 mod inputs;
-#[path = "gpu/lay.rs"]
-mod lay;
 #[path = "gpu/printed.rs"]
 mod printed;
 #[path = "gpu/refusals.rs"]

@@ -235,7 +235,7 @@ const PASSES: [(&str, &[&str]); 6] = [
     (include_str!("../src/pass/printed.wgsl"), &["fs_printed", "fs_inker"]),
     (include_str!("../src/pass/step.wgsl"), &["fs_step"]),
     (include_str!("../src/pass/disc.wgsl"), &["fs_bits", "fs_row", "fs_column", "fs_resolve"]),
-    (include_str!("../src/pass/lay.wgsl"), &["fs_lay"]),
+    (include_str!("../src/pass/lay.wgsl"), &["fs_composite"]),
 ];
 
 #[test]

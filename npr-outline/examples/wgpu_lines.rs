@@ -129,11 +129,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     // And the lines over a copy of it.
     encoder.copy_texture_to_texture(painted.as_image_copy(), inked.as_image_copy(), SIZE);
-    let look = LineLook { width_px: [2.5; 4], ink: [0.1, 0.1, 0.15, 1.0] };
+    let style = LineLook { width_px: [2.5; 4], ink: [0.1, 0.1, 0.15, 1.0] };
     let targets = LineTargets { painted: &painted_view, depth: &depth_view, inked: &inked_view, winner: &winner_view };
     let line_pass = LinePass::new(&device, COLOR, false)?;
     let source = LineSource::Records(&records);
-    line_pass.record(&device, &mut encoder, source, &look, &view, eye.extend(1.0), &targets)?;
+    line_pass.record(&device, &mut encoder, source, &style, &view, eye.extend(1.0), &targets)?;
 
     let (size, usage) = (u64::from(4 * SIZE.width * SIZE.height), BufferUsages::COPY_DST | BufferUsages::MAP_READ);
     let copy = device.create_buffer(&BufferDescriptor { label: None, size, usage, mapped_at_creation: false });

@@ -9,14 +9,14 @@
 //! fin.
 //!
 //! Here a face is classified as a whole: by the side of its plane on which the eye is. The plane's four numbers
-//! are the same in the records of all its edges, so that all edges and both ends of each agree, and silhouettes are closed
-//! loops even where a face is within rounding of edge-on. With the eye as a homogeneous
-//! point, a perspective and a parallel view are one formula.
+//! are the same in the records of all its edges, so that all edges and both ends of each agree, and silhouettes are
+//! closed loops even where a face is within rounding of edge-on. With the eye as a homogeneous point, a perspective and
+//! a parallel view are one formula.
 //!
 //! # The records
 //!
-//! A record is two planes, 32 bytes an edge. Edges that are lines for every eye (boundaries, non-manifold edges, creases) come
-//! first, so that a scan tests only the others.
+//! A record is two planes, 32 bytes an edge. Edges that are lines for every eye (boundaries, non-manifold edges,
+//! creases) come first, so that a scan tests only the others.
 
 use crate::OutlineError;
 use glam::{DVec3, DVec4, Vec3, Vec4};
@@ -45,9 +45,9 @@ impl LineKind {
 
 /// The planes of an edge's two faces: `n · p + d` with a unit normal `n`, relative to [`ContourEdges::origin`].
 ///
-/// The planes of faces that are wound oppositely to the first face of their connected component are negated, so that both
-/// have the same winding; at a boundary the second is the negated first, so that the edge is a silhouette for every eye (the chapter's
-/// step 1b).
+/// The planes of faces that are wound oppositely to the first face of their connected component are negated, so that
+/// both have the same winding; at a boundary the second is the negated first, so that the edge is a silhouette for
+/// every eye (the chapter's step 1b).
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub struct EdgePlanes {
@@ -84,7 +84,8 @@ pub struct ContourEdges {
     pub planes: Vec<EdgePlanes>,
     /// The two vertices of each edge in the winding order of the first face, reversed where its plane is negated.
     pub ends: Vec<[u32; 2]>,
-    /// For each edge the [`LineKind`] that it has when it is not a silhouette, as a number in the lower 8 bits, and flags.
+    /// For each edge the [`LineKind`] that it has when it is not a silhouette, as a number in the lower 8 bits, and
+    /// flags.
     pub traits: Vec<u32>,
     /// The first face of each edge.
     pub first_face: Vec<u32>,
@@ -94,19 +95,20 @@ pub struct ContourEdges {
 
 /// In [`ContourEdges::traits`]: the edge is a line for every eye.
 pub const TRAIT_ALWAYS: u32 = 1 << 8;
-/// In [`ContourEdges::traits`]: all faces of the edge are cut out by alpha, so that the line is visible only where they are.
+/// In [`ContourEdges::traits`]: all faces of the edge are cut out by alpha, so that the line is visible only where they
+/// are.
 pub const TRAIT_CUT_OUT: u32 = 1 << 9;
 
 /// Makes the records of a model's edges, those that are lines for every eye first.
 ///
 /// `edges`: of this model, best found with [`npr_mesh::edges::EdgeOptions::skip_redundant`]. Where the model's
-/// `face_polygon` is empty each face is a polygon by itself; where its `face_material` is, faces are opaque.
+/// `face_polygon` is empty each face is a polygon; where its `face_material` is, faces are opaque.
 ///
-/// A face of zero area takes the plane of the neighbour across its longest edge, so that a sliver between two faces does
-/// not hide their silhouette or crease.
+/// A face of zero area takes the plane of the neighbour across its longest edge, so that a sliver between two faces
+/// does not hide their silhouette or crease.
 ///
-/// A folded polygon's triangles ([`Edges::folds`]) each have their own plane, so that the contour is closed where some of
-/// them are back-facing; for creases the polygon's Newell normal is used.
+/// A folded polygon's triangles ([`Edges::folds`]) each have their own plane, so that the contour is closed where some
+/// of them are back-facing; for creases the polygon's Newell normal is used.
 ///
 /// # Errors
 /// [`OutlineError::CreaseAngle`].
@@ -218,8 +220,8 @@ fn first_corner(model: &Model, face: u32) -> DVec3 {
     model.positions[model.faces[face as usize][0] as usize].as_dvec3()
 }
 
-/// For each face a point of its plane, the same for all of its edges: of a polygon, which may be warped, the mean of its
-/// triangles' corners. Empty where each face is a polygon by itself: then it is [`first_corner`].
+/// For each face a point of its plane, the same for all of its edges: of a polygon, which may be warped, the mean of
+/// its triangles' corners. Empty where each face is a polygon; then the point is [`first_corner`].
 fn plane_points(model: &Model) -> Vec<DVec3> {
     let mut points = Vec::with_capacity(model.face_polygon.len());
     for polygon in model.face_polygon.chunk_by(|a, b| a == b) {
@@ -249,8 +251,8 @@ fn borrowed_normals(positions: &[Vec3], edges: &Edges) -> HashMap<u32, Vec3> {
             }
         }
     }
-    // The neighbour of a sliver may be a sliver too: chains are followed to the first face with an area, and each face of
-    // the chain gets its normal. Chains that end in a cycle have none.
+    // The neighbour of a sliver may be a sliver too: chains are followed to the first face with an area, and each face
+    // of the chain gets its normal. Chains that end in a cycle have none.
     let mut borrowed = HashMap::<u32, Vec3>::new();
     let mut way = Vec::new();
     for &face in lenders.keys() {
@@ -280,8 +282,8 @@ fn borrowed_normals(positions: &[Vec3], edges: &Edges) -> HashMap<u32, Vec3> {
 
 /// For each face whether it is wound oppositely to the first face of its connected component; empty if none is.
 ///
-/// The plane of a face is negated in all its edges or in none: an eye exactly in the plane is in front of the plane and of
-/// the negated plane, so that a mixture would leave loops of silhouettes open.
+/// The plane of a face is negated in all its edges or in none: an eye exactly in the plane is in front of the plane and
+/// of the negated plane, so that a mixture would leave loops of silhouettes open.
 fn flipped_faces(edges: &Edges, face_polygon: &[u32]) -> Vec<bool> {
     let two_face = || edges.edges.iter().filter(|edge| edge.kind() == EdgeKind::TwoFace);
     if !two_face().any(|edge| edge.wound_oppositely()) {
@@ -363,7 +365,8 @@ impl ContourEdges {
         let eye = self.local_eye(eye);
         lines.clear();
         lines.extend(0..self.always as u32);
-        // Two passes over each block: the test without branches, which the compiler vectorises, then the hits. Only about one edge in fifty of a scanned model is a hit.
+        // Two passes over each block: the test without branches, which the compiler vectorises, then the hits. Only
+        // about one edge in fifty of a scanned model is a hit.
         const BLOCK: usize = 64;
         for (block_number, block) in self.planes[self.always..].chunks(BLOCK).enumerate() {
             let mut hits = 0u64;
@@ -395,8 +398,8 @@ impl ContourEdges {
     }
 }
 
-/// The side of a triangle's plane on which a homogeneous eye is, in f64 from its corners: positive in front. The reference
-/// that records are compared with.
+/// The side of a triangle's plane on which a homogeneous eye is, in f64 from its corners: positive in front. The
+/// reference that records are compared with.
 pub(crate) fn facing_exact([a, b, c]: [Vec3; 3], eye: DVec4) -> f64 {
     let [a, b, c] = [a.as_dvec3(), b.as_dvec3(), c.as_dvec3()];
     (b - a).cross(c - a).dot(eye.truncate() - a * eye.w)

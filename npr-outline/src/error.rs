@@ -89,7 +89,7 @@ pub enum OutlineError {
     /// A matrix with a far plane, for a pass that clips there what reaches to infinity.
     #[cfg(feature = "wgpu")]
     #[error(
-        "clip_from_world has a far plane at a clip-space w of {far}: shadow volumes reach to infinity, so that a matrix without one or a pass without depth clipping is needed"
+        "clip_from_world has a far plane at a clip-space w of {far}: a matrix without one, or a pass without depth clipping, is needed"
     )]
     FarPlane {
         /// Clip-space w at the far plane; infinite in a parallel view, whose w is the same everywhere.

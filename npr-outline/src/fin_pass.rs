@@ -174,8 +174,8 @@ impl FinPass {
     /// the same normal format.
     ///
     /// # Errors
-    /// If a texture is not as said; [`OutlineError::StandardDepth`], where the matrix can be judged. Nothing is recorded
-    /// then.
+    /// If a texture is not as said; [`OutlineError::StandardDepth`], where the matrix can be judged. Nothing is
+    /// recorded then.
     #[expect(clippy::too_many_arguments, reason = "each is a thing of its own; a struct would only rename them")]
     pub fn record(
         &self,

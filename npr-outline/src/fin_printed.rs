@@ -16,8 +16,8 @@
 //!   tested by itself, rounded normals can give the two ends of one edge different results, which leaves half a fin.
 //! - *Creases are never drawn*, though the text counts them among the outline: only silhouettes and boundaries
 //!   have width.
-//! - A fin that points at the viewer is seen edge-on (the chapter says so of boundaries): the width on the screen is that
-//!   of the displacement only where the smooth normal is perpendicular to the view.
+//! - A fin that points at the viewer is seen edge-on (the chapter says so of boundaries): the width on the screen is
+//!   that of the displacement only where the smooth normal is perpendicular to the view.
 
 use crate::normal_format::NormalFormat;
 use glam::{DMat4, DVec2, DVec3, DVec4, Vec3};
@@ -233,7 +233,7 @@ fn rasterise_one(
     let takes_border = sides.map(|(from, to)| to.y < from.y || (to.y == from.y && to.x > from.x));
     let low = a.min(b).min(c);
     let high = a.max(b).max(c);
-    // Casts from f64 saturate, so what lies outside the picture makes an empty range.
+    // Casts from f64 saturate, so pixels outside the picture give an empty range.
     let first = |v: f64| (v - 0.5).ceil().max(0.0) as u32;
     let end = |v: f64, size: u32| (((v - 0.5).floor() + 1.0).max(0.0) as u32).min(size);
     for y in first(low.y)..end(high.y, height) {

@@ -28,7 +28,8 @@
 //! [`shadow_volume`] makes shadow volumes from the same edges, `shadow_pass` counts them in a stencil buffer, and
 //! `shadow_mask` converts the counts to a texture that every device can read in a shader.
 //!
-//! Formulas are written twice with the same names and parameters: in Rust, mostly in f64, as the reference, and in WGSL.
+//! Formulas are written twice with the same names and parameters: in Rust, mostly in f64, as the reference, and in
+//! WGSL.
 //!
 //! # Sources
 //!

@@ -34,15 +34,23 @@ const OUTLINE_PLANE_SLACK_PER_SLOPE: f32 = 0.0078125;
 // In an edge's traits: its faces are cut out by alpha.
 const OUTLINE_TRAIT_CUT_OUT: u32 = 512u;
 
-// The part of a segment in front of the near plane and within the widened viewport, as fractions; the first is above the
-// second where nothing is left.
+// The part of a segment in front of the near plane and within the widened viewport, as fractions; the first is above
+// the second where nothing is left.
 fn outline_clip(end0: vec4<f32>, end1: vec4<f32>, viewport_px: vec2<f32>, margin_px: f32) -> vec2<f32> {
     let guard = vec2<f32>(1.0) + 2.0 * margin_px / viewport_px;
     var in_a = array<f32, 5>(
-        end0.w - end0.z, guard.x * end0.w - end0.x, guard.x * end0.w + end0.x, guard.y * end0.w - end0.y, guard.y * end0.w + end0.y,
+        end0.w - end0.z,
+        guard.x * end0.w - end0.x,
+        guard.x * end0.w + end0.x,
+        guard.y * end0.w - end0.y,
+        guard.y * end0.w + end0.y,
     );
     var in_b = array<f32, 5>(
-        end1.w - end1.z, guard.x * end1.w - end1.x, guard.x * end1.w + end1.x, guard.y * end1.w - end1.y, guard.y * end1.w + end1.y,
+        end1.w - end1.z,
+        guard.x * end1.w - end1.x,
+        guard.x * end1.w + end1.x,
+        guard.y * end1.w - end1.y,
+        guard.y * end1.w + end1.y,
     );
     var part = vec2<f32>(0.0, 1.0);
     for (var i = 0; i < 5; i++) {
@@ -179,8 +187,8 @@ fn outline_vote(scene_depth: f32, depth: f32, offset: f32, slopes: vec2<f32>, pe
     return vec2<bool>(behind <= allowed, abs(behind) <= (OUTLINE_DEPTH_SLACK_PX + OUTLINE_MAX_SLOPE) * per_px);
 }
 
-// How far in front of a point of a line, `within` px from the first pixel's centre, the plane through four pixels is, less
-// the tolerance for rounding and for the deviation of the four from a plane.
+// How far in front of a point of a line, `within` px from the first pixel's centre, the plane through four pixels is,
+// less the tolerance for rounding and for the deviation of the four from a plane.
 fn outline_plane_in_front(quad: vec4<f32>, within: vec2<f32>, depth: f32, per_px: f32) -> f32 {
     let along_x = 0.5 * (quad.y - quad.x + quad.w - quad.z);
     let along_y = 0.5 * (quad.z - quad.x + quad.w - quad.y);

@@ -129,8 +129,8 @@ pub struct LineTargets<'a> {
     pub painted: &'a wgpu::TextureView,
     /// The scene's depth, reversed: the depth aspect of a depth format, or `R32Float`; `TEXTURE_BINDING`.
     pub depth: &'a wgpu::TextureView,
-    /// Of the format that the pass was made for, `RENDER_ATTACHMENT`; holds a copy of `painted` and gets the lines. A
-    /// view without sRGB of an sRGB texture will do.
+    /// Of the format that the pass was made for, `RENDER_ATTACHMENT`; holds a copy of `painted`; lines are drawn over
+    /// it. A view without sRGB of an sRGB texture will do.
     pub inked: &'a wgpu::TextureView,
     /// [`WINNER_FORMAT`], `RENDER_ATTACHMENT`; overwritten.
     pub winner: &'a wgpu::TextureView,
@@ -170,12 +170,12 @@ const EDGE_NUMBER_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBuffer
 };
 
 impl LinePass {
-    /// Makes the pipelines for a colour target of `color_format`, of floats and without sRGB: coverage blends in display
-    /// space.
+    /// Makes the pipelines for a colour target of `color_format`, of floats and without sRGB: coverage blends in
+    /// display space.
     ///
-    /// `on_device`: also those of [`LineSource::OnDevice`], which need compute shaders, storage buffers in vertex shaders and
-    /// indirect drawing ([`wgpu::DownlevelFlags::COMPUTE_SHADERS`], [`wgpu::DownlevelFlags::VERTEX_STORAGE`],
-    /// [`wgpu::DownlevelFlags::INDIRECT_EXECUTION`]).
+    /// `on_device`: also those of [`LineSource::OnDevice`], which need compute shaders, storage buffers in vertex
+    /// shaders and indirect drawing ([`wgpu::DownlevelFlags::COMPUTE_SHADERS`],
+    /// [`wgpu::DownlevelFlags::VERTEX_STORAGE`], [`wgpu::DownlevelFlags::INDIRECT_EXECUTION`]).
     ///
     /// # Errors
     /// [`OutlineError::SrgbTarget`]; [`OutlineError::ViewFormat`] for a format that is no colour of floats.
@@ -308,22 +308,23 @@ impl LinePass {
     /// [`LineView::clip_from_world`] is reversed: 1 at the near plane, falling with distance.
     ///
     /// # Errors
-    /// [`OutlineError::Width`]; [`OutlineError::TooManyEdges`] where the records do not fit a buffer; if a texture is not
-    /// as [`LineTargets`] says; [`OutlineError::StandardDepth`], where the matrix can be judged. Nothing is recorded then.
+    /// [`OutlineError::Width`]; [`OutlineError::TooManyEdges`] where the records do not fit a buffer; if a texture is
+    /// not as [`LineTargets`] says; [`OutlineError::StandardDepth`], where the matrix can be judged. Nothing is
+    /// recorded then.
     #[expect(clippy::too_many_arguments, reason = "each is a thing of its own; a struct would only rename them")]
     pub fn record(
         &self,
         device: &wgpu::Device,
         encoder: &mut wgpu::CommandEncoder,
         source: LineSource<'_>,
-        look: &LineLook,
+        style: &LineLook,
         view: &LineView,
         eye: DVec4,
         targets: &LineTargets<'_>,
     ) -> Result<(), OutlineError> {
-        look.validate()?;
+        style.validate()?;
         self.check(view, eye, targets)?;
-        let uniform = OutlineUniform::new(look, view, eye, source);
+        let uniform = OutlineUniform::new(style, view, eye, source);
         let uniform = filled_buffer(device, "outline view", bytemuck::bytes_of(&uniform), wgpu::BufferUsages::UNIFORM);
         let group = |layout, resources: &[_]| bind_group(device, "outline", layout, resources);
         let view_group = group(&self.view_layout, &[uniform.as_entire_binding()]);
@@ -430,13 +431,13 @@ impl EdgesOnDevice {
 }
 
 impl OutlineUniform {
-    fn new(look: &LineLook, view: &LineView, eye: DVec4, source: LineSource<'_>) -> Self {
+    fn new(style: &LineLook, view: &LineView, eye: DVec4, source: LineSource<'_>) -> Self {
         let of_records = Self {
             clip_from_world: view.clip_from_world.as_mat4().to_cols_array_2d(),
             viewport_px: view.viewport_px.as_vec2().to_array(),
             depth_per_px: view.depth_per_px.as_vec2().to_array(),
-            width_px: look.width_px,
-            ink: look.ink,
+            width_px: style.width_px,
+            ink: style.ink,
             local_eye: [0.0; 4],
             edge_count: 0,
             always_count: 0,

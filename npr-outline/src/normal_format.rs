@@ -159,8 +159,8 @@ fn eyes(model: &Model, views: usize) -> Vec<DVec3> {
     fibonacci_sphere(views).map(|direction| centre + 3.0 * radius * direction).collect()
 }
 
-/// For each face whether the eye is in front: [`facing_exact`], and for a polygon's faces that of the polygon's plane, with
-/// its Newell normal through the mean of its triangles' corners, as [`crate::contour`] has it.
+/// For each face whether the eye is in front: [`facing_exact`], and for a polygon's faces that of the polygon's plane,
+/// with its Newell normal through the mean of its triangles' corners, as [`crate::contour`] has it.
 fn true_sides(model: &Model, eye: DVec3) -> Vec<bool> {
     let corners = |face: &[u32; 3]| face.map(|v| model.positions[v as usize]);
     if model.face_polygon.is_empty() {

@@ -5,10 +5,10 @@
 //! # Width
 //!
 //! A line is the set of points within half its width of the segment, so its ends are round and joints of
-//! adjacent lines are closed. The coverage of a pixel is the area of the pixel's square between the line's two borders, exact for
-//! straight ones: its sum across a line is the width at any angle and position, and lines thinner than a pixel fade
-//! instead of breaking. The width is measured on the screen and does not depend on the distance; listing 1 of Card &
-//! Mitchell 2002 scales by clip z instead of w, which makes lines thinner towards the near plane.
+//! adjacent lines are closed. The coverage of a pixel is the area of the pixel's square between the line's two borders,
+//! exact for straight ones: its sum across a line is the width at any angle and position, and lines thinner than a
+//! pixel fade instead of breaking. The width is measured on the screen and does not depend on the distance; listing 1
+//! of Card & Mitchell 2002 scales by clip z instead of w, which makes lines thinner towards the near plane.
 //!
 //! # Visibility
 //!
@@ -17,25 +17,25 @@
 //! the four pixel centres around it shows a surface that is not in front of it. On the outer side of a
 //! silhouette that surface is the background; at a crease it is one of the edge's own faces, whose slope across
 //! the line is known from its normal and allowed for, up to 8 px of depth a px (83°). Half a pixel's depth is
-//! allowed in addition: from one pixel, a point that is less than that behind a surface cannot be distinguished from one on
-//! it.
+//! allowed in addition: from one pixel, a point that is less than that behind a surface cannot be distinguished from
+//! one on it.
 //!
 //! From several pixels it can. On a surface seen at a grazing angle depth changes by many px of depth within one px, so
 //! that some of the four pixels around a line just behind it would let the line through: seen from below, the top of a
-//! table would show the rims of all objects on it. A second test therefore hides a line where the surface through the four
-//! pixels, interpolated to the line's point, is in front of it by more than rounding and by more than twice the second
-//! differences of depth there. At silhouettes, creases and contacts these differences are larger than any such distance,
-//! and a plane that contains the line is not in front of it.
+//! table would show the rims of all objects on it. A second test therefore hides a line where the surface through the
+//! four pixels, interpolated to the line's point, is in front of it by more than rounding and by more than twice the
+//! second differences of depth there. At silhouettes, creases and contacts these differences are larger than any such
+//! distance, and a plane that contains the line is not in front of it.
 //!
-//! Depth is the depth buffer's own, reversed: 1 at the near plane, falling with distance. It is linear on the screen, in
-//! perspective too, so that interpolating and extrapolating it are exact.
+//! Depth is the depth buffer's own, reversed: 1 at the near plane, falling with distance. It is linear on the screen,
+//! in perspective too, so that interpolating and extrapolating it are exact.
 
 use glam::{DMat4, DVec2, DVec3, DVec4, Vec4Swizzles};
 
 /// The largest slope of a face across the line that is allowed for, px of depth a px.
 pub const MAX_SLOPE: f64 = 8.0;
-/// From this slope on, px of depth a px, a face is taken as edge-on: it covers no pixel, and its side of the line is only
-/// rounding.
+/// From this slope on, px of depth a px, a face is taken as edge-on: it covers no pixel, and its side of the line is
+/// only rounding.
 const EDGE_ON_SLOPE: f64 = 1024.0;
 /// How far a line may be behind a surface and still be visible, px of depth.
 const DEPTH_SLACK_PX: f64 = 0.5;
@@ -74,7 +74,8 @@ pub struct ScreenSegment {
 /// Clips a segment at the near plane and to the viewport widened by `margin_px`, and returns its ends in clip
 /// space, or `None` if nothing is left.
 ///
-/// The following steps divide by w, and f32 loses the position of the centreline when an end is a thousand screens away.
+/// The following steps divide by w, and f32 loses the position of the centreline when an end is a thousand screens
+/// away.
 fn outline_clip(ends: [DVec4; 2], viewport_px: DVec2, margin_px: f64) -> Option<[DVec4; 2]> {
     let guard = DVec2::ONE + 2.0 * margin_px / viewport_px;
     let inside =
@@ -118,7 +119,8 @@ fn outline_face_slope(inward: DVec3, middle: DVec4, segment: &ScreenSegment, vie
     (across, (moved.z - along * depth_along) / across.abs())
 }
 
-/// Projects an edge to the screen; `None` where nothing of it is in front of the near plane and within the widened viewport.
+/// Projects an edge to the screen; `None` where nothing of it is in front of the near plane and within the widened
+/// viewport.
 ///
 /// - `ends`: world space, in the order in which the first face runs over the edge.
 /// - `normals`: unit normals of the two faces for the same winding; zero where there is no face.
@@ -205,8 +207,9 @@ fn outline_band(distance: f64, normal: DVec2, width_px: f64) -> f64 {
     covered.clamp(0.0, 1.0)
 }
 
-/// How much of the pixel around `point_px` a line of `width_px` covers, 0..=1: exact beside the line; past its ends by the
-/// distance from them, and never more than a longer line would cover, so that a line in pieces has the coverage of the whole.
+/// How much of the pixel around `point_px` a line of `width_px` covers, 0..=1: exact beside the line; past its ends by
+/// the distance from them, and never more than a longer line would cover, so that a line in pieces has the coverage of
+/// the whole.
 pub fn outline_coverage(segment: &ScreenSegment, point_px: DVec2, width_px: f64) -> f64 {
     let on_line = segment.at(segment.nearest(point_px)).0;
     outline_coverage_at(on_line, segment.direction().0, point_px, width_px)
@@ -294,7 +297,8 @@ fn outline_plane_hides(
 ///
 /// - `depth_at`: the depth buffer's value at a pixel; x and y may lie outside the picture by a few px, and the
 ///   caller clamps them.
-/// - `cut_out`: the edge's own faces may be absent; the line is then visible only where there is a surface at its own depth.
+/// - `cut_out`: the edge's own faces may be absent; the line is then visible only where there is a surface at its own
+///   depth.
 pub fn outline_is_visible(
     segment: &ScreenSegment,
     fraction: f64,

@@ -1,7 +1,7 @@
 //! Converts the counts in a stencil buffer of shadow volumes to a texture.
 //!
-//! [`crate::shadow_pass`] leaves counts in a stencil. Few GLES 3.0 and WebGL2 devices can read a stencil in a shader, so
-//! this pass uses the stencil test to write 1 where [`crate::shadow_volume::outline_in_shadow`] holds, 0 elsewhere.
+//! [`crate::shadow_pass`] leaves counts in a stencil. Few GLES 3.0 and WebGL2 devices can read a stencil in a shader,
+//! so this pass uses the stencil test to write 1 where [`crate::shadow_volume::outline_in_shadow`] holds, 0 elsewhere.
 //! Reading the mask takes one load of an unsigned byte.
 
 use crate::OutlineError;

@@ -1,13 +1,13 @@
 //! Counts shadow volumes in a stencil buffer on wgpu.
 //!
 //! Volumes are counted behind the surface (depth fail), so that the eye may be inside a volume. Where
-//! [`crate::shadow_volume::outline_in_shadow`] holds for the stencil after the pass, the surface in the depth buffer is in
-//! shadow or faces away from the light. Volumes reach to infinity, so that either the matrix has no far plane or the pass
-//! is made without depth clipping.
+//! [`crate::shadow_volume::outline_in_shadow`] holds for the stencil after the pass, the surface in the depth buffer is
+//! in shadow or faces away from the light. Volumes reach to infinity, so that either the matrix has no far plane or the
+//! pass is made without depth clipping.
 //!
 //! The depth buffer must hold the same faces, placed by the same product of matrix and position with an `@invariant`
-//! result: a cap lies exactly on its face, equal depth counts as behind, and so a lit face does not shadow itself. There
-//! is no depth bias.
+//! result: a cap lies exactly on its face, equal depth counts as behind, and so a lit face does not shadow itself.
+//! There is no depth bias.
 //!
 //! The stencil has 8 bits: a pixel with 128 to 256 layers of faces between it and the light is classified as lit.
 

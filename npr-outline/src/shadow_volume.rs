@@ -6,28 +6,28 @@
 //! away from the light, and by the faces swept to infinity (its far caps). The number of volumes around a point is the
 //! number of casting faces between it and the light, so that for any topology a count above zero is shadow.
 //!
-//! - Of a *closed* surface, every edge with two faces that are wound consistently, only the faces towards the light cast. Then
-//!   an edge sweeps where one of its faces faces the light and the other does not: the contour seen from the light, by the
-//!   same test that finds contours for the eye ([`outline_facing`], once for each face).
-//! - Elsewhere every face casts by itself, oriented so that it faces the light, and the number of sweeps of an edge is the
-//!   sum of the directions in which its faces run over it: 1 at a boundary, 0 where a surface continues, 2 where it folds
-//!   over. This depends on no winding and no neighbour, so that no volume is open.
+//! - Of a *closed* surface, every edge with two faces that are wound consistently, only the faces towards the light
+//!   cast. Then an edge sweeps where one of its faces faces the light and the other does not: the contour seen from the
+//!   light, by the same test that finds contours for the eye ([`outline_facing`], once for each face).
+//! - Elsewhere every face casts by itself, oriented so that it faces the light, and the number of sweeps of an edge is
+//!   the sum of the directions in which its faces run over it: 1 at a boundary, 0 where a surface continues, 2 where it
+//!   folds over. This depends on no winding and no neighbour, so that no volume is open.
 //!
-//! Since the orientation of a face is decided once and is the same for all its edges, the volumes are closed, also where a
-//! face is within rounding of edge-on.
+//! Since the orientation of a face is decided once and is the same for all its edges, the volumes are closed, also
+//! where a face is within rounding of edge-on.
 //!
 //! Faces of zero area cast nothing, but are kept, so that the edges around them match. Redundant faces
-//! ([`npr_mesh::edges::EdgeOptions::skip_redundant`]) and blended materials cast nothing. A material that alpha cuts out
-//! casts the shadow of its whole faces, since volumes have no textures.
+//! ([`npr_mesh::edges::EdgeOptions::skip_redundant`]) and blended materials cast nothing. A material that alpha cuts
+//! out casts the shadow of its whole faces, since volumes have no textures.
 //!
 //! # Sources
 //!
 //! - F. C. Crow: *Shadow Algorithms for Computer Graphics*, SIGGRAPH 1977: shadow volumes.
-//! - C. Everitt, M. J. Kilgard: *Practical and Robust Stenciled Shadow Volumes for Hardware-Accelerated Rendering*, 2002:
-//!   counting behind the surface (depth fail), caps at infinity, a projection without far plane.
-//! - G. Aldridge, E. Woods: *Robust, geometry-independent shadow volumes*, GRAPHITE 2004, and B. Kim, K. Kim, G. Turk: *A
-//!   Shadow-Volume Algorithm for Opaque and Transparent Nonmanifold Casters*, Journal of Graphics Tools 13:3, 2008: edges
-//!   that sweep as often as their faces' directions do not cancel out.
+//! - C. Everitt, M. J. Kilgard: *Practical and Robust Stenciled Shadow Volumes for Hardware-Accelerated Rendering*,
+//!   2002: counting behind the surface (depth fail), caps at infinity, a projection without far plane.
+//! - G. Aldridge, E. Woods: *Robust, geometry-independent shadow volumes*, GRAPHITE 2004, and B. Kim, K. Kim, G. Turk:
+//!   *A Shadow-Volume Algorithm for Opaque and Transparent Nonmanifold Casters*, Journal of Graphics Tools 13:3, 2008:
+//!   edges that sweep as often as their faces' directions do not cancel out.
 //! - D. Card, J. L. Mitchell 2002, "Shadow Outlines": stencil shadows in an NPR renderer.
 
 use crate::contour::outline_facing;
@@ -244,8 +244,8 @@ fn outline_sweeps(edge: &VolumeEdge, light: Vec4) -> i32 {
 
 /// Whether a stencil count of 8 bits means shadow: 1 to 127 volumes.
 ///
-/// Larger values are negative counts. Exact counts are never negative, but where an edge runs through a pixel's centre a
-/// side that was clipped, and so rounded, may miss a pixel that its cap covers.
+/// Larger values are negative counts. Exact counts are never negative, but where an edge runs through a pixel's centre
+/// a side that was clipped, and so rounded, may miss a pixel that its cap covers.
 #[inline]
 pub fn outline_in_shadow(count: u8) -> bool {
     (1..128).contains(&count)
@@ -279,9 +279,9 @@ impl ShadowCasters {
     }
 
     /// The triangles of a light's volumes, three corners each: first those of sides and of caps of faces
-    /// towards the light, wound counter-clockwise seen from outside; then the caps of faces away from the light with their
-    /// own winding, which count with the opposite sign. A corner is a position with w = 1, or with w = 0 one that is swept
-    /// to infinity ([`outline_swept`]).
+    /// towards the light, wound counter-clockwise seen from outside; then the caps of faces away from the light with
+    /// their own winding, which count with the opposite sign. A corner is a position with w = 1, or with w = 0 one that
+    /// is swept to infinity ([`outline_swept`]).
     ///
     /// At most 12 corners for each edge record and 6 for each face. `light`: as for [`ShadowCasters::scan`].
     pub fn triangles(&self, light: DVec4) -> (Vec<[f32; 4]>, Vec<[f32; 4]>) {
@@ -313,12 +313,12 @@ impl ShadowCasters {
         (towards, away)
     }
 
-    /// The number of volumes around the point at infinity in a direction: the number of casting faces that the ray from the
-    /// light in that direction crosses.
+    /// The number of volumes around the point at infinity in a direction: the number of casting faces that the ray from
+    /// the light in that direction crosses.
     ///
-    /// In a parallel view the caps at infinity are seen edge-on and are not rasterised; this is their count, the same for
-    /// every pixel. 0 for a directional light, whose volumes end in a point. A sum over all faces; `light`:
-    /// as for [`ShadowCasters::scan`].
+    /// In a parallel view the caps at infinity are seen edge-on and are not rasterised; this is their count, the same
+    /// for every pixel. 0 for a directional light, whose volumes end in a point. A sum over all faces; `light`: as for
+    /// [`ShadowCasters::scan`].
     pub fn endless(&self, light: DVec4, direction: DVec3) -> u32 {
         if light.w == 0.0 {
             return 0;

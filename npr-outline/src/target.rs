@@ -16,8 +16,8 @@ pub(crate) fn check_color_format(device: &wgpu::Device, format: wgpu::TextureFor
     Ok(())
 }
 
-/// Refuses a texture that `accepts` does not take for its format, with more than one sample a pixel, or, if `size_px` is
-/// given, of another size.
+/// Refuses a texture that `accepts` does not take for its format, with more than one sample a pixel, or, if `size_px`
+/// is given, of another size.
 pub(crate) fn check_view(
     what: &'static str,
     view: &wgpu::TextureView,

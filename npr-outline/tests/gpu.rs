@@ -303,7 +303,7 @@ fn coverage_is_that_of_the_twin() {
             if covered > 0.0 && visible(&segment, point) { covered } else { 0.0 }
         };
         // The same decision for segments a thousandth of a px, of depth or of slope beside it: f32 is better than that.
-        let shaken = shaken(&segment, &view);
+        let shaken = perturbed(&segment, &view);
         let is_firm = |point: DVec2| {
             let seen = visible(&segment, point);
             shaken.iter().all(|other| visible(other, point) == seen)
@@ -342,8 +342,8 @@ fn scene_plane(segment: &ScreenSegment, view: &LineView, kind: usize, random: &m
     [gradient.x as f32, gradient.y as f32, (depth + offset - gradient.dot(middle)) as f32]
 }
 
-/// The segment moved a little in all that a decision depends on.
-fn shaken(segment: &ScreenSegment, view: &LineView) -> Vec<ScreenSegment> {
+/// The segment with small changes in every quantity that its visibility depends on.
+fn perturbed(segment: &ScreenSegment, view: &LineView) -> Vec<ScreenSegment> {
     let px = 1e-3;
     let mut all = Vec::new();
     for shift in [DVec2::ZERO, DVec2::X, DVec2::NEG_X, DVec2::Y, DVec2::NEG_Y] {
@@ -407,7 +407,7 @@ fn printed_fins_are_those_of_the_rasteriser() {
 
 /// A plane through the light, and planes that pass it by a little on either side; x and w of the plane decide.
 #[test]
-fn a_face_exactly_edge_on_is_turned_towards_the_light() {
+fn a_face_exactly_edge_on_faces_the_light() {
     let Some(gpu) = gpu() else { return };
     let planes = [[0.0, 0.0], [-0.0, 0.0], [0.5, -0.5], [-0.5, 0.5], [0.5, -0.25], [-0.5, 0.25], [0.5, -0.75]];
     let expected = [1, 1, 1, 1, 1, -1, -1];
@@ -526,7 +526,7 @@ fn the_mask_is_what_the_twin_says_of_each_count() {
     }
 }
 
-/// Leaves in each column of a stencil its number.
+/// Writes the number of each column to the stencil.
 struct ColumnCounts {
     pipeline: wgpu::RenderPipeline,
 }

@@ -21,11 +21,11 @@
 //! itself is linear, and ink is where
 //! |z₋ − 2z + z₊| > t, in units of depth. The alternative, to predict the neighbours' depth from the plane
 //! through the centre with its normal, needs more precise normals than a G-buffer has: at 1° grazing an error of ½° in
-//! the normal changes the slope by half. On planes 0.5° to 10° grazing with spheres on them (`tests/plane.rs`, 320 × 240 px, all
-//! with t = 0.01), false line pixels on the plane: second differences none, in f32, 24 or 14 bits; prediction none
-//! with normals of 2 × 16 bits, 300 to 5000 with 2 × 8; plain 29,000 to 42,000, nearly all of it. None loses an
-//! outline. A crease between two planes is ink as well where the slope changes by more than t of the distance in a
-//! pixel.
+//! the normal changes the slope by half. On planes 0.5° to 10° grazing with spheres on them (`tests/plane.rs`, 320 ×
+//! 240 px, all with t = 0.01), false line pixels on the plane: second differences none, in f32, 24 or 14 bits;
+//! prediction none with normals of 2 × 16 bits, 300 to 5000 with 2 × 8; plain 29,000 to 42,000, nearly all of it. None
+//! loses an outline. A crease between two planes is ink as well where the slope changes by more than t of the distance
+//! in a pixel.
 //!
 //! A depth that is not valid for a surface ([`ink_is_surface`]) is background, which differs from every surface. The
 //! plain tests compare numbers only, and NaN is never ink.
@@ -71,8 +71,8 @@ pub fn ink_depth_plain(centre: f64, taps: [f64; 4], form: DepthPlain, threshold:
     if softness > 0.0 { ink_ramp(measure - threshold, softness) } else { f64::from(u8::from(measure >= threshold)) }
 }
 
-/// A threshold 0..=1 in codes of a format whose largest is `most`, rounded up, so that `measure ≥ threshold` gives the same
-/// result on codes.
+/// A threshold 0..=1 in codes of a format whose largest is `most`, rounded up, so that `measure ≥ threshold` gives the
+/// same result on codes.
 pub fn depth_code_threshold(threshold: f32, most: u32) -> u32 {
     (f64::from(threshold) * f64::from(most)).ceil() as u32
 }

@@ -10,16 +10,19 @@
 //!   products of integers are exact in f32 in any order of summation, and the three products are each rounded once; or
 //! - the plain depth test is enabled and |q − qᵢ| > T;
 //!
-//! and the depth of a pair (i, i + 2) *bends* if none of the three is background, the test of second differences is enabled and
+//! and the depth of a pair (i, i + 2) *bends* if none of the three is background, the test of second differences is
+//! enabled and
 //! |qᵢ − 2q + qᵢ₊₂| > T. T = max(slack, base + step · q'), where q' is the largest of the codes compared, base makes it
 //! proportional to 1/z where the code 0 is not at infinity, and the slack is the largest effect of rounding
-//! ([`crate::format::texel::TexelLayout::depth_slack`]). There is ink where any tap lies across a border or any pair bends.
+//! ([`crate::format::texel::TexelLayout::depth_slack`]). There is ink where any tap lies across a border or any pair
+//! bends.
 //!
-//! The slides multiply the white images of the three filters, which has the same result for hard lines. With soft lines a
-//! pixel on an edge of both normals and depth would be darker than on either; here the larger ink of each tap is used.
+//! The slides multiply the white images of the three filters, which has the same result for hard lines. With soft lines
+//! a pixel on an edge of both normals and depth would be darker than on either; here the larger ink of each tap is
+//! used.
 //!
-//! A test that is not enabled costs a uniform branch. The WGSL processes the four taps as vectors without other branches,
-//! which on a software rasteriser saves a third of the arithmetic's time.
+//! A test that is not enabled costs a uniform branch. The WGSL processes the four taps as vectors without other
+//! branches, which on a software rasteriser saves a third of the arithmetic's time.
 
 use crate::ImageSpaceError;
 use crate::filter::depth::BEND;
@@ -68,8 +71,8 @@ pub enum ShadowTest {
     Ignored,
     /// Borders of shadows are lines like all others.
     Lines,
-    /// Only borders of shadows are lines, and only where no other test finds one: for a separate pass with shadow lines of
-    /// another colour or width.
+    /// Only borders of shadows are lines, and only where no other test finds one: for a separate pass with shadow lines
+    /// of another colour or width.
     Alone,
 }
 
@@ -247,8 +250,8 @@ pub fn ink_tap_across(settings: &FilterUniform, centre: &Tap, tap: &Tap) -> bool
         || (settings.tests & TEST_NORMAL != 0 && ink_tap_normal_differs(settings, centre.normal, tap.normal))
 }
 
-/// By how much a second difference of depth exceeds its threshold, and the threshold, in codes; `None` where the test is
-/// not enabled or one of the three is background.
+/// By how much a second difference of depth exceeds its threshold, and the threshold, in codes; `None` where the test
+/// is not enabled or one of the three is background.
 fn bend_excess(settings: &FilterUniform, a: &Tap, centre: &Tap, b: &Tap) -> Option<(i32, i32)> {
     if settings.tests & TEST_BEND == 0 || ![a, centre, b].into_iter().all(|tap| is_surface(settings, tap)) {
         return None;
@@ -304,8 +307,8 @@ fn ink_tap_soft(settings: &FilterUniform, centre: &Tap, tap: &Tap) -> f64 {
     ink
 }
 
-/// Ink of a pixel, 0..=1: weight · max(Σ taps, Σ pairs), at most 1. Borders of shadows are among the taps; where only they
-/// are lines, their ink is reduced by that of the other tests.
+/// Ink of a pixel, 0..=1: weight · max(Σ taps, Σ pairs), at most 1. Borders of shadows are among the taps; where only
+/// they are lines, their ink is reduced by that of the other tests.
 pub fn ink_fused_soft(settings: &FilterUniform, centre: &Tap, taps: &[Tap; 4]) -> f64 {
     let weight = f64::from(settings.weight);
     let shadow = |tap: &Tap| f64::from(u8::from(ink_tap_shadow_differs(settings, centre, tap)));

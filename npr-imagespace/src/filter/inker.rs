@@ -11,8 +11,8 @@
 //! ```
 //!
 //! - [`InkerForm::Printed`]: ink where (1 − N) + d₀² + ¼ + d₁ > ½. Error in print: d₁ is not squared, though
-//!   the comment says "square the differences"; `mad r1.a, r1.a, r1.a, c1.a` is missing. So the sign of d₁ matters, and a
-//!   border is inked in one direction only.
+//!   the comment says "square the differences"; `mad r1.a, r1.a, r1.a, c1.a` is missing. So the sign of d₁ matters, and
+//!   a border is inked in one direction only.
 //! - [`InkerForm::Repaired`]: the missing instruction put in, ink where (1 − N) + d₀² + d₁² + ½ > ½. In exact
 //!   arithmetic any difference of depth satisfies that, and every slanted face is ink. On the hardware of 2002 a square
 //!   below half a step of 8 bits was 0.

@@ -5,8 +5,8 @@
 //!
 //! On bytes the comparison is one of integers ([`ink_normal_bytes_edge`]): Σ (2a − 255)(2b − 255) < t · 255².
 //!
-//! Background has a vector that is no normal. It differs from every normal and not from itself, whatever the dot products
-//! are; the printed form has no such rule ([`crate::format::printed`]).
+//! Background has a vector that is no normal. It differs from every normal and not from itself, whatever the dot
+//! products are; the printed form has no such rule ([`crate::format::printed`]).
 
 use crate::filter::ink_ramp;
 use glam::DVec3;

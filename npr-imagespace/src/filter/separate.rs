@@ -6,7 +6,8 @@
 //! # Depth buffers
 //!
 //! A depth buffer holds a number d. The quantity that is linear on the screen, 1/z of the eye-space depth z in a
-//! perspective view and z itself in a parallel one, is v = d · scale + bias. With n and f the nearest and farthest depths:
+//! perspective view and z itself in a parallel one, is v = d · scale + bias. With n and f the nearest and farthest
+//! depths:
 //!
 //! | projection | d at n, f | scale | bias | |
 //! | --- | --- | --- | --- | --- |
@@ -16,9 +17,9 @@
 //! | parallel | 0, 1 | f − n | n | [`DepthSource::parallel`] |
 //! | parallel, reversed | 1, 0 | n − f | f | [`DepthSource::parallel_reversed`] |
 //!
-//! Where d runs from −1 to 1, as OpenGL's normalised device coordinates do, the scale is half of that in the table, and the bias is
-//! that in the table plus half the table's scale. For another matrix, with clip z = A · z + B and clip w = z for eye-space depth z > 0:
-//! d = A + B/z, so that scale = 1/B and bias = −A/B.
+//! Where d runs from −1 to 1, as OpenGL's normalised device coordinates do, the scale is half of that in the table, and
+//! the bias is that in the table plus half the table's scale. For another matrix, with clip z = A · z + B and clip w =
+//! z for eye-space depth z > 0: d = A + B/z, so that scale = 1/B and bias = −A/B.
 
 use crate::ImageSpaceError;
 use crate::filter::depth::{BEND, DepthPlain, ink_depth_bend, ink_depth_plain, ink_depth_step, ink_depth_step_soft};

@@ -1,7 +1,7 @@
 //! Linear eye-space depth in six formats.
 //!
-//! The chapter (Card & Mitchell 2002) stores 8 bits and expects that close surfaces are not separated in large scenes; it
-//! proposes more or wider channels. The fixed-point formats store u = (z − near) / (far − near), the float formats z
+//! The chapter (Card & Mitchell 2002) stores 8 bits and expects that close surfaces are not separated in large scenes;
+//! it proposes more or wider channels. The fixed-point formats store u = (z − near) / (far − near), the float formats z
 //! itself, so that infinity and NaN are preserved and [`crate::format::ink_is_surface`] recognises them.
 //!
 //! # The smallest difference resolved

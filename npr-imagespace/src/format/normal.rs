@@ -8,8 +8,8 @@
 //! bytes 0.38° and 0.17°, octahedral 2 × 5 bits 7.9° and 2.8°, 2 × 8 0.92° and 0.34°, 2 × 16 0.0036° and 0.0013°,
 //! half floats 0.022° and 0.006°.
 //!
-//! Decoded to integers ([`ink_oct_vector`]) a code is a vector of integers with |x| + |y| + |z| = m in the direction of the
-//! normal. Dot products of such vectors are exact on every machine, which is what the filters use.
+//! Decoded to integers ([`ink_oct_vector`]) a code is a vector of integers with |x| + |y| + |z| = m in the direction of
+//! the normal. Dot products of such vectors are exact on every machine, which is what the filters use.
 
 use crate::format::half::{ink_half_decode, ink_half_encode};
 use crate::format::ink_is_surface;
@@ -108,8 +108,8 @@ impl NormalFormat {
     }
 
     /// The normal of a code: unit length in the octahedral formats, to the format's precision in the others.
-    /// A vector that is no normal is decoded to zero in the octahedral formats, to (−1, −1, −1) in bytes, and unchanged in
-    /// half floats.
+    /// A vector that is no normal is decoded to zero in the octahedral formats, to (−1, −1, −1) in bytes, and unchanged
+    /// in half floats.
     pub fn decode(self, code: u64) -> Vec3 {
         let oct = |bits: u32| {
             let mask = (1 << bits) - 1;

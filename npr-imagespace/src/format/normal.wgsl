@@ -18,8 +18,8 @@ fn ink_oct_encode(normal: vec3<f32>, most: f32) -> vec2<u32> {
     return vec2<u32>(floor(unfolded * most + 0.5) + (most + 1.0));
 }
 
-// The direction of an octahedral code: integers with |x| + |y| + |z| = most. They are stored in f32, whose arithmetic on
-// them is exact and faster than that on integers.
+// The direction of an octahedral code: integers with |x| + |y| + |z| = most. They are stored in f32, whose arithmetic
+// on them is exact and faster than that on integers.
 fn ink_oct_vector(code: vec2<f32>, most: f32) -> vec3<f32> {
     let z = most - abs(code.x) - abs(code.y);
     let folded = most - abs(code.yx);

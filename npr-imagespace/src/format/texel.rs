@@ -5,14 +5,14 @@
 //! | [`TexelLayout::Narrow`] | `R32Uint` | bits 0–13 | bits 14–21 | bits 22–26, 27–31: octahedral 2 × 5 |
 //! | [`TexelLayout::Wide`] | `Rg32Uint` | x, bits 0–23 | x, bits 24–31 and y, bits 16–31 | y, bits 0–7, 8–15: octahedral 2 × 8 |
 //!
-//! A filter over five taps is limited by its loads and its arithmetic rather than by bandwidth. The bits follow from the
-//! comparisons that the filter makes:
+//! A filter over five taps is limited by its loads and its arithmetic rather than by bandwidth. The bits follow from
+//! the comparisons that the filter makes:
 //!
 //! - *Region*: whether two neighbours have the same number. 0 is background, and a texel of region 0 is all zeros;
 //!   other numbers are folded to the available bits ([`ink_fold_region`]), and neighbours whose numbers differ by a
 //!   multiple of 255 (or 16,777,215) are not distinguished.
-//! - *Normal*: whether two directions differ by about 35°. With 5 bits a number the error is up to 8°, with 8 bits 1°, so
-//!   that creases of 55° and more, or of 40° and more, are found reliably. For exact creases use regions, since
+//! - *Normal*: whether two directions differ by about 35°. With 5 bits a number the error is up to 8°, with 8 bits 1°,
+//!   so that creases of 55° and more, or of 40° and more, are found reliably. For exact creases use regions, since
 //!   interpolated smooth normals have no creases.
 //! - *Depth*: whether three neighbours in a row lie on a plane. On the screen 1/z of a plane is linear, z is not, so
 //!   what is stored is 1/z ([`DepthCode`]), or in a parallel view −z, which is linear there. The test is a
@@ -45,16 +45,16 @@ impl TexelLayout {
     /// The largest code of depth.
     pub const fn depth_most(self) -> u32 {
         match self {
-            Self::Narrow => (1 << 14) - 1,
-            Self::Wide => (1 << 24) - 1,
+            TexelLayout::Narrow => (1 << 14) - 1,
+            TexelLayout::Wide => (1 << 24) - 1,
         }
     }
 
     /// The largest number of a region.
     pub const fn region_most(self) -> u32 {
         match self {
-            Self::Narrow => (1 << 8) - 1,
-            Self::Wide => (1 << 24) - 1,
+            TexelLayout::Narrow => (1 << 8) - 1,
+            TexelLayout::Wide => (1 << 24) - 1,
         }
     }
 
@@ -71,23 +71,23 @@ impl TexelLayout {
     /// The largest octahedral integer, m.
     pub const fn normal_most(self) -> i32 {
         match self {
-            Self::Narrow => 15,
-            Self::Wide => 127,
+            TexelLayout::Narrow => 15,
+            TexelLayout::Wide => 127,
         }
     }
 
-    /// The largest second difference of codes that rounding causes on a plane: 2 from the rounding to codes, and with 24
-    /// bits 6 more from f32 arithmetic.
+    /// The largest second difference of codes that rounding causes on a plane: 2 from the rounding to codes, and with
+    /// 24 bits 6 more from f32 arithmetic.
     pub const fn depth_slack(self) -> u32 {
         match self {
-            Self::Narrow => 2,
-            Self::Wide => 8,
+            TexelLayout::Narrow => 2,
+            TexelLayout::Wide => 8,
         }
     }
 }
 
-/// The conversion of eye-space depth to a code that is linear on the screen: round(v · scale + bias), clamped, where v is 1/z,
-/// or z in a parallel view. `InkDepthCode` of the WGSL.
+/// The conversion of eye-space depth to a code that is linear on the screen: round(v · scale + bias), clamped, where v
+/// is 1/z, or z in a parallel view. `InkDepthCode` of the WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct DepthCode {
@@ -132,8 +132,9 @@ impl DepthCode {
 
     /// The same code computed from a depth-buffer value d, where the v of [`DepthCode`] is `v_at_0 + d · v_per_unit`.
     ///
-    /// Depth buffers are linear on the screen, so that any can be used; in a fragment shader the value is `position.z`. v is 1/z in perspective: with reversed depth and no far plane d = near / z, so that v is
-    /// d / near. In a parallel view v is z: far − d (far − near) with reversed depth.
+    /// Depth buffers are linear on the screen, so that any can be used; in a fragment shader the value is `position.z`.
+    /// v is 1/z in perspective: with reversed depth and no far plane d = near / z, so that v is d / near. In a parallel
+    /// view v is z: far − d (far − near) with reversed depth.
     pub fn of_buffer(&self, v_at_0: f64, v_per_unit: f64) -> Self {
         let (scale, bias) = (f64::from(self.scale), f64::from(self.bias));
         Self { scale: (scale * v_per_unit) as f32, bias: (bias + scale * v_at_0) as f32, ..*self }

@@ -1,4 +1,5 @@
-// Normal, region and depth of a pixel packed into 32 or 64 bits. The twin of `texel.rs`. No bindings and no entry points.
+// Normal, region and depth of a pixel packed into 32 or 64 bits. The twin of `texel.rs`. No bindings and no entry
+// points.
 
 struct InkDepthCode {
     // Codes per unit of v, which is 1/z, or z in a parallel view.

@@ -184,7 +184,7 @@ impl<T: Lane> Ramp<T> {
         Self::new((0..=most).map(T::from_index).collect(), T::from_index(most + 1))
     }
 
-    /// Pixels `from..to` of a row: a line pixel stands before them if `after` and behind them if `before`.
+    /// Pixels `from..to` of a row: a line pixel precedes them if `after` and follows them if `before`.
     fn fill(&self, row: &mut [T], after: bool, before: bool) {
         let most = self.down.len();
         let left = match (after, before) {

@@ -1,5 +1,5 @@
-//! The disc in passes for a GPU, by jump flooding: in each pass every pixel takes the nearest of the line pixels that it
-//! and some texels at the pass's distance know of.
+//! The disc in passes for a GPU, by jump flooding: in each pass every pixel takes the nearest of the line pixels that
+//! it and some texels at the pass's distance know of.
 //!
 //! A texel of `R32Uint` holds the step from the pixel to the nearest line pixel known so far, 0 for none
 //! ([`ink_flood_seed`]). A pass reads some texels at a distance, adds the way there, and keeps the shortest
@@ -22,7 +22,8 @@ use glam::{IVec2, UVec2};
 /// A pixel that knows no line pixel.
 pub const FLOOD_NONE: u32 = 0;
 
-/// One pass, which reads besides the pixel itself the texels at ± `step`, ± 2 `step` … ± `fan` · `step` along x, y or both.
+/// One pass, which reads besides the pixel itself the texels at ± `step`, ± 2 `step` … ± `fan` · `step` along x, y or
+/// both.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct FloodPass {
     /// The distance between the texels, px.

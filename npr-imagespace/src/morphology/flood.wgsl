@@ -1,4 +1,4 @@
-// The disc in passes: every pixel learns its nearest line pixel. The twin of `flood.rs`. No bindings and no entry
+// The disc in passes that find the nearest line pixel of each pixel. The twin of `flood.rs`. No bindings and no entry
 // points.
 //
 // A texel of r32uint holds the step to the nearest line pixel known so far. A pass reads texels at +-step, +-2 step ..

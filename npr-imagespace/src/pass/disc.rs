@@ -1,9 +1,9 @@
 //! Dilation and erosion by a disc of any radius, by the passes of [`crate::morphology::flood`].
 //!
-//! The nearest line pixel of each pixel is found along rows, then along columns. Along rows one pass finds it exactly from
-//! line pixels stored as bits; along columns there are the passes of [`disc_plan`], whose number grows with the logarithm
-//! of the radius. A last pass converts distances to ink, composited over a picture if the pass is made for one. The result
-//! is that of [`crate::morphology::flood::flood`] with that plan.
+//! The nearest line pixel of each pixel is found along rows, then along columns. Along rows one pass finds it exactly
+//! from line pixels stored as bits; along columns there are the passes of [`disc_plan`], whose number grows with the
+//! logarithm of the radius. A last pass converts distances to ink, composited over a picture if the pass is made for
+//! one. The result is that of [`crate::morphology::flood::flood`] with that plan.
 //!
 //! The row pass reads 32 px a load up to the radius; from a radius of about a thousand px on it takes most of the time.
 //!

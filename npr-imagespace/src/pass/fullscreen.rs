@@ -114,8 +114,8 @@ impl Fullscreen {
         }
     }
 
-    /// The bind group of `resources`, which are those of `bound` in [`Fullscreen::new`]; `composite` is used for pictures
-    /// only.
+    /// The bind group of `resources`, which are those of `bound` in [`Fullscreen::new`]; `composite` is used for
+    /// pictures only.
     pub(super) fn group(
         &self,
         device: &wgpu::Device,

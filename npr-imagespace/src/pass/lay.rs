@@ -4,7 +4,7 @@ use super::fullscreen::{Bound, Fullscreen, Output, flag, size_px, uniform};
 use super::{InkTarget, Onto, check_ink};
 use crate::ImageSpaceError;
 
-pub(super) const LAY: (&str, &str) = ("pass/lay.wgsl", include_str!("lay.wgsl"));
+pub(super) const COMPOSITE: (&str, &str) = ("pass/lay.wgsl", include_str!("lay.wgsl"));
 
 /// The pipelines, for ink of the picture's size and of another.
 #[derive(Debug)]
@@ -22,7 +22,7 @@ impl LayPass {
         target.check(device)?;
         let pipeline = |same| {
             let bound = [Bound::Uniform, Bound::Float];
-            Fullscreen::new(device, "lay", LAY, &bound, &[flag("same_size", same)], Output::Ink(target))
+            Fullscreen::new(device, "composite", COMPOSITE, &bound, &[flag("same_size", same)], Output::Ink(target))
         };
         Ok(Self { same: pipeline(true), scaled: pipeline(false) })
     }

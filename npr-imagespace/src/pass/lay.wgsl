@@ -7,7 +7,7 @@
 override same_size: bool;
 
 @fragment
-fn fs_lay(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+fn fs_composite(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     if same_size {
         return ink_premultiplied(textureLoad(ink, vec2<i32>(position.xy), 0).x, how);
     }

@@ -4,8 +4,8 @@
 @group(0) @binding(2) var normals: texture_2d<f32>;
 @group(0) @binding(3) var depths: texture_2d<f32>;
 @group(0) @binding(4) var regions: texture_2d<u32>;
-// For `depths`, which may be a depth buffer: GLSL cannot load its texels, and in GLSL ES 3.00 it is complete only with a
-// sampler that does not filter.
+// For `depths`, which may be a depth buffer: GLSL cannot load its texels, and in GLSL ES 3.00 it is complete only with
+// a sampler that does not filter.
 @group(0) @binding(5) var nearest: sampler;
 
 // Constants of the pipeline, since software rasterisers execute both sides of branches. Tests that are not enabled have

@@ -1,6 +1,6 @@
 //! One step of dilation or erosion, and n of them by ping-pong: see [`crate::morphology`] for what they do.
 //!
-//! What lies outside the picture is paper for a dilation and ink for an erosion.
+//! Outside the picture there is paper for a dilation and ink for an erosion.
 
 use super::fullscreen::{Bound, Fullscreen, Output, flag, size_px};
 use super::{InkTarget, Onto, check_ink};

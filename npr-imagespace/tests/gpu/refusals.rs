@@ -66,7 +66,7 @@ fn passes(gpu: &Gpu, target: InkTarget) -> Result<Vec<(&'static str, TextureForm
     passes.push(("separate", TextureFormat::R32Uint, record));
     let pass = LayPass::new(device, target)?;
     let record: Record<'_> = Box::new(move |ink, encoder, target| pass.record(device, encoder, ink, target));
-    passes.push(("lay", TextureFormat::R8Unorm, record));
+    passes.push(("composite", TextureFormat::R8Unorm, record));
     Ok(passes)
 }
 
@@ -126,7 +126,7 @@ fn targets_of_another_format_size_or_number_of_samples_are_refused() {
             let refused = outcome(&texture(gpu, format, SIZE, 4), None).unwrap_err();
             assert_eq!(refused, ImageSpaceError::ViewSamples { what: "a target", samples: 4 }, "{name}");
             let refused = outcome(&texture(gpu, format, OTHER_SIZE, 1), None);
-            if name == "lay" {
+            if name == "composite" {
                 assert_eq!(refused, Ok(()), "ink of any size is resampled");
             } else {
                 assert!(matches!(refused, Err(ImageSpaceError::ViewSize { .. })), "{name}");
@@ -157,7 +157,7 @@ fn textures_of_another_format_size_or_number_of_samples_are_refused() {
         let refused = outcome(&texture(gpu, other, SIZE, 1)).unwrap_err();
         assert!(matches!(refused, ImageSpaceError::ViewFormat { format, .. } if format == other), "{name}");
         let refused = outcome(&texture(gpu, format, OTHER_SIZE, 1));
-        if name == "lay" {
+        if name == "composite" {
             assert_eq!(refused, Ok(()), "ink of any size is resampled");
         } else {
             let Err(ImageSpaceError::ViewSize { size_px, needed_px, .. }) = refused else { panic!("{name}") };

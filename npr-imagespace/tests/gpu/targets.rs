@@ -53,7 +53,8 @@ pub fn composited(size: [u32; 2], ink: &[u8], composite: &Composite) -> Vec<u8> 
 }
 
 /// The pixels of a picture are within 1/255 of those with `ink` composited over it by the CPU. Returns the
-/// number of pixels that may differ: those at the reference of an alpha test, which rounding decides where ink is `soft`.
+/// number of pixels that may differ: those at the reference of an alpha test, which rounding decides where ink is
+/// `soft`.
 pub fn assert_composited(got: &[u8], expected: &[u8], ink: &[u8], composite: &Composite, soft: bool) -> usize {
     let mut borderline = 0;
     for ((got, expected), &ink) in got.chunks(4).zip(expected.chunks(4)).zip(ink) {
@@ -75,7 +76,8 @@ pub fn difference(a: &[u8], b: &[u8]) -> u8 {
     a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0)
 }
 
-/// Within an area there is what a pass over all would leave there, and outside there is paper, or the picture as it was.
+/// Within an area there is what a pass over all would leave there, and outside there is paper, or the picture as it
+/// was.
 pub fn assert_areas(
     gpu: &Gpu,
     size: [u32; 2],

@@ -7,8 +7,8 @@
 //! - references to what they refer to; `Option` to what is in it, since WGSL has none;
 //! - arrays of numbers to vectors; of bytes to vectors of u32, i32, or of f32 as a texture of unsigned normalised bytes
 //!   yields them;
-//! - other arrays to one parameter an element, named with its index: `taps: [Vec3; 4]` to `tap0`, `tap1`, `tap2`, `tap3`;
-//!   two vectors of two numbers also to one of four;
+//! - other arrays to one parameter an element, named with its index: `taps: [Vec3; 4]` to `tap0`, `tap1`, `tap2`,
+//!   `tap3`; two vectors of two numbers also to one of four;
 //! - tuples to vectors of as many numbers;
 //! - structs by the tables in [`Twins`].
 

@@ -18,7 +18,7 @@ fn smooth(crease_angle_rad: f32) -> ContourOptions {
     ContourOptions { crease_angle_rad, material_borders: false }
 }
 
-/// No crease at all: only silhouettes and boundaries are left.
+/// No creases: only silhouettes and boundaries are lines.
 const NO_CREASES: ContourOptions = ContourOptions { crease_angle_rad: std::f32::consts::PI, material_borders: false };
 
 fn point(eye: DVec3) -> DVec4 {
@@ -395,7 +395,7 @@ fn an_edge_of_three_faces_is_a_line_for_every_eye() {
 }
 
 #[test]
-fn angles_and_widths_that_are_none_are_refused() {
+fn invalid_angles_and_widths_are_refused() {
     let model = embedded::cube();
     let edges = edges_of(&model);
     for angle_rad in [-0.1, 3.2, f32::NAN, f32::INFINITY] {
@@ -442,7 +442,7 @@ fn long_chains_and_large_polygons_end() {
         ..Default::default()
     };
     assert_eq!(contours_of(&polygon, &NO_CREASES).planes.len(), count as usize);
-    // Each took more than a minute once.
+    // Quadratic algorithms took more than a minute for each.
     assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
 }
 
@@ -456,10 +456,10 @@ fn coordinate() -> impl Strategy<Value = f32> {
 }
 
 proptest! {
-    /// For any set of triangles and any eye: no NaN, all indices within their arrays, and a scan that agrees with the test of
-    /// each record.
+    /// For any set of triangles and any eye: no NaN, all indices within their arrays, and a scan that agrees with the
+    /// test of each record.
     #[test]
-    fn records_of_any_soup_are_finite_and_within_bounds(
+    fn records_of_any_triangles_are_finite_and_within_bounds(
         corners in prop::collection::vec([coordinate(), coordinate(), coordinate()], 3..12),
         faces in prop::collection::vec(([0usize..12, 0usize..12, 0usize..12], 0u32..2, any::<bool>()), 1..40),
         crease_angle_rad in 0.0..std::f32::consts::PI,
@@ -506,7 +506,7 @@ proptest! {
 
 proptest! {
     #[test]
-    fn the_records_tell_what_the_corners_tell(eye in prop::array::uniform3(-8.0..8.0f64)) {
+    fn records_agree_with_the_classification_from_corners(eye in prop::array::uniform3(-8.0..8.0f64)) {
         let model = embedded::torus(1.0, 0.4, 20, 10);
         let edges = edges_of(&model);
         let contours = contours_of(&model, &NO_CREASES);
@@ -550,7 +550,7 @@ fn a_face_wound_the_other_way_and_seen_edge_on_opens_no_loop() {
 }
 
 #[test]
-fn a_surface_with_one_side_keeps_its_lines() {
+fn a_non_orientable_surface_keeps_its_lines() {
     // A Möbius band: 24 quads, of which the last is joined to the first upside down.
     let steps = 24u32;
     let point_at = |i: u32, edge: f32| {

@@ -61,7 +61,7 @@ fn axes_and_zero_are_kept_exactly() {
 }
 
 #[test]
-fn fewer_bits_tell_more_edges_wrongly() {
+fn fewer_bits_misclassify_more_edges() {
     let models = [
         ("sphere", embedded::sphere(64)),
         ("torus", embedded::torus(1.0, 0.4, 64, 32)),

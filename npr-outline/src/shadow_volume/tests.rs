@@ -34,7 +34,7 @@ impl ShadowCasters {
     }
 }
 
-/// 1 where the way from `inside` to `outside` leaves through a homogeneous triangle, counter-clockwise from outside, −1
+/// 1 where the segment from `inside` to `outside` leaves through a homogeneous triangle, counter-clockwise from outside, −1
 /// where it enters, 0 where it passes by.
 fn crossing(corners: [DVec4; 3], inside: DVec3, outside: DVec3) -> i32 {
     // Signs of 4×4 determinants: the sides of planes through three homogeneous points.
@@ -77,7 +77,8 @@ fn near(place: DVec3) -> DVec4 {
     place.extend(1.0)
 }
 
-/// A point in no volume: far towards the light and aside, so that the way there crosses sides; or right beside the light.
+/// A point in no volume: far towards the light and aside, so that the way there crosses sides; or right beside the
+/// light.
 fn beyond(light: DVec4) -> DVec3 {
     let aside = DVec3::new(0.31, -0.17, 0.23);
     if light.w == 0.0 {
@@ -128,7 +129,8 @@ fn a_square_shadows_what_is_behind_it_whichever_way_it_is_wound() {
             assert_eq!(count(DVec3::new(0.3, -up, 0.55)), 1, "{light}");
             assert_eq!(count(DVec3::new(0.3, up, 0.55)), 0, "{light}");
             assert_eq!(count(DVec3::new(2.3, -up, 0.55)), 0, "{light}");
-            // The middle of the square is darkened once, whatever the winding: no crack and no double along the diagonal.
+            // The middle of the square is darkened once, whatever the winding: no crack and no double along the
+            // diagonal.
             let (mut edges, mut faces) = (Vec::new(), Vec::new());
             casters.scan(light, &mut edges, &mut faces);
             assert_eq!((edges.len(), faces.len()), (4, 2));
@@ -299,7 +301,7 @@ fn lattice() -> impl Strategy<Value = (Vec<Vec3>, Vec<[u32; 3]>)> {
 
 proptest! {
     #[test]
-    fn volumes_of_any_soup_count_the_faces_before_the_light(
+    fn volumes_of_any_triangles_count_the_faces_before_the_light(
         (corners, faces) in lattice(),
         at in prop::array::uniform3(-1.0..3.0f64),
         light in prop::array::uniform3(-4.0..6.0f64),

@@ -99,12 +99,14 @@ fn stencil_formats_without_depth_or_without_stencil_are_refused() {
 fn the_line_pass_refuses_other_textures_and_matrices() {
     let Some(gpu) = gpu() else { return };
     let pass = LinePass::new(&gpu.device, COLOR_FORMAT, false).unwrap();
-    let look = LineLook { width_px: [1.0; 4], ink: [0.0, 0.0, 0.0, 1.0] };
+    let style = LineLook { width_px: [1.0; 4], ink: [0.0, 0.0, 0.0, 1.0] };
     let formats = [COLOR_FORMAT, TextureFormat::Depth32Float, COLOR_FORMAT, WINNER_FORMAT];
     let draw = |views: &[wgpu::TextureView; 4], view: &LineView, eye: DVec4| {
         let [painted, depth, inked, winner] = views;
         let targets = LineTargets { painted, depth, inked, winner };
-        recorded(gpu, |encoder| pass.record(&gpu.device, encoder, LineSource::Records(&[]), &look, view, eye, &targets))
+        recorded(gpu, |encoder| {
+            pass.record(&gpu.device, encoder, LineSource::Records(&[]), &style, view, eye, &targets)
+        })
     };
     let right = || formats.map(|format| texture(gpu, format, SIZE, 1));
     let view = line_view(SIZE, DMat4::IDENTITY);
