@@ -28,7 +28,7 @@ use crate::view::View;
 use glam::Vec3;
 use npr_imagespace::artist::LineKind as InnerLines;
 use npr_mesh::AlphaMode;
-use npr_outline::line_look::LineLook;
+use npr_outline::line_style::LineStyle;
 use serde::Serialize;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -421,7 +421,7 @@ impl Checker<'_> {
 
     /// Lines 1 px wide against the exact visible contours.
     fn lines(&mut self, model: &str, view: &str, scene: &Scene, camera: &Camera) -> Result<(), HarnessError> {
-        let look = LineLook { width_px: [1.0; 4], ink: [0.0, 0.0, 0.0, 1.0] };
+        let look = LineStyle { width_px: [1.0; 4], ink: [0.0, 0.0, 0.0, 1.0] };
         let corrected = one_px_style(Lines::edges(look));
         let printed = one_px_style(Lines::printed(PrintedLines { width_px: 1.0, ink: Vec3::ZERO }));
         let truth = true_lines(scene, camera, SIZE, f64::from(corrected.crease_angle_rad));

@@ -29,13 +29,16 @@ use crate::shadow::gpu::{ShadowFrame, ShadowOnDevice, ShadowPasses, StencilTarge
 use crate::style::Style;
 use crate::view::{View, size_px};
 use npr_outline::fin_pass::FinPass;
-use npr_outline::line_look::LineLook;
 use npr_outline::line_pass::{LinePass, LineRecord, LineSource, LineTargets, line_records};
+use npr_outline::line_style::LineStyle;
 use npr_outline::normal_format::NormalFormat;
 use resolve::ResolvePass;
 use shader::LightOnDevice;
 use std::cell::{OnceCell, RefCell};
 use surface::{SurfaceFrame, SurfacePass, SurfaceTargets};
+
+/// Why a pass takes the format of this crate's pictures.
+const UNORM: &str = "the pictures' format is Unorm";
 
 /// Renders frames. Pipelines are made when they are first needed, and kept.
 pub struct GpuRenderer<'a> {
@@ -96,11 +99,12 @@ impl<'a> GpuRenderer<'a> {
     fn lines(&self, method: EdgeLineMethod) -> &LinePass {
         let on_device = method == EdgeLineMethod::OnDevice;
         self.lines[usize::from(on_device)]
-            .get_or_init(|| LinePass::new(&self.context.device, targets::COLOR_FORMAT, on_device))
+            .get_or_init(|| LinePass::new(&self.context.device, targets::COLOR_FORMAT, on_device).expect(UNORM))
     }
 
     fn printed(&self) -> &FinPass {
-        self.printed.get_or_init(|| FinPass::new(&self.context.device, targets::COLOR_FORMAT, NormalFormat::F32))
+        let new = || FinPass::new(&self.context.device, targets::COLOR_FORMAT, NormalFormat::F32).expect(UNORM);
+        self.printed.get_or_init(new)
     }
 
     /// Makes the targets of a view's pictures.
@@ -147,7 +151,7 @@ impl<'a> GpuRenderer<'a> {
             let fin_view = view.camera.fin_view(size_px(size), f64::from(printed.style.width_px * scale), bounds);
             let ink = printed.style.ink.extend(1.0).to_array();
             let (color, depth) = (&canvas.color_view, &canvas.depth_view);
-            self.printed().record(device, &mut encoder, fins, &fin_view, ink, color, depth);
+            self.printed().record(device, &mut encoder, fins, &fin_view, ink, color, depth)?;
         }
         if let Some(edges) = &plan.edge_lines {
             self.edge_lines(&mut encoder, &frame, edges, canvas)?;
@@ -226,13 +230,13 @@ impl<'a> GpuRenderer<'a> {
             }
         };
         let scale = *samples as f32;
-        let style = &LineLook { width_px: edges.style.width_px.map(|width_px| width_px * scale), ..edges.style };
+        let style = &LineStyle { width_px: edges.style.width_px.map(|width_px| width_px * scale), ..edges.style };
         let view = camera.line_view(size_px((canvas.width, canvas.height)));
         let line_targets = LineTargets {
             painted: &canvas.color_view,
             depth: &canvas.depth_view,
             inked: &canvas.inked_view,
-            winner: &canvas.winner_view,
+            coverage: &canvas.coverage_view,
         };
         canvas.begin_ink(encoder);
         // What was uploaded decides, which is of the same plan.

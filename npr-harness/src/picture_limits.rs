@@ -18,7 +18,7 @@ const SAMPLE_BYTES: u64 = 48;
 const MEAN_BYTES: u64 = 40;
 /// On the CPU per pixel: the picture, its copy while it grows, its file.
 const FILE_BYTES: u64 = 12;
-/// On a device per sample: two colours, depth, the lines' winner, 12 of strokes, what is read back, the picture, its file.
+/// On a device per sample: two colours, depth, the lines' coverage, 12 of strokes, what is read back, the picture, its file.
 const DEVICE_BYTES: u64 = 48;
 /// Per pixel of ink found in the image: texels 8, depth 4, ink and brush.
 const INK_BYTES: u64 = 20;

@@ -14,7 +14,7 @@ use crate::schema::{within, within_colors};
 use crate::shade::Shade;
 use crate::shadow::{ShadowLines, ShadowStyle};
 use glam::Vec3;
-use npr_outline::line_look::LineLook;
+use npr_outline::line_style::LineStyle;
 use npr_toon::normal::NormalUse;
 use npr_toon::painter::Painter;
 
@@ -48,7 +48,7 @@ pub struct Lines {
     /// Fins as Card & Mitchell printed them, to be compared with.
     pub printed: Option<PrintedLines>,
     /// Lines along edges: screen-aligned, antialiased, hidden where their centreline is.
-    pub edges: Option<LineLook>,
+    pub edges: Option<LineStyle>,
     /// Lines found in the image.
     pub image: Option<ImageInk>,
 }
@@ -58,7 +58,7 @@ impl Lines {
     pub const NONE: Self = Self { printed: None, edges: None, image: None };
 
     /// Lines along edges alone.
-    pub fn edges(style: LineLook) -> Self {
+    pub fn edges(style: LineStyle) -> Self {
         Self { edges: Some(style), ..Self::NONE }
     }
 

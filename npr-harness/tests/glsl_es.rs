@@ -10,7 +10,7 @@ use naga::{ShaderStage, TypeInner};
 use npr_harness::gpu::surface_wgsl;
 use npr_harness::style::{Style, styles};
 
-const LINE: &str = include_str!("../../npr-outline/src/line.wgsl");
+const LINE: &str = include_str!("../../npr-outline/src/segment.wgsl");
 const LINE_INK: &str = include_str!("../../npr-outline/src/line_ink.wgsl");
 const LINE_PASS: &str = include_str!("../../npr-outline/src/line_pass.wgsl");
 const NORMAL_FORMAT: &str = include_str!("../../npr-outline/src/normal_format.wgsl");
@@ -21,11 +21,10 @@ const SHADOW_PASS: &str = include_str!("../../npr-outline/src/shadow_pass.wgsl")
 const SHADOW_MASK: &str = include_str!("../../npr-outline/src/shadow_mask.wgsl");
 const FULLSCREEN: &str = include_str!("../../npr-imagespace/src/pass/fullscreen.wgsl");
 const DISC: &str = include_str!("../../npr-imagespace/src/pass/disc.wgsl");
-const LAY: &str = include_str!("../../npr-imagespace/src/pass/lay.wgsl");
+const COMPOSITE: &str = include_str!("../../npr-imagespace/src/pass/composite.wgsl");
 const PRINTED: &str = include_str!("../../npr-imagespace/src/pass/printed.wgsl");
 const SEPARATE: &str = include_str!("../../npr-imagespace/src/pass/separate.wgsl");
 const STEP: &str = include_str!("../../npr-imagespace/src/pass/step.wgsl");
-const FUSED_TAPS: &str = include_str!("../../npr-imagespace/src/pass/fused_taps.wgsl");
 const FUSED: &str = include_str!("../../npr-imagespace/src/pass/fused.wgsl");
 const RESOLVE: &str = include_str!("../src/gpu/resolve.wgsl");
 const SHADOW_MAP: &str = include_str!("../src/shadow/shadow_map.wgsl");
@@ -98,11 +97,11 @@ fn every_shader_translates() {
         ("shadow volumes", [SHADOW_VOLUME, SHADOW_PASS].concat()),
         ("shadow mask", SHADOW_MASK.into()),
         ("disc", ink(DISC)),
-        ("lay", ink(LAY)),
+        ("composite", ink(COMPOSITE)),
         ("printed filters", ink(PRINTED)),
         ("separate filter", ink(SEPARATE)),
         ("step", ink(STEP)),
-        ("fused filter", ink(&[FUSED_TAPS, FUSED].concat())),
+        ("fused filter", ink(FUSED)),
     ];
     let surface = |style: Style| (style.name, surface_wgsl(&style.shade).expect("good numbers"));
     let named = shaders.iter().map(|(name, source): &(&str, String)| (name.to_string(), source.clone()));

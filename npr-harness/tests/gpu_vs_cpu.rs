@@ -22,7 +22,7 @@ use npr_harness::view::View;
 use npr_imagespace::filter::fused::FusedFilter;
 use npr_imagespace::morphology::disc::Disc;
 use npr_mesh::{AlphaMode, Material, Model, Wrap, embedded};
-use npr_outline::line_look::LineLook;
+use npr_outline::line_style::LineStyle;
 
 fn framed(scene: &Scene, yaw_deg: f64, pitch_deg: f64, fov_y_rad: Option<f64>) -> Camera {
     let framing =
@@ -198,7 +198,7 @@ fn broken_styles(style: &Style) -> Vec<Style> {
     }
     let Lines { printed, edges, image } = style.lines;
     let lines = Lines {
-        edges: edges.map(|look| LineLook { width_px: look.width_px.map(|w| w + 0.05), ..look }),
+        edges: edges.map(|look| LineStyle { width_px: look.width_px.map(|w| w + 0.05), ..look }),
         printed: printed.map(|fins| PrintedLines { width_px: fins.width_px + 0.25, ..fins }),
         image: image.map(|ink| ImageInk {
             filter: FusedFilter { normal_cos: Some(0.7), ..ink.filter },

@@ -427,7 +427,7 @@ fn the_device_packs_what_the_reference_packs() {
     use npr_harness::cpu::{self, CpuOptions};
     use npr_harness::gallery::{painted_camera, painted_scene, still_life_camera};
     use npr_harness::gpu::GpuRenderer;
-    use npr_imagespace::format::texel::{TexelLayout, ink_narrow_tap, ink_wide_tap};
+    use npr_imagespace::format::texel::{TexelLayout, ink_texel32_tap, ink_texel64_tap};
 
     let Some(Executor::Gpu(context)) = device() else { return };
     let renderer = GpuRenderer::new(&context);
@@ -435,7 +435,7 @@ fn the_device_packs_what_the_reference_packs() {
     let parallel = Camera { projection: Projection::Orthographic { height: 7.0, far: 40.0 }, ..painted_camera() };
     let cases = [(&scenes[0].0, scenes[0].1), (&scenes[1].0, scenes[1].1), (&scenes[0].0, parallel)];
     for (scene, camera) in cases {
-        let [narrow, wide] = [TexelLayout::Narrow, TexelLayout::Wide];
+        let [narrow, wide] = [TexelLayout::Bits32, TexelLayout::Bits64];
         let cases = [(narrow, InkScale::One), (wide, InkScale::One), (wide, InkScale::Half), (wide, InkScale::Double)];
         for (layout, scale) in cases {
             let style = black_on_white(ImageInk { artist: true, layout, scale, ..ImageInk::default() });
@@ -446,14 +446,14 @@ fn the_device_packs_what_the_reference_packs() {
             renderer.draw(scene, &uploaded, &plan, &targets).expect("a frame");
             let actual = renderer.read_texels(&targets).expect("texels").expect("they were asked for");
             let tap = |words: [u32; 2]| match layout {
-                TexelLayout::Narrow => ink_narrow_tap(words[0]),
-                TexelLayout::Wide => ink_wide_tap(words),
+                TexelLayout::Bits32 => ink_texel32_tap(words[0]),
+                TexelLayout::Bits64 => ink_texel64_tap(words),
             };
             let apart = |(a, b): &(&[u32; 2], &[u32; 2])| {
                 let (a, b) = (tap(**a), tap(**b));
                 let steps = (a.normal - b.normal).abs().max_element();
                 // A rasteriser's depth is an f32 that it interpolates: of 24 bits it has 18 and more.
-                let codes = layout.depth_most() / (1 << 18);
+                let codes = layout.depth_max() / (1 << 18);
                 a.region != b.region || steps > 2 || a.depth.abs_diff(b.depth) > codes.max(2)
             };
             let share = expected.iter().zip(&actual).filter(apart).count() as f64 / expected.len() as f64;

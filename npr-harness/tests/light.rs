@@ -216,7 +216,7 @@ fn the_same_on_both(cases: Vec<(&'static str, Shade, Vec<StyleLight>)>, shadow: 
                     },
                     _ => ShadowLines::None,
                 };
-                let layout = if number % 5 == 2 { TexelLayout::Narrow } else { TexelLayout::Wide };
+                let layout = if number % 5 == 2 { TexelLayout::Bits32 } else { TexelLayout::Bits64 };
                 let lines = match shadow {
                     None if number.is_multiple_of(4) => Lines::image(ImageInk::default()),
                     None => Lines::NONE,

@@ -138,7 +138,7 @@ fn a_terminator_has_no_line() {
         let frame = cpu::render(&scene, &planned(&scene, &style, &shot.camera, SIZE), &CpuOptions::default(), &|_| {});
         let states = States::of_texels(&frame.texels, SIZE);
         let count = |state| states.states.iter().filter(|&&of| of == Some(state)).count();
-        assert!(count(ShadowState::Lit) + count(ShadowState::Turned) > 5000, "{}", shot.name);
+        assert!(count(ShadowState::Lit) + count(ShadowState::BackFacing) > 5000, "{}", shot.name);
         assert_eq!(count(ShadowState::Cast), 0, "{}", shot.name);
         let found = line_accuracy(&frame.image(), &[], WITHIN_PX);
         assert_eq!(found.counts.0, 0, "{}: lines on a ball", shot.name);

@@ -61,10 +61,10 @@ fn distances(ink: &[u8], width: usize, out: &mut Vec<u8>, radius: f32) {
         for q in 1..width {
             loop {
                 let p = sites[last];
-                let meet = ((f[q] + (q * q) as f32) - (f[p] + (p * p) as f32)) / (2 * (q - p)) as f32;
-                if meet > from[last] || last == 0 {
+                let crossing = ((f[q] + (q * q) as f32) - (f[p] + (p * p) as f32)) / (2 * (q - p)) as f32;
+                if crossing > from[last] || last == 0 {
                     last += 1;
-                    (sites[last], from[last], from[last + 1]) = (q, meet, f32::INFINITY);
+                    (sites[last], from[last], from[last + 1]) = (q, crossing, f32::INFINITY);
                     break;
                 }
                 last -= 1;

@@ -7,15 +7,14 @@
 //! # Measured
 //!
 //! On lavapipe (Mesa 22.3.6, LLVM 15, 256 bits) and two cores of a Xeon at 2.5 GHz that did other work, too, 15 rounds;
-//! minima in ms, and in brackets how often a copy of as many bytes. The larger picture at another time than the smaller,
-//! and more of the machine was taken.
+//! minima in ms, and in brackets how often a copy of as many bytes. The larger picture at another time than the
+//! smaller, and more of the machine was taken.
 //!
 //! | | 1280 × 720 | 1920 × 1080 |
 //! | --- | --- | --- |
 //! | copy of R8, R32, RG32, RGBA32 | 3.9, 5.9, 7.4, 8.5 | 15, 23, 27, 33 |
-//! | fused, one word, hard; soft | 25 (4.2); 28 (4.6) | 92 (3.9); 81 (3.5) |
-//! | fused, two words, hard; soft | 27 (3.7); 28 (3.7) | 64 (2.4); 106 (3.9) |
-//! | fused by strips, one word; two | 5.8 (0.97); 6.9 (0.93) | |
+//! | fused, 32 bits, hard; soft | 25 (4.2); 28 (4.6) | 92 (3.9); 81 (3.5) |
+//! | fused, 64 bits, hard; soft | 27 (3.7); 28 (3.7) | 64 (2.4); 106 (3.9) |
 //! | separate, three textures | 51 (6.0) | 178 (5.5) |
 //! | printed edges; inker | 18 (3.0); 13 (2.3) | 54 (2.3); 42 (1.8) |
 //! | step, diagonal; cross; 3 × 3 | 12 (3.1); 13 (3.2); 20 (5.2) | 34 (2.3); 38 (2.6); 79 (5.4) |
@@ -23,11 +22,11 @@
 //! | disc of 4 px | 31 (3.7); 29 (3.4) | 109 (3.4); 108 (3.3) |
 //! | disc of 16 px | 38 (4.5); 38 (4.5) | 149 (4.6); 148 (4.6) |
 //! | disc of 64 px | 54 (5.9); 58 (6.4) | 182 (5.2); 207 (6.0) |
-//! | 3 × 3 to and fro, 4 steps; 16 | 86 (14); 367 (43) | 328 (14); 1317 (41) |
-//! | lay; from half the size; from double | 7.7 (1.0); 15 (2.0); 17 (2.3) | 20 (0.7); 52 (1.9); 56 (2.1) |
+//! | 3 × 3 ping-pong, 4 steps; 16 | 86 (14); 367 (43) | 328 (14); 1317 (41) |
+//! | composite; from half the size; from double | 7.7 (1.0); 15 (2.0); 17 (2.3) | 20 (0.7); 52 (1.9); 56 (2.1) |
 //!
 //! A disc of 64 px takes 1.7 to 2.0 times as long as one of 4, and 2.2 to 2.9 times as long as one 3 × 3 step. Of its
-//! line pixels 0.004 % at most are wrong, where steps to and fro in as many steps are wrong in 3 to 11 % (diagonal, 3
+//! line pixels 0.004 % at most are wrong, where ping-pong of as many steps is wrong in 3 to 11 % (diagonal, 3
 //! × 3) and in 0 to 3.5 % (cross).
 //!
 //! With 1, 2, 3, 4 and 6 for the fan of the plan, a disc of 64 px took 2.7, 2.2, 2.2 to 3.2, 2.2 and 3.0 times as long
@@ -52,14 +51,13 @@ use npr_imagespace::format::texel::*;
 use npr_imagespace::morphology::disc::{Disc, DiscBuffers, dilate_disc};
 use npr_imagespace::morphology::flood::{disc_plan, flood};
 use npr_imagespace::morphology::{Kernel, Operation, ping_pong};
+use npr_imagespace::pass::composite::CompositePass;
 use npr_imagespace::pass::disc::{DiscPass, DiscScratch};
 use npr_imagespace::pass::fused::{FusedPass, texel_format};
-use npr_imagespace::pass::fused_strips::{FusedStrips, STRIPS_FORMAT};
-use npr_imagespace::pass::lay::LayPass;
 use npr_imagespace::pass::printed::PrintedPass;
 use npr_imagespace::pass::separate::{SeparatePass, SeparateTextures};
 use npr_imagespace::pass::step::{PingPong, Step, StepPass};
-use npr_imagespace::pass::{INK_FORMAT, InkTarget, Onto};
+use npr_imagespace::pass::{INK_FORMAT, InkTarget, PassTarget};
 use npr_imagespace::picture::{Taps, filter_picture};
 use std::time::Instant;
 use wgpu::TextureFormat;
@@ -228,18 +226,19 @@ fn code(layout: TexelLayout) -> DepthCode {
 
 fn frame(size: [u32; 2]) -> Frame {
     let seen = scene(size);
-    let [narrow_code, wide_code] = [TexelLayout::Narrow, TexelLayout::Wide].map(code);
+    let [narrow_code, wide_code] = [TexelLayout::Bits32, TexelLayout::Bits64].map(code);
     let wide: Vec<_> = seen
         .iter()
-        .map(|seen| seen.map_or(BACKGROUND, |s| ink_wide_pack(s.normal, s.region, s.depth, &wide_code)))
+        .map(|seen| seen.map_or(BACKGROUND, |s| ink_texel64_pack(s.normal, s.region, s.depth, &wide_code)))
         .collect();
     let filter = FusedFilter::default();
-    let uniform = FilterUniform::new(&filter, TexelLayout::Wide, &wide_code).expect("the default is in range");
-    let ink = |centre, taps: [[u32; 2]; 4]| ink_fused(&uniform, &ink_wide_tap(centre), &taps.map(ink_wide_tap)) as f32;
+    let uniform = FilterUniform::new(&filter, TexelLayout::Bits64, &wide_code).expect("the default is in range");
+    let ink =
+        |centre, taps: [[u32; 2]; 4]| ink_fused(&uniform, &ink_texel64_tap(centre), &taps.map(ink_texel64_tap)) as f32;
     Frame {
         narrow: seen
             .iter()
-            .map(|seen| seen.map_or(0, |s| ink_narrow_pack(s.normal, s.region, s.depth, &narrow_code)))
+            .map(|seen| seen.map_or(0, |s| ink_texel32_pack(s.normal, s.region, s.depth, &narrow_code)))
             .collect(),
         ink: filter_picture(&wide, px(size), Taps::Diagonal, ink).expect("a texel for each pixel"),
         wide,
@@ -258,8 +257,8 @@ fn bench(gpu: &Gpu, size: [u32; 2]) {
     let frame = frame(size);
     let inked = frame.ink.iter().filter(|&&ink| ink > 0).count() as f64 / frame.ink.len() as f64;
     println!("{} × {} px, {:.1} % ink", size[0], size[1], 100.0 * inked);
-    let narrow = view(&gpu.upload(texel_format(TexelLayout::Narrow), size, bytemuck::cast_slice(&frame.narrow)));
-    let wide = view(&gpu.upload(texel_format(TexelLayout::Wide), size, bytemuck::cast_slice(&frame.wide)));
+    let narrow = view(&gpu.upload(texel_format(TexelLayout::Bits32), size, bytemuck::cast_slice(&frame.narrow)));
+    let wide = view(&gpu.upload(texel_format(TexelLayout::Bits64), size, bytemuck::cast_slice(&frame.wide)));
     let printed = view(&gpu.upload(TextureFormat::Rgba8Unorm, size, frame.printed.as_flattened()));
     let normals = view(&gpu.upload(TextureFormat::Rgba32Float, size, bytemuck::cast_slice(&frame.normals)));
     let depths = view(&gpu.upload(TextureFormat::R32Float, size, bytemuck::cast_slice(&frame.depths)));
@@ -271,26 +270,25 @@ fn bench(gpu: &Gpu, size: [u32; 2]) {
     let double_ink = view(&gpu.upload(INK_FORMAT, double_size, &vec![0; (double_size[0] * double_size[1]) as usize]));
     let [out, other] = [(); 2].map(|()| view(&gpu.texture(INK_FORMAT, size)));
     let picture = view(&gpu.texture(TextureFormat::Rgba8Unorm, size));
-    let stored = view(&gpu.storable(STRIPS_FORMAT, size));
     let scratch = DiscScratch::new(device, size);
     let composite = Composite::default();
-    let onto_ink = Onto { view: &out, composite: &composite, area: None };
-    let onto_picture = Onto { view: &picture, composite: &composite, area: None };
+    let onto_ink = PassTarget { view: &out, composite: &composite, area: None };
+    let onto_picture = PassTarget { view: &picture, composite: &composite, area: None };
     let over = InkTarget::Picture(TextureFormat::Rgba8Unorm);
 
     let copies: Vec<_> = [INK_FORMAT, TextureFormat::R32Uint, TextureFormat::Rg32Uint, TextureFormat::Rgba32Uint]
         .map(|format| (format, Copy::new(gpu, size, format)))
         .into();
     let steps = PingPong::new(device, Kernel::Square);
-    let disc_pass = DiscPass::new(device, InkTarget::Ink);
+    let disc_pass = DiscPass::new(device, InkTarget::Ink).expect("a picture that blends");
     let mut timed = Passes::default();
     for (format, copy) in &copies {
         timed.add(&format!("copy {format:?}"), copy.bytes, |encoder| copy.record(encoder));
     }
-    for (layout, texels, bytes) in [(TexelLayout::Narrow, &narrow, 4.0), (TexelLayout::Wide, &wide, 8.0)] {
+    for (layout, texels, bytes) in [(TexelLayout::Bits32, &narrow, 4.0), (TexelLayout::Bits64, &wide, 8.0)] {
         for (how, softness) in [("hard", 0.0), ("soft", 0.1)] {
             let filter = FusedFilter { softness, ..Default::default() };
-            let pass = FusedPass::new(device, &filter, layout, InkTarget::Ink);
+            let pass = FusedPass::new(device, &filter, layout, InkTarget::Ink).expect("a picture that blends");
             let run = move |encoder: &mut wgpu::CommandEncoder| {
                 pass.record(device, encoder, &filter, &code(layout), texels, &onto_ink).expect("in range");
             };
@@ -298,23 +296,14 @@ fn bench(gpu: &Gpu, size: [u32; 2]) {
         }
     }
     let filter = FusedFilter::default();
-    let pass = FusedPass::new(device, &filter, TexelLayout::Wide, over);
+    let pass = FusedPass::new(device, &filter, TexelLayout::Bits64, over).expect("a picture that blends");
     let wide = &wide;
     let run = move |encoder: &mut wgpu::CommandEncoder| {
-        pass.record(device, encoder, &filter, &code(TexelLayout::Wide), wide, &onto_picture).expect("in range");
+        pass.record(device, encoder, &filter, &code(TexelLayout::Bits64), wide, &onto_picture).expect("in range");
     };
     timed.add("fused, Wide, hard, over a picture", 8.0 + 8.0, run);
-    let stored = &stored;
-    for (layout, texels, bytes) in [(TexelLayout::Narrow, &narrow, 4.0), (TexelLayout::Wide, wide, 8.0)] {
-        let pass = FusedStrips::new(device, &filter, layout);
-        let run = move |encoder: &mut wgpu::CommandEncoder| {
-            let onto = Onto { view: stored, ..onto_picture };
-            pass.record(device, encoder, &filter, &code(layout), texels, &onto).expect("in range");
-        };
-        timed.add(&format!("fused by strips, {layout:?}, over a picture"), bytes + 4.0 * inked, run);
-    }
     let separate = SeparateFilter::default();
-    let pass = SeparatePass::new(device, &separate, InkTarget::Ink);
+    let pass = SeparatePass::new(device, &separate, InkTarget::Ink).expect("a picture that blends");
     let run = move |encoder: &mut wgpu::CommandEncoder| {
         let textures = SeparateTextures { normal: Some(&normals), depth: Some(&depths), region: Some(&regions) };
         pass.record(device, encoder, &separate, &textures, &onto_ink).expect("in range");
@@ -324,7 +313,7 @@ fn bench(gpu: &Gpu, size: [u32; 2]) {
         ("printed edges", PrintedFilter::default()),
         ("printed inker", PrintedFilter::Inker(npr_imagespace::filter::inker::Inker::default())),
     ] {
-        let pass = PrintedPass::new(device, &filter, InkTarget::Ink);
+        let pass = PrintedPass::new(device, &filter, InkTarget::Ink).expect("a picture that blends");
         let printed = &printed;
         let run = move |encoder: &mut wgpu::CommandEncoder| {
             pass.record(device, encoder, &filter, printed, &onto_ink).expect("in range");
@@ -339,14 +328,16 @@ fn bench(gpu: &Gpu, size: [u32; 2]) {
     ] {
         let pass = StepPass::new(device, step, InkTarget::Ink).expect("no threshold");
         let ink = &ink;
-        let run = move |encoder: &mut wgpu::CommandEncoder| pass.record(device, encoder, ink, &onto_ink);
+        let run = move |encoder: &mut wgpu::CommandEncoder| {
+            pass.record(device, encoder, ink, &onto_ink).expect("one size");
+        };
         timed.add(name, 2.0, run);
     }
     for count in [4u32, 16] {
         // From one scratch to another, since both are overwritten.
         let (steps, out, other) = (&steps, &out, &other);
         let run = move |encoder: &mut wgpu::CommandEncoder| {
-            steps.record(device, encoder, Operation::Dilate, count, [out, other]);
+            steps.record(device, encoder, Operation::Dilate, count, [out, other]).expect("one size");
         };
         timed.add(&format!("ping-pong, 3 × 3, {count} steps"), 2.0 * f64::from(count), run);
     }
@@ -364,9 +355,13 @@ fn bench(gpu: &Gpu, size: [u32; 2]) {
             timed.add(&disc_name(&disc), bytes, run);
         }
     }
-    for (name, ink, bytes) in [("lay", &ink, 1.0), ("lay, half", &half_ink, 0.25), ("lay, double", &double_ink, 4.0)] {
-        let pass = LayPass::new(device, over);
-        let run = move |encoder: &mut wgpu::CommandEncoder| pass.record(device, encoder, ink, &onto_picture);
+    for (name, ink, bytes) in
+        [("composite", &ink, 1.0), ("composite, half", &half_ink, 0.25), ("composite, double", &double_ink, 4.0)]
+    {
+        let pass = CompositePass::new(device, over).expect("a picture that blends");
+        let run = move |encoder: &mut wgpu::CommandEncoder| {
+            pass.record(device, encoder, ink, &onto_picture).expect("ink of any size");
+        };
         timed.add(name, bytes + 8.0, run);
     }
 

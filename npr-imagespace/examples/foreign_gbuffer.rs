@@ -2,16 +2,16 @@
 //!
 //! `cargo run -p npr-imagespace --features wgpu --example foreign_gbuffer [picture.png]`
 //!
-//! A sphere and a box on a plane, cast ray by ray on the CPU, stand for another renderer. It leaves four textures, as an
-//! engine would: the shaded picture, world-space normals biased into bytes, the numbers of a reversed depth buffer, and
-//! the number of each object.
+//! A sphere and a box on a plane, cast ray by ray on the CPU, stand for another renderer. It leaves four textures, as
+//! an engine would: the shaded picture, world-space normals biased into bytes, the numbers of a reversed depth buffer,
+//! and the number of each object.
 #![allow(clippy::print_stdout)]
 
 use glam::Vec3;
 use npr_imagespace::composite::Composite;
 use npr_imagespace::filter::separate::{DepthSource, SeparateDepth, SeparateFilter, SeparateNormal};
 use npr_imagespace::pass::separate::{SeparatePass, SeparateTextures};
-use npr_imagespace::pass::{InkTarget, Onto};
+use npr_imagespace::pass::{InkTarget, PassTarget};
 use std::error::Error;
 use wgpu::TextureFormat;
 
@@ -29,7 +29,7 @@ struct GBuffer {
     object: Vec<u8>,
 }
 
-/// Where a ray meets something: its parameter, the normal and the object's number.
+/// A hit of a ray: its parameter, the normal and the object's number.
 type Hit = Option<(f32, Vec3, u8)>;
 
 fn nearer(a: Hit, b: Hit) -> Hit {
@@ -64,9 +64,9 @@ fn cuboid(eye: Vec3, ray: Vec3, low: Vec3, high: Vec3, object: u8) -> Hit {
 }
 
 fn cast(eye: Vec3, ray: Vec3) -> Hit {
-    let turned = |v: Vec3| glam::Quat::from_rotation_y(0.6) * v;
+    let rotated = |v: Vec3| glam::Quat::from_rotation_y(0.6) * v;
     let back = |v: Vec3| glam::Quat::from_rotation_y(-0.6) * v;
-    let cube = cuboid(turned(eye), turned(ray), Vec3::new(-1.9, 0.0, -1.1), Vec3::new(-0.5, 1.1, 0.3), 3);
+    let cube = cuboid(rotated(eye), rotated(ray), Vec3::new(-1.9, 0.0, -1.1), Vec3::new(-0.5, 1.1, 0.3), 3);
     let cube = cube.map(|(along, normal, object)| (along, back(normal), object));
     let ball = sphere(eye, ray, Vec3::new(0.9, 0.8, 0.0), 0.8, 2);
     // One that is cut by the plane.
@@ -152,12 +152,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         depth: Some(SeparateDepth { source: DepthSource::reversed(NEAR, f32::INFINITY)?, ..Default::default() }),
         ..Default::default()
     };
-    let pass = SeparatePass::new(&device, &filter, InkTarget::Picture(picture.format()));
+    let pass = SeparatePass::new(&device, &filter, InkTarget::Picture(picture.format()))?;
     let textures = SeparateTextures { normal: Some(&normal), depth: Some(&depth), region: Some(&object) };
     let composite = Composite::Over { color: Vec3::new(0.08, 0.06, 0.10), opacity: 1.0 };
-    let onto = Onto { view: &picture_view, composite: &composite, area: None };
+    let target = PassTarget { view: &picture_view, composite: &composite, area: None };
     let mut encoder = device.create_command_encoder(&Default::default());
-    pass.record(&device, &mut encoder, &filter, &textures, &onto)?;
+    pass.record(&device, &mut encoder, &filter, &textures, &target)?;
 
     // And back to the CPU, to be looked at.
     let row = (4 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);

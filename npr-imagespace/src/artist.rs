@@ -1,27 +1,27 @@
-//! Lines that an artist asks for: "The Evolution of a Cartoon Renderer", listings 1 and 4 and the text between.
+//! Lines that an artist paints: "The Evolution of a Cartoon Renderer", listings 1 and 4 and the text between.
 //!
-//! A material's G-buffer normals need not be its surface's. Where they are one of four directions that no visible
-//! surface can have, the normal filter draws a line between two of them, at the borders that the artist painted, and
-//! another between any of them and a surface that keeps its own normals. So each material has one [`LineKind`], and
-//! the filters need not know which.
+//! The normals that a material writes to the G-buffer need not be those of its surface. Where they are taken from four
+//! directions that no visible surface has, the normal filter draws lines between areas of different directions, at the
+//! borders that the artist painted, and between these areas and surfaces with their own normals. Each material has one
+//! [`LineKind`]; the filters are the same for all.
 //!
 //! # The four directions
 //!
-//! Away from the eye, 45° from the plane of the screen and equally spaced around the view: (±½, ±½, 1/√2) with z
-//! along the view. What was wrong in print: the caption of figure 3 has them 45° apart like their angle to the plane;
-//! neighbours are 60° and opposite ones 90° apart, so that both are below every threshold in use (cos 60° =
+//! They point away from the eye, 45° from the plane of the screen and equally spaced around the view: (±½, ±½, 1/√2)
+//! with z along the view. Error in print: the caption of figure 3 puts 45° between them, which is their angle to the
+//! plane; neighbours are 60° and opposite ones 90° apart, so that both are below every threshold in use (cos 60° =
 //! 0.5).
 //!
-//! [`ink_artist_direction`] turns z to the direction from the eye to a point. All is in view space, where the eye
-//! looks down −z and no visible point lies behind it: the shortest turn from −z is then the same up to a little for
-//! points next to each other, with no place where it jumps. A world-space G-buffer takes the result through the
+//! [`ink_artist_direction`] rotates z to the direction from the eye to a point. All is in view space, where the eye
+//! looks down −z and no visible point lies behind it: the shortest rotation from −z is then a continuous function of
+//! the point. A world-space G-buffer takes the result through the
 //! view's rotation.
 //!
-//! - Vertex colours ([`LineKind::VertexColor`]): turned with the vector from the eye to each vertex, or better to each
+//! - Vertex colours ([`LineKind::VertexColor`]): rotated with the vector from the eye to each vertex, or better to each
 //!   pixel. Every visible normal is 90° and more from that vector, so the four stay 45° and more from all of them,
 //!   from every side.
 //! - Texture ([`LineKind::Texture`]): red and alpha of the artist's texture pick one of the 2 × 2 palette
-//!   ([`ink_artist_texel`], as `texreg2ar` does), turned once for an object with the vector from the eye to its
+//!   ([`ink_artist_texel`], as `texreg2ar` does), rotated once for an object with the vector from the eye to its
 //!   centre. At a point that is an angle α off that vector the distance to visible normals is 45° − α, and lines
 //!   vanish where that is below the filter's threshold: nearer than r / sin(45° − acos t) to the centre of an object
 //!   of radius r ([`artist_object_distance`]), 7.1 r for the threshold 0.80 and 4.4 r for 0.85. With the pixel's own
@@ -38,7 +38,7 @@ use glam::{Quat, Vec3, Vec4};
 /// WGSL of this module: no bindings, no entry points.
 pub const ARTIST_WGSL: &str = include_str!("artist.wgsl");
 
-/// Where a material's inner lines come from. Its outline is drawn in any case: depth and background see to it.
+/// Where a material's inner lines come from. Its outline is drawn in any case, by depth and background.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum LineKind {
     /// Its normals: creases and folds.
@@ -50,7 +50,7 @@ pub enum LineKind {
     Texture,
     /// Borders of its regions; its normals are stored as no normal.
     Regions,
-    /// Nothing: no normal, and one region for all of it.
+    /// No inner lines: no normal, and one region for the whole material.
     None,
 }
 
@@ -64,7 +64,7 @@ pub fn ink_artist_vector(index: u32) -> Vec3 {
     Vec3::new(sign(1), sign(2), ALONG)
 }
 
-/// The colour, display-referred as it stands in a file, that means one of the four: the direction, biased.
+/// The display-referred colour that stands for one of the four directions: (direction + 1) / 2.
 pub fn artist_color(index: u32) -> Vec3 {
     ink_artist_vector(index) * 0.5 + 0.5
 }
@@ -79,8 +79,8 @@ pub fn ink_artist_texel(color: Vec4) -> u32 {
     u32::from(color.w >= 0.5) | u32::from(color.x >= 0.5) << 1
 }
 
-/// One of the four directions for a point, in view space (the eye at the origin looks down −z): the vector with its z
-/// turned to `eye_to_point`, which need not be of unit length. Behind the eye, and at it, as on the view's axis.
+/// One of the four directions for a point, in view space (the eye at the origin looks down −z): the vector rotated
+/// so that its z points along `eye_to_point`, which may have any length. At the eye and behind it, unrotated.
 pub fn ink_artist_direction(index: u32, eye_to_point: Vec3) -> Vec3 {
     // x and y to the right and up as they are seen, z into the picture.
     let vector = ink_artist_vector(index);
@@ -89,7 +89,7 @@ pub fn ink_artist_direction(index: u32, eye_to_point: Vec3) -> Vec3 {
     if length <= 0.0 || eye_to_point.z >= 0.0 {
         return ahead;
     }
-    // The shortest turn from −z to the point, a half-angle quaternion.
+    // The half-angle quaternion of the shortest rotation from −z to the point.
     let to = eye_to_point / length;
     let turn = Quat::from_xyzw(to.y, -to.x, 0.0, 1.0 - to.z).normalize();
     turn * ahead
@@ -100,8 +100,9 @@ pub fn ink_alpha_kept(alpha: f32, reference: f32) -> bool {
     alpha >= reference
 }
 
-/// The distance of an object's centre, in its own radii, below which directions turned once for the object may be taken
-/// for a visible normal's by a filter of that threshold: 1 / sin(45° − acos t). Infinite where t is cos 45° or less.
+/// The distance of an object's centre, in its own radii, below which directions rotated once for the object are within
+/// the threshold of a visible normal, so that lines may vanish: 1 / sin(45° − acos t). Infinite where t is cos 45° or
+/// less.
 pub fn artist_object_distance(normal_cos: f64) -> f64 {
     let spare_rad = std::f64::consts::FRAC_PI_4 - normal_cos.acos();
     if spare_rad > 0.0 { 1.0 / spare_rad.sin() } else { f64::INFINITY }

@@ -23,7 +23,7 @@ fn ink_artist_direction(index: u32, eye_to_point: vec3<f32>) -> vec3<f32> {
     if length2 <= 0.0 || eye_to_point.z >= 0.0 {
         return ahead;
     }
-    // The shortest turn from -z to the point: a quaternion with its real part apart.
+    // The half-angle quaternion of the shortest rotation from -z to the point: its real part is z.
     let to = eye_to_point * inverseSqrt(length2);
     let turn = normalize(vec3<f32>(to.y, -to.x, 1.0 - to.z));
     let axis = vec3<f32>(turn.xy, 0.0);

@@ -1,14 +1,14 @@
-//! Lines over a picture.
+//! Compositing ink over a picture.
 //!
-//! - [`ink_multiply`]: Card & Mitchell 2002 multiply the frame buffer with the edge image, white paper and black
+//! - [`Composite::Multiply`]: Card & Mitchell 2002 multiply the frame buffer with the edge image, white paper and black
 //!   lines, so that several passes add up: c · (1 − ink).
-//! - [`ink_alpha_tested`]: the same with the alpha test that spares the frame buffer the white pixels. The edge image
-//!   has its value in alpha, too, 255 on paper and 0 on a line. What was wrong in print: `D3DCMP_GREATER` keeps what
-//!   is greater than the reference, that is the paper, and kills the lines; and the reference `(DWORD) 0.5f` is 0, of
-//!   0–255 ([`AlphaTest::PRINTED`]): the picture stays as it was, at the cost of writing all of it. Right is LESS and
+//! - [`Composite::AlphaTested`]: the same with an alpha test that discards the white pixels of the edge image, whose
+//!   alpha is 255 on paper and 0 on a line. Error in print: `D3DCMP_GREATER` keeps
+//!   alpha above the reference, which is the paper, and discards the lines; and the reference `(DWORD) 0.5f` is 0, of
+//!   0–255 ([`AlphaTest::PRINTED`]): the picture does not change, at the cost of writing all of it. Corrected: LESS and
 //!   128 ([`AlphaTest::CORRECTED`]).
-//! - [`ink_over`]: a line of any colour, by its coverage: c + opacity · ink · (line − c). The default. With a black
-//!   opaque line it is the multiplication.
+//! - [`Composite::Over`]: a line of any colour, by its coverage: c + opacity · ink · (line − c). The default. With a
+//!   black opaque line it is the multiplication.
 //!
 //! Colours are display-referred, and coverage blends in display space.
 
@@ -20,14 +20,14 @@ use glam::{DVec3, DVec4, Vec3};
 /// WGSL of this module: no bindings, no entry points.
 pub const COMPOSITE_WGSL: &str = include_str!("composite.wgsl");
 
-/// How ink comes over a picture.
+/// How ink is composited over a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Composite {
     /// c · (1 − ink).
     Multiply,
     /// [`Composite::Multiply`] where a test is passed.
     AlphaTested(AlphaTest),
-    /// A line of a colour.
+    /// A line of any colour: c + opacity · ink · (color − c).
     Over {
         /// Display-referred RGB.
         color: Vec3,
@@ -42,12 +42,12 @@ impl Default for Composite {
     }
 }
 
-/// What an alpha lets through.
+/// An alpha test on the edge image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct AlphaTest {
-    /// Through passes what is less than the reference, or else what is greater.
+    /// Whether alpha below the reference passes; otherwise alpha above it.
     pub less: bool,
-    /// 0–255.
+    /// The reference, 0–255.
     pub reference: u8,
 }
 
@@ -59,27 +59,27 @@ impl AlphaTest {
 }
 
 /// c · (1 − ink).
-pub fn ink_multiply(color: DVec3, ink: f64) -> DVec3 {
+fn ink_multiply(color: DVec3, ink: f64) -> DVec3 {
     color * (1.0 - ink)
 }
 
-/// Whether the edge image's pixel, as 8 bits of alpha, passes.
+/// Whether a pixel of the edge image passes the test; its alpha is 1 − `ink` in 8 bits.
 pub fn ink_alpha_passes(ink: f64, test: AlphaTest) -> bool {
     let alpha = 255 - ink_store(ink as f32);
     if test.less { alpha < test.reference } else { alpha > test.reference }
 }
 
-/// [`ink_multiply`] where the test is passed, and else the colour as it was.
-pub fn ink_alpha_tested(color: DVec3, ink: f64, test: AlphaTest) -> DVec3 {
+/// c · (1 − ink) where the test is passed, and else the colour as it was.
+fn ink_alpha_tested(color: DVec3, ink: f64, test: AlphaTest) -> DVec3 {
     if ink_alpha_passes(ink, test) { ink_multiply(color, ink) } else { color }
 }
 
 /// c + opacity · ink · (line − c).
-pub fn ink_over(color: DVec3, ink: f64, line: DVec3, opacity: f64) -> DVec3 {
+fn ink_over(color: DVec3, ink: f64, line: DVec3, opacity: f64) -> DVec3 {
     color + (line - color) * (opacity * ink)
 }
 
-/// A pixel under a line.
+/// The display-referred colour of a pixel after compositing `ink`, 0..=1, over `color`.
 pub fn ink_composite(color: DVec3, ink: f64, how: &Composite) -> DVec3 {
     match *how {
         Composite::Multiply => ink_multiply(color, ink),
@@ -88,8 +88,8 @@ pub fn ink_composite(color: DVec3, ink: f64, how: &Composite) -> DVec3 {
     }
 }
 
-/// What a blend unit lays over a picture to the same end as [`ink_composite`]: the line's colour times its opacity,
-/// and the opacity a. The picture becomes rgb + (1 − a) · c.
+/// The premultiplied colour with which a blend unit has the result of [`ink_composite`]: the line's colour times its
+/// opacity, and the opacity a. The picture becomes rgb + (1 − a) · c.
 pub fn ink_premultiplied(ink: f64, how: &Composite) -> DVec4 {
     match *how {
         Composite::Multiply => DVec3::ZERO.extend(ink),
@@ -98,10 +98,10 @@ pub fn ink_premultiplied(ink: f64, how: &Composite) -> DVec4 {
     }
 }
 
-/// A picture of 8-bit RGBA under lines; its alpha stays.
+/// Composites 8-bit ink, one value for each pixel, over a picture of 8-bit RGBA. Alpha does not change.
 ///
 /// # Errors
-/// If there is not one ink for each pixel.
+/// [`ImageSpaceError::Pixels`].
 pub fn composite_picture(pixels: &mut [[u8; 4]], ink: &[u8], how: &Composite) -> Result<(), ImageSpaceError> {
     if pixels.len() != ink.len() {
         return Err(ImageSpaceError::Pixels { pixels: pixels.len(), ink: ink.len() });
@@ -122,7 +122,7 @@ pub fn composite_picture(pixels: &mut [[u8; 4]], ink: &[u8], how: &Composite) ->
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct CompositeUniform {
-    /// The line's colour, and its opacity.
+    /// The line's display-referred colour, and its opacity, 0..=1.
     pub line: [f32; 4],
     /// 0 multiply, 1 alpha-tested, 2 over.
     pub form: u32,

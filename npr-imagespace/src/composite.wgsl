@@ -1,4 +1,5 @@
-// Lines over a picture. The twin of `composite.rs`. No bindings and no entry points. Colours are display-referred.
+// Compositing ink over a picture. The twin of `composite.rs`. No bindings and no entry points. Colours are
+// display-referred.
 
 struct InkComposite {
     // rgb, and opacity.
@@ -34,7 +35,7 @@ fn ink_over(color: vec3<f32>, ink: f32, line: vec3<f32>, opacity: f32) -> vec3<f
     return color + (line - color) * (opacity * ink);
 }
 
-// A pixel under a line.
+// The colour of a pixel after compositing.
 fn ink_composite(color: vec3<f32>, ink: f32, how: InkComposite) -> vec3<f32> {
     if how.form == INK_COMPOSITE_MULTIPLY {
         return ink_multiply(color, ink);
@@ -45,7 +46,8 @@ fn ink_composite(color: vec3<f32>, ink: f32, how: InkComposite) -> vec3<f32> {
     return ink_over(color, ink, how.line.rgb, how.line.a);
 }
 
-// What a blend unit lays over a picture to the same end: the line's colour times its opacity, and the opacity.
+// The premultiplied colour with which a blend unit has the same result: the line's colour times its opacity, and the
+// opacity.
 // c' = rgb + (1 - a) c.
 fn ink_premultiplied(ink: f32, how: InkComposite) -> vec4<f32> {
     if how.form == INK_COMPOSITE_OVER {

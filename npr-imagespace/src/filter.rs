@@ -1,20 +1,21 @@
-//! Lines where neighbouring pixels differ.
+//! Edge filters: ink where neighbouring pixels differ.
 //!
 //! - [`normal`], [`depth`], [`region`]: the filters of 2002, each alone and on decoded values or bytes, as printed and
 //!   corrected.
-//! - [`fused`]: the three at once over the packed texels of [`crate::format::texel`], decided on whole numbers. The default.
-//! - [`inker`]: the filter of four taps that compares opposite pixels.
-//! - [`separate`]: any of the three, and all, over textures of one's own.
+//! - [`fused`]: the three at once over the packed texels of [`crate::format::texel`], decided with integers. The
+//!   default.
+//! - [`inker`]: a filter of four taps that compares opposite pixels.
+//! - [`separate`]: any of the three over separate textures of normals, depth and regions.
 //! - [`mod@printed`]: the filters and the inker over the bytes of [`crate::format::printed`].
 //!
-//! All return *ink*: 1 a line, 0 paper. The listings output the complement, white paper and black lines.
+//! All return *ink*: 1 on a line, 0 on paper. The listings output the complement, black lines on white paper.
 //!
 //! # Soft lines
 //!
-//! The slides of 2002 say that the filters can be made fuzzy, and not how. Here a comparison `x > t` becomes clamp((x
-//! − t) / width + 1/2, 0, 1) ([`ink_ramp`]), and the four taps are added and weighted
-//! ([`crate::picture::Taps::weight`]) so that a straight border is a full line and its outer corners are paler. A
-//! softness of 0 is hard.
+//! The slides of 2002 say that the filters can be made fuzzy, but not how. Here a comparison `x > t` becomes clamp((x
+//! − t) / width + 1/2, 0, 1) ([`ink_ramp`]), and the four taps are summed and weighted
+//! ([`crate::picture::Taps::weight`]) so that a straight border is a full line and its outer corners are paler. With a
+//! softness of 0 lines are hard.
 
 pub mod depth;
 pub mod fused;
@@ -37,7 +38,7 @@ pub const FILTER_WGSL: &str = concat!(
     include_str!("filter/printed.wgsl"),
 );
 
-/// The soft form of `excess > 0`, which it is where `width` is 0.
+/// A ramp from 0 to 1 of the given width around `excess` = 0; where `width` is 0, the step `excess > 0`.
 pub fn ink_ramp(excess: f64, width: f64) -> f64 {
     if width > 0.0 { (excess / width + 0.5).clamp(0.0, 1.0) } else { f64::from(u8::from(excess > 0.0)) }
 }

@@ -1,58 +1,58 @@
-//! Lines found in the image: what a geometry pass writes for it, the filters, thicker lines, and how they come over
-//! the picture.
+//! Lines found in the image: the G-buffer formats that a geometry pass writes, edge filters over them, morphology that
+//! widens lines, and their composite over a picture.
 //!
 //! ```
 //! use glam::{UVec2, Vec3};
 //! use npr_imagespace::filter::fused::{FilterUniform, FusedFilter, ink_fused};
-//! use npr_imagespace::format::texel::{DepthCode, TexelLayout, ink_wide_pack, ink_wide_tap};
+//! use npr_imagespace::format::texel::{DepthCode, TexelLayout, ink_texel64_pack, ink_texel64_tap};
 //! use npr_imagespace::morphology::disc::{Disc, DiscBuffers, dilate_disc};
 //! use npr_imagespace::picture::filter_picture;
 //!
 //! // A surface 4 away, and from the eighth column on another, 5 away: what a geometry pass would write.
 //! let size_px = UVec2::new(16, 9);
-//! let code = DepthCode::perspective(1.0, f32::INFINITY, TexelLayout::Wide)?;
+//! let code = DepthCode::perspective(1.0, f32::INFINITY, TexelLayout::Bits64)?;
 //! let depth = |i: u32| if i % 16 < 8 { 4.0 } else { 5.0 };
-//! let texels: Vec<_> = (0..16 * 9).map(|i| ink_wide_pack(Vec3::Z, 1, depth(i), &code)).collect();
+//! let texels: Vec<_> = (0..16 * 9).map(|i| ink_texel64_pack(Vec3::Z, 1, depth(i), &code)).collect();
 //!
 //! let filter = FusedFilter::default();
-//! let uniform = FilterUniform::new(&filter, TexelLayout::Wide, &code)?;
+//! let uniform = FilterUniform::new(&filter, TexelLayout::Bits64, &code)?;
 //! let ink = filter_picture(&texels, size_px, filter.taps, |centre, taps| {
-//!     ink_fused(&uniform, &ink_wide_tap(centre), &taps.map(ink_wide_tap)) as f32
+//!     ink_fused(&uniform, &ink_texel64_tap(centre), &taps.map(ink_texel64_tap)) as f32
 //! })?;
 //! assert_eq!(ink[16..32], [0, 0, 0, 0, 0, 0, 0, 255, 255, 0, 0, 0, 0, 0, 0, 0]);
 //!
-//! let (brush, mut thick) = (Disc { radius_px: 1.5, antialias: true }, Vec::new());
-//! dilate_disc(&ink, size_px, &brush, &mut DiscBuffers::default(), &mut thick)?;
+//! let (disc, mut thick) = (Disc { radius_px: 1.5, antialias: true }, Vec::new());
+//! dilate_disc(&ink, size_px, &disc, &mut DiscBuffers::default(), &mut thick)?;
 //! assert_eq!(thick[64..80], [0, 0, 0, 0, 0, 128, 255, 255, 255, 255, 128, 0, 0, 0, 0, 0]);
 //! # Ok::<(), npr_imagespace::ImageSpaceError>(())
 //! ```
 //!
-//! The half of outline drawing that works on any primitive, well-formed or not: what interpenetrates, is cut by a clip
-//! plane or tessellated on the way has its lines where its pictures differ.
+//! Lines from the image need no connectivity and work on any primitive: surfaces that interpenetrate, are cut by a clip
+//! plane or are tessellated on the device have lines wherever neighbouring pixels differ.
 //!
 //! 1. [`mod@format`]: normal, region and depth of a pixel as a G-buffer holds them, encoded and decoded.
-//! 2. [`region`], [`artist`]: what else than the surface's own normals draws lines: numbers of regions, and directions
-//!    that no visible surface has.
-//!    [`shadow`]: whether they lie in shadow.
-//! 3. [`filter`]: where neighbouring pixels differ there is ink.
-//! 4. [`morphology`]: thicker, thinner, opened and closed.
-//! 5. [`composite`], [`resample`]: ink over a picture, also of another size.
+//! 2. [`region`], [`artist`], [`shadow`]: further sources of lines: region numbers, directions that no visible surface
+//!    has, and the states of light and shadow.
+//! 3. [`filter`]: ink where neighbouring pixels differ.
+//! 4. [`morphology`]: dilation, erosion, opening and closing of ink.
+//! 5. [`composite`], [`resample`]: ink over a picture of the same or of another size.
 //!
 //! With the feature `wgpu` the module `pass` has all of this as passes over textures.
 //!
-//! The same functions under the same names, `ink_`, stand here twice: in Rust, the reference, and in [`WGSL`], over
-//! values already loaded. What the papers got wrong is told where it is mended, and kept under a name that says
-//! `printed` where it can run.
+//! Functions whose names begin with `ink_` are written twice, with the same names and parameters: in Rust, the
+//! reference, and in [`WGSL`], over values already loaded. Errors of the papers are stated where they are corrected;
+//! the form as printed is kept, where it can run, under a name with `printed` in it.
 //!
-//! # What is exact
+//! # Exactness
 //!
-//! A decision on packed texels or on bytes is one of whole numbers, and the same on every machine: [`filter::fused`],
-//! hard; the filters on bytes; the steps of [`morphology`] and all but the last of [`morphology::flood`]. Soft ink is
-//! the same within 1/255. Decisions on floats may differ where an input is within a rounding of its threshold.
+//! Decisions on packed texels and on bytes are made with integers and are the same on every machine: [`filter::fused`]
+//! with hard lines, the filters on bytes, the steps of [`morphology`] and all passes but the last of
+//! [`morphology::flood`]. Soft ink agrees within 1/255. Decisions on floats may differ where an input is within
+//! rounding of its threshold.
 //!
 //! # Colours
 //!
-//! Display-referred: what is mixed is what is shown.
+//! Colours are display-referred and are mixed as they are displayed, without conversion to linear light.
 //!
 //! # Sources
 //!
@@ -86,32 +86,46 @@ pub use wgpu;
 
 pub use error::ImageSpaceError;
 
-/// The functions of this crate in WGSL: no bindings, no entry points, every name begins with `ink_`, `INK_` or `Ink`.
-///
-/// It is all parts in a row: [`picture::PICTURE_WGSL`], [`format::FORMAT_WGSL`], [`shadow::SHADOW_WGSL`],
-/// [`filter::FILTER_WGSL`], [`morphology::MORPHOLOGY_WGSL`], [`composite::COMPOSITE_WGSL`], [`resample::RESAMPLE_WGSL`]
-/// and [`artist::ARTIST_WGSL`]. Each stands alone, but for the filters, which need the formats and the shadows.
-pub const WGSL: &str = concat!(
-    include_str!("picture.wgsl"),
-    include_str!("format.wgsl"),
-    include_str!("format/printed.wgsl"),
-    include_str!("format/depth.wgsl"),
-    include_str!("format/normal.wgsl"),
-    include_str!("format/texel.wgsl"),
-    include_str!("shadow.wgsl"),
-    include_str!("filter.wgsl"),
-    include_str!("filter/normal.wgsl"),
-    include_str!("filter/depth.wgsl"),
-    include_str!("filter/region.wgsl"),
-    include_str!("filter/fused.wgsl"),
-    include_str!("filter/inker.wgsl"),
-    include_str!("filter/separate.wgsl"),
-    include_str!("filter/printed.wgsl"),
-    include_str!("morphology.wgsl"),
-    include_str!("morphology/flood.wgsl"),
-    include_str!("composite.wgsl"),
-    include_str!("resample.wgsl"),
-    include_str!("artist.wgsl"),
+/// Makes the library's text, and for the passes the list of its files.
+macro_rules! library {
+    ($($file:literal,)*) => {
+        /// The functions of this crate in WGSL: no bindings, no entry points, every name begins with `ink_`, `INK_` or
+        /// `Ink`.
+        ///
+        /// The concatenation of [`picture::PICTURE_WGSL`], [`format::FORMAT_WGSL`], [`shadow::SHADOW_WGSL`],
+        /// [`filter::FILTER_WGSL`], [`morphology::MORPHOLOGY_WGSL`], [`composite::COMPOSITE_WGSL`],
+        /// [`resample::RESAMPLE_WGSL`] and [`artist::ARTIST_WGSL`]. Each compiles alone, except the filters, which need
+        /// formats and shadows.
+        pub const WGSL: &str = concat!($(include_str!($file)),*);
+
+        /// The files of [`WGSL`]: name and text.
+        #[cfg(feature = "wgpu")]
+        pub(crate) const LIBRARY: &[(&str, &str)] = &[$(($file, include_str!($file))),*];
+    };
+}
+
+library!(
+    "picture.wgsl",
+    "format.wgsl",
+    "format/printed.wgsl",
+    "format/depth.wgsl",
+    "format/normal.wgsl",
+    "format/texel.wgsl",
+    "region.wgsl",
+    "shadow.wgsl",
+    "filter.wgsl",
+    "filter/normal.wgsl",
+    "filter/depth.wgsl",
+    "filter/region.wgsl",
+    "filter/fused.wgsl",
+    "filter/inker.wgsl",
+    "filter/separate.wgsl",
+    "filter/printed.wgsl",
+    "morphology.wgsl",
+    "morphology/flood.wgsl",
+    "composite.wgsl",
+    "resample.wgsl",
+    "artist.wgsl",
 );
 
 /// Compiles the example of the README.

@@ -1,25 +1,25 @@
-//! Thicker and thinner lines.
+//! Morphology: dilation and erosion of ink.
 //!
-//! Ink is 0 on paper and 255, or 1.0, on a line. The papers have it as black on white: their dilation is a minimum,
-//! and a maximum here.
+//! Ink is 0 on paper and 255, or 1.0, on a line. In the papers lines are black on white: their dilation is a minimum,
+//! here it is a maximum.
 //!
-//! - this module: steps by a pixel with four, five or nine taps, hard and soft, and n of them by ping-pong;
+//! - this module: steps by one pixel with four, five or nine taps, hard and soft, and n of them by ping-pong;
 //! - [`disc`]: a Euclidean disc of any radius, exact, at a cost that does not grow with the radius;
-//! - [`flood`]: the same in passes that a GPU runs, on sites packed into a word.
+//! - [`flood`]: the same in passes for a GPU, on sites packed into 32 bits.
 //!
-//! What lies outside the picture does not count: it is paper for a dilation and ink for an erosion, so that neither
-//! draws or eats a frame.
+//! Outside the picture there is paper for a dilation and ink for an erosion, so that the picture's border neither adds
+//! nor removes ink.
 //!
 //! # Sources
 //!
 //! - [`Kernel::Diagonal`]: "The Evolution of a Cartoon Renderer", listing 5: ink if any of the four diagonal
-//!   neighbours is. The pixel itself is not read: an isolated one becomes four with a hole between them, which `n`
-//!   steps widen into a chequered square.
+//!   neighbours is. The pixel itself is not read: an isolated line pixel becomes four with a hole between them, and n
+//!   steps make a chequered square.
 //! - [`Kernel::Cross`]: the slides of SIGGRAPH 2002 read a + of five.
 //! - [`ink_dilate_soft_cross`]: the slides' shader, in their polarity saturate(0.4 Σ − 1), which in ink is min(0.4 Σ,
 //!   1): one line pixel of five gives 0.4, two 0.8 and three 1.
 //! - [`ink_dilate_soft_diagonal`]: listing 5's second program as its text has it: the four samples, times a threshold
-//!   from 0.25 (softest) to 1 (hard), clamped. What was wrong in print: the program reads two of the four and does
+//!   from 0.25 (softest) to 1 (hard), clamped. Error in print: the program reads two of the four and does
 //!   not clamp ([`ink_dilate_soft_diagonal_printed`]).
 
 mod direct;
@@ -33,7 +33,7 @@ use glam::UVec2;
 /// WGSL of this module and of [`flood`]: no bindings, no entry points.
 pub const MORPHOLOGY_WGSL: &str = concat!(include_str!("morphology.wgsl"), include_str!("morphology/flood.wgsl"));
 
-/// Which neighbours a step looks at.
+/// Which pixels a step reads.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Kernel {
     /// The four diagonal ones, and not the pixel.
@@ -65,7 +65,7 @@ pub fn ink_dilate_soft_diagonal(taps: [f64; 4], threshold: f64) -> f64 {
     (threshold * taps.iter().sum::<f64>()).min(1.0)
 }
 
-/// The smoothed dilation as listing 5 computes it: the first two taps, not clamped but by the target.
+/// The smoothed dilation as listing 5 computes it: the first two taps, clamped only by the render target.
 pub fn ink_dilate_soft_diagonal_printed(taps: [f64; 4], threshold: f64) -> f64 {
     threshold * taps[0] + threshold * taps[1]
 }
@@ -86,21 +86,21 @@ pub fn erode(ink: &[u8], size_px: UVec2, kernel: Kernel, out: &mut Vec<u8>) -> R
     step(ink, size_px, kernel, 255, u8::min, out)
 }
 
-/// What to do with ink, n steps of it.
+/// A morphological operation of n steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Operation {
     /// n dilations.
     Dilate,
     /// n erosions.
     Erode,
-    /// n erosions and n dilations: what is thinner than the kernel vanishes.
+    /// n erosions, then n dilations: lines thinner than n kernels vanish.
     Open,
-    /// n dilations and n erosions: gaps narrower than the kernel close.
+    /// n dilations, then n erosions: gaps narrower than n kernels close.
     Close,
 }
 
 impl Operation {
-    /// What it consists of, in order: whether each half erodes.
+    /// Its one or two halves, in order: whether each erodes.
     pub(crate) fn halves(self) -> impl Iterator<Item = bool> {
         let (first, second) = match self {
             Self::Dilate => (false, None),
@@ -112,7 +112,7 @@ impl Operation {
     }
 }
 
-/// `steps` steps of an operation, to and fro between two pictures, as a GPU does with two targets.
+/// `steps` steps of each half of an operation, alternating between two pictures, as a GPU does with two targets.
 ///
 /// # Errors
 /// If `ink` does not have one element for each pixel.
@@ -138,7 +138,7 @@ pub fn ping_pong(
     Ok(from)
 }
 
-/// A row's neighbour above or below, or a row of what does not count.
+/// The row with the given index, or `none` outside the picture.
 fn neighbour<'a>(ink: &'a [u8], width: usize, row: Option<usize>, none: &'a [u8]) -> &'a [u8] {
     row.and_then(|y| ink.get(y * width..(y + 1) * width)).unwrap_or(none)
 }
@@ -158,7 +158,7 @@ fn step(
         return Ok(());
     }
     let none = vec![identity; width];
-    // The picked of a column's pixels, with one more at each end that does not count.
+    // The largest or smallest of each column's pixels, with one neutral value at each end.
     let mut column = vec![identity; width + 2];
     for (y, (own, to)) in ink.chunks_exact(width).zip(out.chunks_exact_mut(width)).enumerate() {
         let above = neighbour(ink, width, y.checked_sub(1), &none);

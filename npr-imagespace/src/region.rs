@@ -1,30 +1,31 @@
 //! Region numbers: what the region filter draws borders between. 0 is background, so numbers start at 1.
 //!
-//! By material, by mesh, by smooth-connected patch, by a texture's colours, and any of them together. They are numbers of any size here; [`crate::format::texel`] folds them to what a texel has room for.
+//! Regions can be materials, meshes, smoothly connected patches, colours of a texture, and combinations of these.
+//! Numbers are of 32 bits here; [`crate::format::texel`] folds them to the bits of a packed texel.
 
 use crate::ImageSpaceError;
 use std::collections::HashMap;
 
-/// A number for each material or mesh index.
+/// The region number of a material or mesh index: the index plus 1.
 pub fn region_of_index(index: u32) -> u32 {
     index.wrapping_add(1).max(1)
 }
 
 /// The regions of faces that are connected by smooth edges, numbered in the order of their first faces.
 ///
-/// - `faces`: how many there are;
-/// - `smooth_pairs`: faces that share an edge over which the surface is smooth. Whether it is, is the caller's to
-///   say: by the dihedral angle, by normals that are the same on both sides, by material.
+/// - `faces`: the number of faces;
+/// - `smooth_pairs`: pairs of faces that share an edge over which the surface is smooth. The caller decides that, by
+///   the dihedral angle, by equal normals on both sides, or by material.
 ///
-/// With these the borders of patches are the creases, exactly, while smooth normals that are interpolated have none.
+/// The borders of these patches are exactly the creases, which interpolated smooth normals do not show.
 ///
 /// # Errors
-/// If a pair names a face that there is not.
+/// [`ImageSpaceError::Face`].
 pub fn region_of_patches(faces: usize, smooth_pairs: &[[u32; 2]]) -> Result<Vec<u32>, ImageSpaceError> {
     let mut parent: Vec<u32> = (0..faces as u32).collect();
     fn root(parent: &mut [u32], mut face: u32) -> u32 {
         while parent[face as usize] != face {
-            // Every second one is hung up higher, so that chains stay short.
+            // Path halving keeps the chains short.
             parent[face as usize] = parent[parent[face as usize] as usize];
             face = parent[face as usize];
         }
@@ -65,14 +66,14 @@ pub fn region_of_pairs(pairs: impl IntoIterator<Item = [u32; 2]>) -> Vec<u32> {
         .collect()
 }
 
-/// The region that a texture's colour stands for, alpha not looked at: the colour as a number, and 1. Sample without
-/// filtering: a mean of two regions is a third.
+/// The region number of a texture's colour: the colour as a 24-bit number, plus 1; alpha is ignored. The texture must
+/// be sampled without filtering, since a mixture of two regions' colours is a third region.
 pub fn ink_region_of_color(rgb: [u8; 3]) -> u32 {
     u32::from_le_bytes([rgb[0], rgb[1], rgb[2], 0]) + 1
 }
 
-/// Two numbers as one of 24 bits, above 0, where neither is 0, and 0 otherwise: for pairs that are not known beforehand,
-/// such as a patch and a texture's colour. Two different pairs get the same number once in some 2^24.
+/// A hash of two region numbers, 1..2^24; 0 where either is 0. For pairs that are not known beforehand, such as a patch
+/// and a texture's colour. Two different pairs have the same number with a probability of about 2^−24.
 pub fn ink_region_pair(a: u32, b: u32) -> u32 {
     if a == 0 || b == 0 {
         return 0;

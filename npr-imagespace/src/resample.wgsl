@@ -1,7 +1,7 @@
 // Ink of another size than the picture's. The twin of `resample.rs`. No bindings and no entry points.
 
-// Where a pixel finds its ink: the upper left of 2 x 2 texels, which may lie outside by 1, and how far the pixel's
-// centre is from that one's to the others', 0..1. `scale` is texels of ink for a pixel.
+// The upper left of the 2 x 2 texels that a pixel's ink is interpolated from, which may lie outside by 1, and the
+// weights of the right and the lower ones, 0..1. `scale` is texels of ink a pixel.
 fn ink_resample_at(pixel: vec2<f32>, scale: vec2<f32>) -> vec4<f32> {
     let at = (pixel + 0.5) * scale - 0.5;
     let first = floor(at);

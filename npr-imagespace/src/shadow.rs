@@ -1,22 +1,22 @@
-//! Shadows in what the filters look at, so that their outlines come from the pass that finds the objects' own.
+//! Shadow states in the G-buffer, so that the filters that find object outlines find shadow outlines too.
 //!
 //! # As printed
 //!
 //! Card & Mitchell 2002 (fig. 10) render the geometry once where the stencil says light and once where it says shadow,
 //! there with the world-space normal negated ([`ink_shadow_normal`]); the slides of Mitchell, Brennan & Card negate the
-//! depth as well ([`ink_shadow_depth`]). The filter for normals then sees a fold of up to 180° at a shadow's border, and
-//! needs no change. What is wrong with it:
+//! depth as well ([`ink_shadow_depth`]). The normal filter then finds an angle of up to 180° at a shadow's border
+//! without any change. Its faults:
 //!
-//! - a surface in shadow with normal n is like a lit one with −n, and has no line against it;
-//! - negated depth does not fit an unsigned format, which the target of the same chapter is;
-//! - where a surface turns away from the light by itself, which a stencil calls shadow too, there is a line that nobody
-//!   would draw: the terminator.
+//! - a surface in shadow with normal n has the stored normal of a lit one with −n, and there is no line between them;
+//! - negated depth needs a signed format, and the target of the same chapter is unsigned;
+//! - surfaces that face away from the light are shadow in the stencil as well, so that the terminator, the border
+//!   between light-facing and back-facing parts of a smooth surface, becomes a line.
 //!
 //! # Here
 //!
-//! A state of two bits beside the region's number ([`ink_shadow_region`]): lit, in a cast shadow, or turned away from the
-//! light. Only between the first two is there a border ([`ink_shadow_differs`]); what is turned away has one with neither,
-//! so the terminator is no line, and a cast shadow that runs into it ends there without one.
+//! Two bits beside the region number hold a state ([`ink_shadow_region`]): lit, in a cast shadow, or facing away from
+//! the light. Only lit beside cast shadow is a border ([`ink_shadow_differs`]). Back-facing surfaces have no border
+//! with either, so the terminator is no line, and the outline of a cast shadow ends at the terminator.
 
 use crate::format::texel::TexelLayout;
 use glam::Vec3;
@@ -24,39 +24,39 @@ use glam::Vec3;
 /// WGSL of this module: no bindings, no entry points.
 pub const SHADOW_WGSL: &str = include_str!("shadow.wgsl");
 
-/// What the light of a pixel's surface is.
+/// How the light reaches the surface in a pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum ShadowState {
-    /// The surface is turned away from the light by itself, or there is no light that casts.
+    /// The surface faces away from the light, or no light casts shadows.
     #[default]
-    Turned = 0,
-    /// The light reaches it.
+    BackFacing = 0,
+    /// The light reaches the surface.
     Lit = 1,
-    /// It is turned towards the light, and something is between them.
+    /// The surface faces the light, and something between them casts a shadow on it.
     Cast = 2,
 }
 
 impl ShadowState {
-    /// All, each at the index of its number.
-    pub const ALL: [Self; 3] = [Self::Turned, Self::Lit, Self::Cast];
+    /// All states, each at the index of its number.
+    pub const ALL: [Self; 3] = [ShadowState::BackFacing, ShadowState::Lit, ShadowState::Cast];
 }
 
-/// A region's number with a state of shadow in its two highest bits. 0, background, stays 0.
+/// A region number with a shadow state in its two highest bits. 0, background, stays 0.
 ///
-/// - `folded`: up to [`TexelLayout::shadowed_region_most`];
+/// - `folded`: the region number, at most [`TexelLayout::shadowed_region_max`];
 /// - `state`: a [`ShadowState`] as a number.
 pub fn ink_shadow_region(folded: u32, state: u32, layout: TexelLayout) -> u32 {
-    if folded == 0 { 0 } else { folded | (state * (layout.shadowed_region_most() + 1)) }
+    if folded == 0 { 0 } else { folded | (state * (layout.shadowed_region_max() + 1)) }
 }
 
-/// The state that [`ink_shadow_region`] put into a number.
+/// The state in a number made by [`ink_shadow_region`].
 pub fn ink_shadow_state(region: u32, layout: TexelLayout) -> ShadowState {
-    ShadowState::ALL[(region / (layout.shadowed_region_most() + 1)).min(2) as usize]
+    ShadowState::ALL[(region / (layout.shadowed_region_max() + 1)).min(2) as usize]
 }
 
-/// Whether of two states, as they lie in `bits` of a region, one is lit and the other in a cast shadow: together they have
-/// all bits, and no other pair does.
+/// Whether one of two states, each masked by `bits` of a region number, is lit and the other in a cast shadow. The
+/// bitwise or of these two has all bits set, and that of no other pair does.
 pub fn ink_shadow_differs(a: u32, b: u32, bits: u32) -> bool {
     a | b == bits
 }

@@ -4,7 +4,7 @@
 use glam::{DVec3, Vec3, Vec4};
 use npr_imagespace::ImageSpaceError;
 use npr_imagespace::artist::*;
-use npr_imagespace::filter::normal::{COS_CM, COS_OS};
+use npr_imagespace::filter::normal::{NORMAL_COS_CARD_MITCHELL, NORMAL_COS_OUTLINING_SKETCH};
 use npr_imagespace::region::*;
 
 /// Directions within a cone around −z, in which a view's points lie.
@@ -54,7 +54,7 @@ fn no_visible_normal_is_within_45_degrees_wherever_a_point_is_seen() {
 }
 
 #[test]
-fn directions_of_points_side_by_side_are_alike() {
+fn directions_of_neighbouring_points_are_similar() {
     // A pixel of a wide view is some 0.1° of it.
     for to in view_directions() {
         for step in [Vec3::X, Vec3::Y] {
@@ -65,9 +65,9 @@ fn directions_of_points_side_by_side_are_alike() {
 }
 
 /// A sphere whose patches are painted, seen from farther and farther away: from where on no painted direction is
-/// within the threshold of a visible normal, turned once for the object and turned for each point.
+/// within the threshold of a visible normal, rotated once for the object and rotated for each point.
 #[test]
-fn directions_turned_once_for_an_object_fail_near_it_as_the_formula_says() {
+fn directions_rotated_once_for_an_object_fail_near_it_as_the_formula_says() {
     let confused = |distance: f64, cos: f64, per_point: bool| {
         let centre = DVec3::NEG_Z * distance;
         for i in 0..=90 {
@@ -80,9 +80,9 @@ fn directions_turned_once_for_an_object_fail_near_it_as_the_formula_says() {
                 if point_normal.dot(point) > 0.0 {
                     continue;
                 }
-                let turned = if per_point { point } else { centre };
+                let along = if per_point { point } else { centre };
                 for index in 0..4 {
-                    let direction = ink_artist_direction(index, turned.as_vec3()).as_dvec3();
+                    let direction = ink_artist_direction(index, along.as_vec3()).as_dvec3();
                     // The visible normal nearest to it: itself pressed into the half space that faces the eye.
                     let view = point.normalize();
                     let nearest = (direction - view * direction.dot(view).max(0.0)).normalize();
@@ -94,13 +94,13 @@ fn directions_turned_once_for_an_object_fail_near_it_as_the_formula_says() {
         }
         false
     };
-    for cos in [COS_CM, COS_OS].map(f64::from) {
+    for cos in [NORMAL_COS_CARD_MITCHELL, NORMAL_COS_OUTLINING_SKETCH].map(f64::from) {
         let limit = artist_object_distance(cos);
         let found = (110..1200).map(|d| f64::from(d) / 100.0).find(|&d| !confused(d, cos, false)).unwrap();
         println!("threshold {cos:.2}: fails nearer than {found:.2} radii, formula {limit:.2}");
         assert!(found <= limit + 0.01 && found > 0.85 * limit, "{found} {limit}");
         for distance in [1.1, 2.0, 5.0, 100.0] {
-            assert!(!confused(distance, cos, true), "turned for each point, at {distance}");
+            assert!(!confused(distance, cos, true), "rotated for each point, at {distance}");
         }
     }
     assert!((artist_object_distance(0.8) - 7.07).abs() < 0.01 && (artist_object_distance(0.85) - 4.38).abs() < 0.01);
@@ -130,7 +130,7 @@ fn patches_do_not_depend_on_the_order_of_their_pairs() {
 }
 
 #[test]
-fn regions_are_never_background_and_pairs_stay_apart() {
+fn regions_are_never_background_and_pairs_stay_different() {
     assert_eq!([region_of_index(0), region_of_index(41), region_of_index(u32::MAX)], [1, 42, 1]);
     assert_eq!(region_of_pairs([[1, 1], [1, 2], [2, 1], [1, 1], [0, 3], [3, 0]]), [1, 2, 3, 1, 0, 0]);
     assert_ne!(ink_region_of_color([0, 0, 0]), 0);
@@ -138,17 +138,17 @@ fn regions_are_never_background_and_pairs_stay_apart() {
 }
 
 #[test]
-fn hashed_pairs_of_regions_stay_apart_and_fit_a_texel() {
-    let (mut known, mut alike) = (std::collections::HashSet::new(), 0);
-    // Patches with colours, whose low bits are alike.
+fn hashed_pairs_of_regions_are_different_and_fit_a_texel() {
+    let (mut known, mut duplicates) = (std::collections::HashSet::new(), 0);
+    // Patches with colours, with the same low bits.
     for patch in 1..=40u32 {
         for color in (1..=0x00ff_ffffu32).step_by(65_793) {
             let pair = ink_region_pair(patch, color);
             assert!((1..=0x00ff_ffff).contains(&pair), "{pair}");
-            alike += u32::from(!known.insert(pair));
+            duplicates += u32::from(!known.insert(pair));
         }
     }
-    // Of so many numbers among 2^24 three are expected to be there already.
-    assert!(known.len() > 10_000 && alike < 12, "{alike} of {}", known.len());
+    // Of this many numbers among 2^24 three duplicates are expected.
+    assert!(known.len() > 10_000 && duplicates < 12, "{duplicates} of {}", known.len());
     assert_eq!((ink_region_pair(0, 5), ink_region_pair(5, 0)), (0, 0));
 }

@@ -1,4 +1,4 @@
-//! Lines over pictures.
+//! Compositing lines over pictures.
 
 use glam::{DVec3, Vec3};
 use npr_imagespace::ImageSpaceError;
@@ -36,7 +36,7 @@ fn a_black_line_over_is_the_multiplication() {
 }
 
 #[test]
-fn the_printed_alpha_test_kills_the_lines() {
+fn the_printed_alpha_test_discards_the_lines() {
     let printed = Composite::AlphaTested(AlphaTest::PRINTED);
     assert_eq!(over(255, &printed), GRAY, "the line is not drawn");
     assert!(ink_alpha_passes(0.0, AlphaTest::PRINTED), "the paper is");
@@ -47,11 +47,11 @@ fn the_printed_alpha_test_kills_the_lines() {
     // LESS and 128: from half a line on.
     let passes = |ink: f64| ink_alpha_passes(ink / 255.0, AlphaTest::CORRECTED);
     assert!(!passes(0.0) && !passes(127.0) && passes(128.0) && passes(255.0));
-    assert_eq!(ink_alpha_tested(DVec3::ONE, 0.4, AlphaTest::CORRECTED), DVec3::ONE);
+    assert_eq!(ink_composite(DVec3::ONE, 0.4, &Composite::AlphaTested(AlphaTest::CORRECTED)), DVec3::ONE);
 }
 
 #[test]
-fn uniforms_say_what_is_asked_for() {
+fn uniforms_have_the_values_of_the_composite() {
     let uniform = CompositeUniform::from(&Composite::AlphaTested(AlphaTest::CORRECTED));
     assert_eq!((uniform.form, uniform.alpha_less, uniform.alpha_reference), (1, 1, 128));
     let uniform = CompositeUniform::from(&Composite::Over { color: Vec3::new(0.1, 0.2, 0.3), opacity: 0.4 });
@@ -63,4 +63,18 @@ fn uniforms_say_what_is_asked_for() {
 fn pictures_of_two_sizes_are_refused() {
     let refused = composite_picture(&mut [GRAY; 2], &[0; 3], &Composite::Multiply);
     assert_eq!(refused, Err(ImageSpaceError::Pixels { pixels: 2, ink: 3 }));
+}
+
+#[test]
+fn a_blend_unit_has_the_same_result() {
+    let color = DVec3::new(0.8, 0.4, 0.1);
+    let soft = Composite::Over { color: Vec3::new(0.2, 0.9, 0.5), opacity: 0.7 };
+    let tested = [AlphaTest::PRINTED, AlphaTest::CORRECTED].map(Composite::AlphaTested);
+    for how in [Composite::Multiply, tested[0], tested[1], soft, Composite::default()] {
+        for ink in (0..=255).map(|ink| f64::from(ink) / 255.0) {
+            let premultiplied = ink_premultiplied(ink, &how);
+            let blended = premultiplied.truncate() + (1.0 - premultiplied.w) * color;
+            assert!(blended.abs_diff_eq(ink_composite(color, ink, &how), 1e-12), "{how:?} {ink}");
+        }
+    }
 }

@@ -1,4 +1,4 @@
-//! Filters on hand-computed taps, against their definitions, on borders of the picture and on what is no number.
+//! Filters on hand-computed taps, against their definitions, on borders of the picture and on NaN.
 
 use glam::{DVec3, IVec2, IVec3, UVec2, Vec3};
 use npr_imagespace::ImageSpaceError;
@@ -63,7 +63,7 @@ fn odd_pictures_are_filtered_to_their_borders() {
 #[test]
 fn normals_at_the_two_thresholds() {
     let flat = [DVec3::Z; 4];
-    for (cos, angle_deg) in [(COS_CM, 31.7), (COS_OS, 36.8)] {
+    for (cos, angle_deg) in [(NORMAL_COS_CARD_MITCHELL, 31.7), (NORMAL_COS_OUTLINING_SKETCH, 36.8)] {
         let cos = f64::from(cos);
         let with = |tap: DVec3, i: usize| {
             let mut taps = flat;
@@ -96,7 +96,7 @@ fn soft_normals_rise_from_paper_to_a_line() {
 
 #[test]
 fn bytes_are_compared_as_integers() {
-    let threshold = normal_bytes_threshold(COS_CM);
+    let threshold = normal_bytes_threshold(NORMAL_COS_CARD_MITCHELL);
     assert_eq!(threshold, 55272);
     let encode = |normal: DVec3| {
         let [x, y, z, _] = ink_printed_encode(normal.as_vec3(), 1.0);
@@ -118,15 +118,25 @@ fn bytes_are_compared_as_integers() {
 #[test]
 fn listing_10_counts_two_of_four() {
     // One neighbour 5 steps of 8 bits away is below 0.02, six are above.
-    let threshold = depth_code_threshold(SUM_CM, 255);
+    let threshold = depth_code_threshold(DEPTH_SUM_CARD_MITCHELL, 255);
     assert_eq!(threshold, 6);
     for i in 0..4 {
         let taps = |away: u32| std::array::from_fn(|j| if i == j { 100 + away } else { 100 });
         let edge = |form, away| ink_depth_plain_codes(100, taps(away), form, threshold);
         assert!(edge(DepthPlain::Sum, 6) && !edge(DepthPlain::Sum, 5), "tap {i}");
         assert_eq!(edge(DepthPlain::SumPrinted, 200 - 100), i == 0 || i == 3, "tap {i}");
-        assert!(ink_depth_plain_codes(100, taps(3), DepthPlain::Any, depth_code_threshold(ANY_OS, 255)));
-        assert!(!ink_depth_plain_codes(100, taps(2), DepthPlain::Any, depth_code_threshold(ANY_OS, 255)));
+        assert!(ink_depth_plain_codes(
+            100,
+            taps(3),
+            DepthPlain::Any,
+            depth_code_threshold(DEPTH_ANY_OUTLINING_SKETCH, 255)
+        ));
+        assert!(!ink_depth_plain_codes(
+            100,
+            taps(2),
+            DepthPlain::Any,
+            depth_code_threshold(DEPTH_ANY_OUTLINING_SKETCH, 255)
+        ));
     }
     // Two steps each are eight together, and none alone is three.
     assert!(ink_depth_plain_codes(100, [98, 102, 98, 102], DepthPlain::Sum, threshold));
@@ -139,7 +149,7 @@ fn listing_10_counts_two_of_four() {
 }
 
 #[test]
-fn bends_are_found_and_slopes_and_what_is_no_depth_are_not() {
+fn second_differences_are_found_and_slopes_and_invalid_depths_are_not() {
     let bend = |centre, taps| ink_depth_bend(centre, taps, 0.01, false, 0.0, 0.5);
     // 1/z falls by 30% from pixel to pixel: a plane, and no line.
     let z = |inverse: f32| 1.0 / inverse;
@@ -149,7 +159,7 @@ fn bends_are_found_and_slopes_and_what_is_no_depth_are_not() {
     // A step by 2% and one by ½%, on either side of it.
     assert_eq!([bend(10.0, [10.0, 10.0, 10.2, 10.2]), bend(10.2, [10.2, 10.2, 10.0, 10.0])], [1.0, 1.0]);
     assert_eq!(bend(10.0, [10.0, 10.0, 10.05, 10.05]), 0.0);
-    // Background differs from surfaces and not from itself; it has many names.
+    // Background differs from surfaces and not from itself, whichever invalid depth it has.
     for none in [f32::INFINITY, f32::NAN, 0.0, -1.0, f32::NEG_INFINITY] {
         assert_eq!(bend(none, [f32::INFINITY, f32::NAN, 0.0, -2.0]), 0.0);
         assert_eq!(bend(none, [f32::INFINITY, 5.0, none, none]), 1.0);
@@ -238,7 +248,7 @@ fn a_soft_inker_ramps_around_the_square_of_its_step_and_twice_what_normals_diffe
 }
 
 #[test]
-fn the_inker_on_bytes_is_the_inker_on_what_they_stand_for() {
+fn the_inker_on_bytes_is_the_inker_on_decoded_values() {
     // 128 stands for 1/255, as close to 0 as bytes are.
     let texel = |depth: u8| [128, 128, 255, depth];
     let ink = |form, taps| ink_printed_inker(&Inker { form, ..Default::default() }, taps);
@@ -249,7 +259,7 @@ fn the_inker_on_bytes_is_the_inker_on_what_they_stand_for() {
             taps[place] = texel((128 + step) as u8);
             assert_eq!(ink(InkerForm::Explicit, taps), expected, "{place} {step}");
         }
-        // A normal to the side, and one turned round.
+        // A perpendicular normal, and an opposite one.
         for normal in [[255, 128, 128], [128, 0, 128], [128, 128, 0]] {
             let mut taps = [texel(128); 4];
             taps[place] = [normal[0], normal[1], normal[2], 128];
@@ -259,13 +269,13 @@ fn the_inker_on_bytes_is_the_inker_on_what_they_stand_for() {
     // As printed 1/4 + d₁ > 1/2 is ink: 64 steps, in one direction.
     let of_second_pair = |near: u8, far: u8| ink(InkerForm::Printed, [texel(128), texel(far), texel(128), texel(near)]);
     assert_eq!([of_second_pair(100, 163), of_second_pair(100, 164), of_second_pair(164, 100)], [0.0, 1.0, 0.0]);
-    assert_eq!(ink(InkerForm::Repaired, [texel(128); 4]), 0.0);
-    assert_eq!(ink(InkerForm::Repaired, [texel(128), texel(129), texel(128), texel(128)]), 1.0);
+    assert_eq!(ink(InkerForm::Corrected, [texel(128); 4]), 0.0);
+    assert_eq!(ink(InkerForm::Corrected, [texel(128), texel(129), texel(128), texel(128)]), 1.0);
 }
 
 #[test]
-fn signed_sums_take_red_for_green() {
-    let printed = |a, b| ink_region_printed(a, [b; 4], f64::from(SUM_OS));
+fn signed_sums_do_not_distinguish_red_from_green() {
+    let printed = |a, b| ink_region_printed(a, [b; 4], f64::from(REGION_SUM_OUTLINING_SKETCH));
     assert_eq!(printed(DVec3::X, DVec3::Y), 0.0);
     assert_eq!(printed(DVec3::X, DVec3::ZERO), 1.0);
     assert_eq!(ink_region(7, [7, 7, 9, 7], false, 0.5), 1.0);
@@ -274,7 +284,7 @@ fn signed_sums_take_red_for_green() {
 }
 
 #[test]
-fn the_inker_and_its_two_faults() {
+fn the_inker_and_its_two_errors() {
     let with = |form| Inker { form, ..Default::default() };
     let flat = [DVec3::Z; 4];
     let ink = |form, depths| ink_inker(&with(form), flat, depths);
@@ -283,14 +293,14 @@ fn the_inker_and_its_two_faults() {
     assert_eq!(ink(InkerForm::Printed, [far, far + 0.3, far, far]), 1.0);
     assert_eq!(ink(InkerForm::Printed, [far, far, far, far + 0.3]), 0.0);
     // Repaired: the least difference is ink.
-    assert_eq!(ink(InkerForm::Repaired, [far; 4]), 0.0);
-    assert_eq!(ink(InkerForm::Repaired, [far, far, far + 1e-4, far]), 1.0);
-    // Flat and near: ink below 0.03 as printed and below 0.1 repaired, and never with thresholds of their own.
-    let n = |z: f64| ink_inker_alike(&Inker::default(), flat, z);
+    assert_eq!(ink(InkerForm::Corrected, [far; 4]), 0.0);
+    assert_eq!(ink(InkerForm::Corrected, [far, far, far + 1e-4, far]), 1.0);
+    // Flat and near: ink below 0.03 as printed and below 0.1 repaired, and nowhere with explicit thresholds.
+    let n = |z: f64| ink_inker_similarity(&Inker::default(), flat, z);
     assert!((n(0.0) - 0.64).abs() < 1e-6 && (n(0.05) - 0.81).abs() < 1e-6 && n(0.1001) == 1.0);
     for (z, printed, repaired) in [(0.02, 1.0, 1.0), (0.04, 0.0, 1.0), (0.09, 0.0, 1.0), (0.11, 0.0, 0.0)] {
         assert_eq!(ink(InkerForm::Printed, [z; 4]), printed, "{z}");
-        assert_eq!(ink(InkerForm::Repaired, [z; 4]), repaired, "{z}");
+        assert_eq!(ink(InkerForm::Corrected, [z; 4]), repaired, "{z}");
         assert_eq!(ink(InkerForm::Explicit, [z; 4]), 0.0, "{z}");
     }
     // Explicit: steps from √(1/512) on, in both directions and either pair.
@@ -315,19 +325,19 @@ fn uniform(filter: &FusedFilter, layout: TexelLayout) -> FilterUniform {
 fn tap(normal: Vec3, region: u32, depth: f32, layout: TexelLayout) -> Tap {
     let code = DepthCode::perspective(1.0, 50.0, layout).unwrap();
     match layout {
-        TexelLayout::Narrow => ink_narrow_tap(ink_narrow_pack(normal, region, depth, &code)),
-        TexelLayout::Wide => ink_wide_tap(ink_wide_pack(normal, region, depth, &code)),
+        TexelLayout::Bits32 => ink_texel32_tap(ink_texel32_pack(normal, region, depth, &code)),
+        TexelLayout::Bits64 => ink_texel64_tap(ink_texel64_pack(normal, region, depth, &code)),
     }
 }
 
 #[test]
 fn each_part_of_the_fused_filter_alone_and_none() {
     let none = FusedFilter { normal_cos: None, depth: None, regions: false, ..Default::default() };
-    let normals = FusedFilter { normal_cos: Some(COS_OS), ..none };
+    let normals = FusedFilter { normal_cos: Some(NORMAL_COS_OUTLINING_SKETCH), ..none };
     let depth = FusedFilter { depth: Some(DepthTest::default()), ..none };
     let plain = FusedFilter { depth: Some(DepthTest { plain: true, ..Default::default() }), ..none };
     let regions = FusedFilter { regions: true, ..none };
-    for layout in [TexelLayout::Narrow, TexelLayout::Wide] {
+    for layout in [TexelLayout::Bits32, TexelLayout::Bits64] {
         let surface = |normal, region, depth| tap(normal, region, depth, layout);
         let centre = surface(Vec3::Z, 3, 10.0);
         let folded = surface(Vec3::new(0.8, 0.0, 0.6), 3, 10.0);
@@ -363,8 +373,8 @@ fn each_part_of_the_fused_filter_alone_and_none() {
 
 #[test]
 fn thresholds_out_of_range_are_refused() {
-    let code = DepthCode::perspective(1.0, 50.0, TexelLayout::Wide).unwrap();
-    let refused = |filter| FilterUniform::new(&filter, TexelLayout::Wide, &code).unwrap_err();
+    let code = DepthCode::perspective(1.0, 50.0, TexelLayout::Bits64).unwrap();
+    let refused = |filter| FilterUniform::new(&filter, TexelLayout::Bits64, &code).unwrap_err();
     let usual = FusedFilter::default();
     for cos in [-0.1, 1.1, f32::NAN] {
         let error = refused(FusedFilter { normal_cos: Some(cos), ..usual });
@@ -377,19 +387,19 @@ fn thresholds_out_of_range_are_refused() {
     assert!(matches!(refused(FusedFilter { softness: -1.0, ..usual }), ImageSpaceError::Softness { .. }));
     // No overflow at the ends.
     for step in [0.0, 1.0, 1e30] {
-        for layout in [TexelLayout::Narrow, TexelLayout::Wide] {
+        for layout in [TexelLayout::Bits32, TexelLayout::Bits64] {
             let filter = FusedFilter { normal_cos: Some(1.0), depth: Some(DepthTest { step, plain: true }), ..usual };
             let uniform = uniform(&filter, layout);
             let (near, far) = (tap(Vec3::Z, 1, 1.0, layout), tap(Vec3::NEG_Z, 1, 50.0, layout));
             ink_fused_hard(&uniform, &near, &[far; 4]);
             ink_fused_soft(&uniform, &near, &[far; 4]);
-            assert!(ink_tap_depth_threshold(&uniform, layout.depth_most() as i32) >= layout.depth_slack() as i32);
+            assert!(ink_tap_depth_threshold(&uniform, layout.depth_max() as i32) >= layout.depth_slack() as i32);
         }
     }
 }
 
-fn any_tap(most: i32, depth_most: i32) -> impl Strategy<Value = Tap> {
-    (-most..=most, -most..=most, 0u32..3, 0..=depth_most, 0..8).prop_map(move |(x, y, region, depth, none)| {
+fn any_tap(most: i32, depth_max: i32) -> impl Strategy<Value = Tap> {
+    (-most..=most, -most..=most, 0u32..3, 0..=depth_max, 0..8).prop_map(move |(x, y, region, depth, none)| {
         let oct = npr_imagespace::format::normal::ink_oct_vector(IVec2::new(x, y), most);
         Tap { normal: if none == 0 { IVec3::ZERO } else { oct }, region, depth }
     })
@@ -399,13 +409,13 @@ fn any_tap(most: i32, depth_most: i32) -> impl Strategy<Value = Tap> {
 #[test]
 fn depth_thresholds_follow_the_distance_in_finite_and_infinite_ranges() {
     for far in [60.0, 200.0, f32::INFINITY] {
-        for layout in [TexelLayout::Narrow, TexelLayout::Wide] {
+        for layout in [TexelLayout::Bits32, TexelLayout::Bits64] {
             let code = DepthCode::perspective(1.0, far, layout).unwrap();
             let test = FusedFilter { normal_cos: None, ..Default::default() };
             let uniform = FilterUniform::new(&test, layout, &code).unwrap();
             for depth in [1.5, 4.0, 12.0, 45.0] {
-                // 14 bits of an infinite range do not part 1% at 45.
-                if layout == TexelLayout::Narrow && depth > 40.0 {
+                // 14 bits of an infinite range do not distinguish 1 % at 45.
+                if layout == TexelLayout::Bits32 && depth > 40.0 {
                     continue;
                 }
                 let tap = |depth: f32| Tap { normal: IVec3::Z, region: 1, depth: ink_depth_code(depth, &code) as i32 };
@@ -427,7 +437,7 @@ proptest! {
     fn integer_normals_agree_with_the_cosine(
         a in any_tap(127, 9), b in any_tap(127, 9), c in any_tap(15, 9), d in any_tap(15, 9), cos in 0f32..=1.0,
     ) {
-        for (layout, a, b) in [(TexelLayout::Wide, a.normal, b.normal), (TexelLayout::Narrow, c.normal, d.normal)] {
+        for (layout, a, b) in [(TexelLayout::Bits64, a.normal, b.normal), (TexelLayout::Bits32, c.normal, d.normal)] {
             let uniform = uniform(&FusedFilter { normal_cos: Some(cos), ..Default::default() }, layout);
             if a == IVec3::ZERO || b == IVec3::ZERO {
                 prop_assert_eq!(ink_tap_normal_differs(&uniform, a, b), a != b);
@@ -447,7 +457,7 @@ proptest! {
     #[test]
     fn the_fused_filter_is_its_formula(
         centre in any_tap(127, 0x00ff_ffff), taps in prop::array::uniform4(any_tap(127, 0x00ff_ffff)),
-        near in prop::array::uniform4(-200_000i32..200_000), close: bool, asked in 0u32..16, step in 0f32..0.1,
+        near in prop::array::uniform4(-200_000i32..200_000), close: bool, tests in 0u32..16, step in 0f32..0.1,
     ) {
         let mut taps = taps;
         if close {
@@ -457,7 +467,7 @@ proptest! {
             });
         }
         let filter = FusedFilter { depth: Some(DepthTest { step, plain: false }), ..Default::default() };
-        let uniform = FilterUniform { asked, ..uniform(&filter, TexelLayout::Wide) };
+        let uniform = FilterUniform { tests, ..uniform(&filter, TexelLayout::Bits64) };
         let threshold = |nearest: i32| {
             let growth = (i64::from(nearest) / 256) * i64::from(uniform.depth_step) / 256;
             i64::from(uniform.depth_slack).max(i64::from(uniform.depth_base) + growth)
@@ -468,18 +478,18 @@ proptest! {
             if tap.region == 0 || centre.region == 0 {
                 continue;
             }
-            ink |= asked & ASKED_REGION != 0 && tap.region != centre.region;
-            ink |= asked & ASKED_STEP != 0
+            ink |= tests & TEST_REGION != 0 && tap.region != centre.region;
+            ink |= tests & TEST_STEP != 0
                 && i64::from((tap.depth - centre.depth).abs()) > threshold(tap.depth.max(centre.depth));
-            ink |= asked & ASKED_NORMAL != 0 && ink_tap_normal_differs(&uniform, tap.normal, centre.normal);
+            ink |= tests & TEST_NORMAL != 0 && ink_tap_normal_differs(&uniform, tap.normal, centre.normal);
         }
         for (a, b) in [(taps[0], taps[2]), (taps[1], taps[3])] {
             let surfaces = a.region != 0 && b.region != 0 && centre.region != 0;
             let bend = i64::from(a.depth) - 2 * i64::from(centre.depth) + i64::from(b.depth);
             let nearest = a.depth.max(b.depth).max(centre.depth);
-            ink |= asked & ASKED_BEND != 0 && surfaces && bend.abs() > threshold(nearest);
+            ink |= tests & TEST_BEND != 0 && surfaces && bend.abs() > threshold(nearest);
         }
-        // What is neither background nor asked for leaves paper.
+        // Differences that no enabled test looks for are no lines.
         prop_assert_eq!(ink_fused_hard(&uniform, &centre, &taps), ink);
         let soft = ink_fused_soft(&FilterUniform { softness: 1e-6, ..uniform }, &centre, &taps);
         prop_assert!((0.0..=1.0).contains(&soft));
@@ -495,7 +505,7 @@ proptest! {
         middle in 0.03f64..0.97, slope in -0.03f64..0.03, far in 2f32..1e5, infinite: bool,
     ) {
         let far = if infinite { f32::INFINITY } else { far };
-        for layout in [TexelLayout::Narrow, TexelLayout::Wide] {
+        for layout in [TexelLayout::Bits32, TexelLayout::Bits64] {
             let code = DepthCode::perspective(1.0, far, layout).unwrap();
             let [a, b, c] = [-1.0, 0.0, 1.0].map(|x| {
                 let inverse = 1.0 / f64::from(far) + (1.0 - 1.0 / f64::from(far)) * (middle + slope * x);

@@ -4,20 +4,20 @@
 #![cfg(feature = "wgpu")]
 #![allow(clippy::print_stdout)]
 
+#[path = "gpu/composite.rs"]
+mod composite;
 #[path = "gpu/device.rs"]
 mod device;
 #[path = "gpu/discs.rs"]
 mod discs;
 #[path = "gpu/fused.rs"]
 mod fused;
-#[path = "gpu/fused_strips.rs"]
-mod fused_strips;
 #[path = "gpu/inputs.rs"]
 mod inputs;
-#[path = "gpu/lay.rs"]
-mod lay;
 #[path = "gpu/printed.rs"]
 mod printed;
+#[path = "gpu/refusals.rs"]
+mod refusals;
 #[path = "gpu/separate.rs"]
 mod separate;
 #[path = "gpu/steps.rs"]

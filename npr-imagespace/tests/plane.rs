@@ -7,7 +7,7 @@ use npr_imagespace::filter::depth::{BEND, ink_depth_bend, ink_depth_step};
 use npr_imagespace::filter::fused::{DepthTest, FilterUniform, FusedFilter, ink_fused_hard};
 use npr_imagespace::format::normal::NormalFormat;
 use npr_imagespace::format::texel::{
-    DepthCode, TexelLayout, ink_narrow_pack, ink_narrow_tap, ink_wide_pack, ink_wide_tap,
+    DepthCode, TexelLayout, ink_texel32_pack, ink_texel32_tap, ink_texel64_pack, ink_texel64_tap,
 };
 use npr_imagespace::picture::{Taps, filter_picture};
 
@@ -133,8 +133,8 @@ fn packed(seen: &[Seen], layout: TexelLayout, code: &DepthCode, filter: &FusedFi
         .map(|pixel| {
             let (normal, region, depth) = (pixel.normal.as_vec3(), pixel.surface.min(1), pixel.depth as f32);
             match layout {
-                TexelLayout::Narrow => ink_narrow_tap(ink_narrow_pack(normal, region, depth, code)),
-                TexelLayout::Wide => ink_wide_tap(ink_wide_pack(normal, region, depth, code)),
+                TexelLayout::Bits32 => ink_texel32_tap(ink_texel32_pack(normal, region, depth, code)),
+                TexelLayout::Bits64 => ink_texel64_tap(ink_texel64_pack(normal, region, depth, code)),
             }
         })
         .collect();
@@ -163,15 +163,15 @@ fn a_slanted_plane_is_no_line_and_what_stands_on_it_is() {
             })
             .unwrap();
             let nearest = depths.iter().copied().fold(f32::INFINITY, f32::min);
-            let codes = [TexelLayout::Narrow, TexelLayout::Wide]
+            let codes = [TexelLayout::Bits32, TexelLayout::Bits64]
                 .map(|layout| DepthCode::perspective(0.9 * nearest, f32::INFINITY, layout).unwrap());
             let results = [
                 ("bend, f32", float, true),
-                ("bend, wide", packed(&seen, TexelLayout::Wide, &codes[1], &bend), true),
-                ("bend, wide, cross", packed(&seen, TexelLayout::Wide, &codes[1], &cross), true),
-                ("bend, narrow", packed(&seen, TexelLayout::Narrow, &codes[0], &bend), true),
+                ("bend, wide", packed(&seen, TexelLayout::Bits64, &codes[1], &bend), true),
+                ("bend, wide, cross", packed(&seen, TexelLayout::Bits64, &codes[1], &cross), true),
+                ("bend, narrow", packed(&seen, TexelLayout::Bits32, &codes[0], &bend), true),
                 ("step, f32", step, false),
-                ("step, wide", packed(&seen, TexelLayout::Wide, &codes[1], &plain), false),
+                ("step, wide", packed(&seen, TexelLayout::Bits64, &codes[1], &plain), false),
                 ("predicted, exact normals", predicted(&seen, NormalFormat::Oct16), false),
                 ("predicted, 2 x 8", predicted(&seen, NormalFormat::Oct8), false),
             ];
@@ -213,8 +213,8 @@ fn a_slanted_plane_is_no_line_in_a_parallel_view_either() {
             depth: Some(DepthTest { step: 0.1, plain: false }),
             ..Default::default()
         };
-        let code = DepthCode::parallel(0.9 * near, 1.1 * far, TexelLayout::Wide).unwrap();
-        let (recall, wrong, _) = judge(&seen, &packed(&seen, TexelLayout::Wide, &code, &filter));
+        let code = DepthCode::parallel(0.9 * near, 1.1 * far, TexelLayout::Bits64).unwrap();
+        let (recall, wrong, _) = judge(&seen, &packed(&seen, TexelLayout::Bits64, &code, &filter));
         assert!(wrong == 0 && recall >= 0.98, "{grazing_deg}° wide: {wrong} {recall}");
     }
 }

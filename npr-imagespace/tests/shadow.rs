@@ -5,13 +5,13 @@ use npr_imagespace::filter::fused::{
     DepthTest, FilterUniform, FusedFilter, ShadowTest, ink_fused_hard, ink_fused_soft, ink_tap_across,
 };
 use npr_imagespace::format::texel::{
-    DepthCode, Tap, TexelLayout, ink_narrow_pack, ink_narrow_tap, ink_wide_pack, ink_wide_tap,
+    DepthCode, Tap, TexelLayout, ink_texel32_pack, ink_texel32_tap, ink_texel64_pack, ink_texel64_tap,
 };
 use npr_imagespace::shadow::{
     ShadowState, ink_shadow_depth, ink_shadow_differs, ink_shadow_normal, ink_shadow_region, ink_shadow_state,
 };
 
-const LAYOUTS: [TexelLayout; 2] = [TexelLayout::Narrow, TexelLayout::Wide];
+const LAYOUTS: [TexelLayout; 2] = [TexelLayout::Bits32, TexelLayout::Bits64];
 
 fn code(layout: TexelLayout) -> DepthCode {
     DepthCode::perspective(1.0, 50.0, layout).unwrap()
@@ -19,8 +19,8 @@ fn code(layout: TexelLayout) -> DepthCode {
 
 fn tap(layout: TexelLayout, normal: Vec3, region: u32, depth: f32) -> Tap {
     match layout {
-        TexelLayout::Narrow => ink_narrow_tap(ink_narrow_pack(normal, region, depth, &code(layout))),
-        TexelLayout::Wide => ink_wide_tap(ink_wide_pack(normal, region, depth, &code(layout))),
+        TexelLayout::Bits32 => ink_texel32_tap(ink_texel32_pack(normal, region, depth, &code(layout))),
+        TexelLayout::Bits64 => ink_texel64_tap(ink_texel64_pack(normal, region, depth, &code(layout))),
     }
 }
 
@@ -35,8 +35,8 @@ fn inked(filter: &FusedFilter, layout: TexelLayout, a: Tap, b: Tap) -> bool {
 #[test]
 fn a_state_survives_packing_beside_the_region_in_both_layouts() {
     for layout in LAYOUTS {
-        let most = layout.shadowed_region_most();
-        assert_eq!(layout.shadow_bits() | most, layout.region_most());
+        let most = layout.shadowed_region_max();
+        assert_eq!(layout.shadow_bits() | most, layout.region_max());
         for region in [1, 2, most / 2, most] {
             for state in ShadowState::ALL {
                 let with = ink_shadow_region(region, state as u32, layout);
@@ -89,7 +89,7 @@ fn printed_the_terminator_is_a_line_and_with_states_it_is_none() {
         let with = FusedFilter { shadows: ShadowTest::Lines, ..filter };
         let region = |state| ink_shadow_region(1, state as u32, layout);
         for state in [ShadowState::Lit, ShadowState::Cast] {
-            let (a, b) = (region(state), region(ShadowState::Turned));
+            let (a, b) = (region(state), region(ShadowState::BackFacing));
             assert!(!inked(&with, layout, tap(layout, Vec3::X, a, 3.0), tap(layout, Vec3::X, b, 3.0)), "{state:?}");
         }
     }
@@ -116,12 +116,12 @@ fn states_that_are_ignored_and_lines_that_stand_alone() {
         assert!(!inked(&filter(ShadowTest::Ignored), layout, at(lit), at(cast)));
         assert!(inked(&filter(ShadowTest::Ignored), layout, at(lit), at(other)));
         // Alone: a shadow's border, but not where an object ends too.
-        assert!(inked(&filter(ShadowTest::Alone), layout, at(lit), at(cast)));
-        assert!(!inked(&filter(ShadowTest::Alone), layout, at(lit), at(other)));
-        assert!(!inked(&filter(ShadowTest::Alone), layout, at(cast), at(other)));
+        assert!(inked(&filter(ShadowTest::OnlyShadows), layout, at(lit), at(cast)));
+        assert!(!inked(&filter(ShadowTest::OnlyShadows), layout, at(lit), at(other)));
+        assert!(!inked(&filter(ShadowTest::OnlyShadows), layout, at(cast), at(other)));
         // Together they are what one pass draws.
         for (a, b) in [(lit, cast), (lit, other), (cast, other), (lit, lit)] {
-            let [all, objects, shadows] = [ShadowTest::Lines, ShadowTest::Ignored, ShadowTest::Alone]
+            let [all, objects, shadows] = [ShadowTest::Lines, ShadowTest::Ignored, ShadowTest::OnlyShadows]
                 .map(|test| inked(&filter(test), layout, at(a), at(b)));
             assert_eq!((all, objects && shadows), (objects || shadows, false));
         }
@@ -130,7 +130,7 @@ fn states_that_are_ignored_and_lines_that_stand_alone() {
 
 #[test]
 fn soft_a_shadows_border_is_full_ink_and_fades_where_others_are() {
-    let layout = TexelLayout::Wide;
+    let layout = TexelLayout::Bits64;
     let region = |state| ink_shadow_region(1, state as u32, layout);
     let (lit, cast) = (region(ShadowState::Lit), region(ShadowState::Cast));
     let soft = |shadows, normal_cos| {
@@ -148,8 +148,8 @@ fn soft_a_shadows_border_is_full_ink_and_fades_where_others_are() {
     assert!(!ink_tap_across(&lines, &a, &b));
     let weight = f64::from(lines.weight);
     assert_eq!(ink_fused_soft(&lines, &a, &[b, a, a, a]), weight.min(1.0));
-    assert_eq!(ink_fused_soft(&soft(ShadowTest::Alone, 0.8), &a, &[b, a, a, a]), weight.min(1.0));
-    let turned = tap(layout, Vec3::Y, cast, 3.0);
-    let alone = ink_fused_soft(&soft(ShadowTest::Alone, 0.8), &a, &[turned; 4]);
+    assert_eq!(ink_fused_soft(&soft(ShadowTest::OnlyShadows, 0.8), &a, &[b, a, a, a]), weight.min(1.0));
+    let tilted = tap(layout, Vec3::Y, cast, 3.0);
+    let alone = ink_fused_soft(&soft(ShadowTest::OnlyShadows, 0.8), &a, &[tilted; 4]);
     assert_eq!(alone, 0.0, "an object's line is there");
 }

@@ -1,4 +1,7 @@
-//! The WGSL is valid, and the uniforms lie in memory as naga lays them out.
+//! The WGSL is valid, its functions have the signatures of the Rust ones, and uniforms have the same memory layout.
+
+#[path = "wgsl/twins.rs"]
+mod twins;
 
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{Module, TypeInner};
@@ -17,6 +20,7 @@ use npr_imagespace::picture::PICTURE_WGSL;
 use npr_imagespace::resample::RESAMPLE_WGSL;
 use npr_imagespace::shadow::SHADOW_WGSL;
 use std::mem::{offset_of, size_of};
+use twins::{Except, Twins};
 
 fn validated(source: &str) -> Module {
     let module = naga::front::wgsl::parse_str(source).unwrap_or_else(|e| panic!("{}", e.emit_to_string(source)));
@@ -66,46 +70,100 @@ fn the_parts_stand_alone_and_are_the_whole() {
     validated(&[FORMAT_WGSL, SHADOW_WGSL, FILTER_WGSL].concat());
 }
 
-/// Every function of the WGSL stands in the Rust files, but for helpers of the WGSL that have no Rust form.
+/// WGSL files of the library, whose Rust files have the same stems.
+const LIBRARY: [&str; 21] = [
+    "picture",
+    "format",
+    "format/printed",
+    "format/depth",
+    "format/normal",
+    "format/texel",
+    "region",
+    "shadow",
+    "filter",
+    "filter/normal",
+    "filter/depth",
+    "filter/region",
+    "filter/fused",
+    "filter/inker",
+    "filter/separate",
+    "filter/printed",
+    "morphology",
+    "morphology/flood",
+    "composite",
+    "resample",
+    "artist",
+];
+
+const TWINS: Twins<'_> = Twins {
+    types: &[
+        ("Composite", "InkComposite"),
+        ("DepthCode", "InkDepthCode"),
+        ("DepthPlain", "u32"),
+        ("FilterUniform", "InkFilter"),
+        ("Inker", "InkInker"),
+        ("SeparateUniform", "InkSeparate"),
+        ("Tap", "InkTap"),
+    ],
+    members: &[("AlphaTest", &[("less", "u32"), ("reference", "u32")])],
+    exceptions: &[
+        ("ink_any", Except::Missing, "any() of the four taps' booleans, as a number"),
+        ("ink_bytes", Except::Missing, "Rust reads bytes, where a shader's texture yields floats"),
+        ("ink_depth_decode", Except::Missing, "DepthFormat::decode, which is in f64 and has a case for each format"),
+        ("ink_depth_fraction", Except::Missing, "DepthRange::fraction, which has the range as a type"),
+        ("ink_depth_join2", Except::Missing, "Rust keeps codes as numbers and splits them for targets alone"),
+        ("ink_depth_join4", Except::Missing, "Rust keeps codes as numbers and splits them for targets alone"),
+        ("ink_taps_bends", Except::Missing, "both pairs side by side; ink_tap_bends is one"),
+        ("ink_taps_depth_soft", Except::Missing, "four taps side by side; depth_soft is one"),
+        ("ink_taps_depth_thresholds", Except::Missing, "four taps side by side; ink_tap_depth_threshold is one"),
+        ("ink_taps_normals_differ", Except::Missing, "four taps side by side; ink_tap_normal_differs is one"),
+        ("ink_taps_normals_soft", Except::Missing, "four taps side by side; ink_tap_normal_soft is one"),
+        ("ink_taps_shadows_differ", Except::Missing, "four taps side by side; ink_tap_shadow_differs is one"),
+        ("ink_shadow_differs", Except::Types, "four taps side by side, one in Rust"),
+        ("ink_shadow_region", Except::Parameters, "Rust takes the layout, WGSL the one number of it that is needed"),
+        ("ink_oct_encode", Except::Types, "integers are in f32 in WGSL, where their arithmetic is exact and faster"),
+        ("ink_oct_vector", Except::Types, "integers are in f32 in WGSL, where their arithmetic is exact and faster"),
+        ("ink_oct_load", Except::Types, "integers are in f32 in WGSL, where their arithmetic is exact and faster"),
+        ("ink_oct_decode", Except::Types, "integers are in f32 in WGSL, where their arithmetic is exact and faster"),
+    ],
+};
+
+fn source(path: &str) -> String {
+    let path = format!("{}/src/{path}", env!("CARGO_MANIFEST_DIR"));
+    std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"))
+}
+
 #[test]
-fn functions_have_the_names_of_the_rust_ones() {
-    let mut rust = String::new();
-    let mut folders = vec![std::path::PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/src"))];
-    while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
-            if entry.is_dir() {
-                folders.push(entry);
-            } else if entry.extension().is_some_and(|extension| extension == "rs") {
-                rust += &std::fs::read_to_string(entry).unwrap();
-            }
-        }
+fn functions_have_the_signatures_of_the_rust_ones() {
+    let module = validated(WGSL);
+    let files: Vec<_> = LIBRARY.iter().map(|stem| source(&format!("{stem}.wgsl"))).collect();
+    assert_eq!(files.iter().map(String::len).sum::<usize>(), WGSL.len(), "a file of the library is not compared");
+    let differences: Vec<_> = (LIBRARY.iter().zip(&files))
+        .flat_map(|(stem, wgsl)| TWINS.differences(&module, wgsl, &source(&format!("{stem}.rs"))))
+        .collect();
+    assert!(differences.is_empty(), "{}", differences.join("\n"));
+    for (name, ..) in TWINS.exceptions {
+        assert!(WGSL.contains(&format!("fn {name}(")), "an exception for {name}, which is not in the library");
     }
-    let helpers = [
-        "ink_any",
-        "ink_bytes",
-        "ink_depth_decode",
-        "ink_depth_fraction",
-        "ink_depth_join2",
-        "ink_depth_join4",
-        "ink_depth_pair",
-        "ink_depth_step_soft_tap",
-        "ink_depth_step_tap",
-        "ink_normal_tap",
-        "ink_oct_decode",
-        "ink_shadows_differ",
-        "ink_tap_cross",
-        "ink_tap_diagonal",
-        "ink_taps_bends",
-        "ink_taps_depth_soft",
-        "ink_taps_depth_thresholds",
-        "ink_taps_normals_differ",
-        "ink_taps_normals_soft",
-        "ink_taps_shadows_differ",
-    ];
-    for (_, function) in validated(WGSL).functions.iter() {
-        let name = function.name.as_deref().unwrap();
-        let known = rust.contains(&format!("fn {name}(")) || rust.contains(&format!("fn {name}<"));
-        assert!(known != helpers.contains(&name), "{name}");
+}
+
+#[test]
+fn signatures_that_differ_are_found() {
+    let wgsl = "fn ink_a(x: f32, y: f32) -> f32 { return x - y; } fn ink_b(taps: vec4<f32>) -> u32 { return 1u; }";
+    let module = validated(wgsl);
+    let count = |rust: &str| TWINS.differences(&module, wgsl, rust).len();
+    let right = "fn ink_a(x: f64, y: f32) -> f64 { x - y } fn ink_b(taps: [f64; 4]) -> u32 { 1 }";
+    assert_eq!(count(right), 0);
+    for (what, from, to) in [
+        ("another order", "x: f64, y: f32", "y: f32, x: f64"),
+        ("another name", "y: f32", "z: f32"),
+        ("another type", "x: f64", "x: u32"),
+        ("another number of elements", "[f64; 4]", "[f64; 3]"),
+        ("another result", "-> u32", "-> i32"),
+        ("another function", "ink_b", "ink_c"),
+        ("one parameter more", "y: f32", "y: f32, z: f32"),
+    ] {
+        assert_eq!(count(&right.replace(from, to)), 1, "{what}");
     }
 }
 
@@ -133,7 +191,7 @@ fn uniforms_have_the_layout_of_the_shader() {
         "InkFilter",
         FilterUniform,
         [
-            asked,
+            tests,
             normal_cos2,
             depth_slack,
             depth_base,
@@ -172,12 +230,12 @@ const FULLSCREEN: &str = include_str!("../src/pass/fullscreen.wgsl");
 
 /// The passes' own shaders, as they use them: after the library and the triangle.
 const PASSES: [(&str, &[&str]); 6] = [
-    (concat!(include_str!("../src/pass/fused_taps.wgsl"), include_str!("../src/pass/fused.wgsl")), &["fs_fused"]),
+    (include_str!("../src/pass/fused.wgsl"), &["fs_fused"]),
     (include_str!("../src/pass/separate.wgsl"), &["fs_separate"]),
     (include_str!("../src/pass/printed.wgsl"), &["fs_printed", "fs_inker"]),
     (include_str!("../src/pass/step.wgsl"), &["fs_step"]),
     (include_str!("../src/pass/disc.wgsl"), &["fs_bits", "fs_row", "fs_column", "fs_resolve"]),
-    (include_str!("../src/pass/lay.wgsl"), &["fs_lay"]),
+    (include_str!("../src/pass/composite.wgsl"), &["fs_composite"]),
 ];
 
 #[test]
@@ -188,11 +246,6 @@ fn passes_validate() {
         assert_eq!(found[0], "vs_fullscreen");
         assert_eq!(found[1..], *entry_points);
     }
-    // This one draws no triangle.
-    let strips = concat!(include_str!("../src/pass/fused_taps.wgsl"), include_str!("../src/pass/fused_strips.wgsl"));
-    let module = validated(&[WGSL, strips].concat());
-    let found: Vec<_> = module.entry_points.iter().map(|entry| entry.name.as_str()).collect();
-    assert_eq!(found, ["fused_strips", "fused_border"]);
 }
 
 #[test]
@@ -203,7 +256,7 @@ fn serves_a_pass() {
         @group(0) @binding(2) var g_buffer: texture_2d<u32>;
         @group(0) @binding(3) var painted: texture_2d<f32>;
         fn tap(at: vec2<i32>) -> InkTap {
-            return ink_wide_tap(textureLoad(g_buffer, at, 0).xy);
+            return ink_texel64_tap(textureLoad(g_buffer, at, 0).xy);
         }
         @fragment
         fn fs_lines(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
@@ -218,7 +271,7 @@ fn serves_a_pass() {
         @group(1) @binding(0) var<uniform> u_code: InkDepthCode;
         @fragment
         fn fs_surface(@builtin(position) position: vec4<f32>, @location(0) normal: vec3<f32>) -> @location(0) vec2<u32> {
-            return ink_wide_pack(normal, 7u, 1.0 / position.w, u_code);
+            return ink_texel64_pack(normal, 7u, 1.0 / position.w, u_code);
         }
         @group(2) @binding(0) var sites: texture_2d<u32>;
         @fragment

@@ -1,4 +1,4 @@
-//! A teapot of one's own pass with the crate's lines over it:
+//! A teapot drawn by a render pass of this example, with the crate's lines over it:
 //! `cargo run --release -p npr-outline --features wgpu --example wgpu_lines -- teapot.ppm`.
 
 use glam::dcamera::rh::proj::directx::perspective_infinite_reverse;
@@ -6,8 +6,8 @@ use glam::dcamera::rh::view::look_at_mat4;
 use glam::{DVec2, DVec3};
 use npr_mesh::{edges, embedded};
 use npr_outline::contour_edges;
-use npr_outline::line_look::LineLook;
-use npr_outline::line_pass::{LinePass, LineSource, LineTargets, WINNER_FORMAT, line_records};
+use npr_outline::line_pass::{COVERAGE_FORMAT, LinePass, LineSource, LineTargets, line_records};
+use npr_outline::line_style::LineStyle;
 use npr_outline::segment::LineView;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu::*;
@@ -52,7 +52,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         depth_per_px: DVec2::new(2.0 * (0.5 * FOV_Y_RAD).tan() / SIZE_PX.y, 0.0),
     };
 
-    // The pass of one's own. Depth is reversed: 1 at the near plane, 0 at infinity.
+    // The example's own render pass. Depth is reversed: 1 at the near plane, 0 at infinity.
     let buffer =
         |contents: &[u8], usage| device.create_buffer_init(&BufferInitDescriptor { label: None, contents, usage });
     let positions = buffer(bytemuck::cast_slice(&model.positions), BufferUsages::VERTEX);
@@ -103,9 +103,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let painted = texture(COLOR, TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC);
     let inked = texture(COLOR, TextureUsages::COPY_DST | TextureUsages::COPY_SRC);
     let depth = texture(DEPTH, TextureUsages::TEXTURE_BINDING);
-    let winner = texture(WINNER_FORMAT, TextureUsages::empty());
-    let [painted_view, inked_view, depth_view, winner_view] =
-        [&painted, &inked, &depth, &winner].map(|texture| texture.create_view(&Default::default()));
+    let coverage = texture(COVERAGE_FORMAT, TextureUsages::empty());
+    let [painted_view, inked_view, depth_view, coverage_view] =
+        [&painted, &inked, &depth, &coverage].map(|texture| texture.create_view(&Default::default()));
     let mut encoder = device.create_command_encoder(&Default::default());
     let ops = Operations { load: LoadOp::Clear(Color { r: 0.98, g: 0.97, b: 0.94, a: 1.0 }), store: StoreOp::Store };
     let target = RenderPassColorAttachment { view: &painted_view, depth_slice: None, resolve_target: None, ops };
@@ -129,11 +129,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     // And the lines over a copy of it.
     encoder.copy_texture_to_texture(painted.as_image_copy(), inked.as_image_copy(), SIZE);
-    let look = LineLook { width_px: [2.5; 4], ink: [0.1, 0.1, 0.15, 1.0] };
-    let targets = LineTargets { painted: &painted_view, depth: &depth_view, inked: &inked_view, winner: &winner_view };
-    let line_pass = LinePass::new(&device, COLOR, false);
+    let style = LineStyle { width_px: [2.5; 4], ink: [0.1, 0.1, 0.15, 1.0] };
+    let targets =
+        LineTargets { painted: &painted_view, depth: &depth_view, inked: &inked_view, coverage: &coverage_view };
+    let line_pass = LinePass::new(&device, COLOR, false)?;
     let source = LineSource::Records(&records);
-    line_pass.record(&device, &mut encoder, source, &look, &view, eye.extend(1.0), &targets)?;
+    line_pass.record(&device, &mut encoder, source, &style, &view, eye.extend(1.0), &targets)?;
 
     let (size, usage) = (u64::from(4 * SIZE.width * SIZE.height), BufferUsages::COPY_DST | BufferUsages::MAP_READ);
     let copy = device.create_buffer(&BufferDescriptor { label: None, size, usage, mapped_at_creation: false });

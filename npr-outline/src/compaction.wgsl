@@ -1,5 +1,5 @@
-// Which edges are lines, written close together, and the arguments of the draw call that draws them. Appended to
-// `line.wgsl`. The twin of `ContourEdges::scan`; the order of the lines is not that of the edges.
+// Finds the edges that are lines, writes their numbers to a compact list in no order, and counts them in the arguments
+// of the indirect draw call. The same edges as those of `ContourEdges::scan`.
 
 @group(0) @binding(0) var<uniform> view: OutlineView;
 @group(1) @binding(0) var<storage, read> planes: array<vec4<f32>>;
@@ -23,7 +23,7 @@ fn compact(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocati
     if !is_line && edge < view.edge_count {
         is_line = outline_is_silhouette(planes[2u * edge], planes[2u * edge + 1u], view.local_eye);
     }
-    // One addition to the common counter a workgroup instead of one a line.
+    // One atomic addition to the global counter for each workgroup instead of one for each line.
     var slot = 0u;
     if is_line {
         slot = atomicAdd(&found, 1u);

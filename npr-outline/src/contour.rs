@@ -1,21 +1,22 @@
-//! Which edges are lines: silhouettes for one eye, and the creases and boundaries that are lines for every eye.
+//! Classifies edges as lines: silhouettes for an eye, and creases and boundaries, which are lines for every eye.
 //!
 //! # The test
 //!
-//! An edge is a silhouette where one of its faces is turned towards the eye and the other away from it (Card &
-//! Mitchell 2002, listing 1). The listing multiplies two dot products with the view vector at a vertex and asks for a
+//! An edge is a silhouette where one of its faces is front-facing and the other back-facing (Card & Mitchell 2002,
+//! listing 1). The listing multiplies two dot products with the view vector at a vertex and tests for a
 //! product below zero. That loses an edge whose face is seen exactly edge-on, and, with normals that are not
-//! quite perpendicular to their face, lets the two ends of one edge disagree, which tears the fin.
+//! quite perpendicular to their face, gives the two ends of one edge different results, which leaves half a
+//! fin.
 //!
 //! Here a face is classified as a whole: by the side of its plane on which the eye is. The plane's four numbers
-//! are the same in each of the face's edges, so all of them, and both ends of each, agree by construction, and
-//! silhouettes are closed loops even where a face is within rounding of edge-on. With the eye as a homogeneous
-//! point, a perspective and a parallel view are one formula.
+//! are the same in the records of all its edges, so that all edges and both ends of each agree, and silhouettes are
+//! closed loops even where a face is within rounding of edge-on. With the eye as a homogeneous point, a perspective and
+//! a parallel view are one formula.
 //!
 //! # The records
 //!
-//! 32 bytes an edge: two planes. Edges that are lines for every eye (boundaries, non-manifold edges, creases) come
-//! first, so that a scan touches only those that can change.
+//! A record is two planes, 32 bytes an edge. Edges that are lines for every eye (boundaries, non-manifold edges,
+//! creases) come first, so that a scan tests only the others.
 
 use crate::OutlineError;
 use glam::{DVec3, DVec4, Vec3, Vec4};
@@ -27,11 +28,11 @@ use std::collections::HashMap;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum LineKind {
-    /// It parts what is turned towards the eye from what is turned away.
+    /// It separates a front-facing from a back-facing face.
     Silhouette = 0,
     /// It has one face.
     Boundary = 1,
-    /// Its faces meet at more than the crease angle, or there are more than two of them.
+    /// The angle between its faces is more than the crease angle, or there are more than two of them.
     Crease = 2,
     /// Its faces are of two materials.
     MaterialBorder = 3,
@@ -44,24 +45,24 @@ impl LineKind {
 
 /// The planes of an edge's two faces: `n · p + d` with a unit normal `n`, relative to [`ContourEdges::origin`].
 ///
-/// Faces that are wound oppositely to the first of their part of the surface are turned, so that both are wound alike;
-/// at a boundary the second is the negated first, so that the edge is a silhouette for every eye (the chapter's
-/// step 1b).
+/// The planes of faces that are wound oppositely to the first face of their connected component are negated, so that
+/// both have the same winding; at a boundary the second is the negated first, so that the edge is a silhouette for
+/// every eye (the chapter's step 1b).
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub struct EdgePlanes {
-    /// Of the first face: nx, ny, nz, d.
+    /// The plane of the first face: nx, ny, nz, d.
     pub plane0: [f32; 4],
-    /// Of the second face.
+    /// The plane of the second face.
     pub plane1: [f32; 4],
 }
 
 const _: () = assert!(size_of::<EdgePlanes>() == 32);
 
-/// What makes an edge a line besides being a silhouette.
+/// Which edges are lines besides silhouettes and boundaries.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContourOptions {
-    /// An edge whose faces meet at more than this angle is a crease. 0..=π.
+    /// An edge with a larger angle between its faces is a crease; radians, 0..=π.
     pub crease_angle_rad: f32,
     /// Whether edges between two materials are lines.
     pub material_borders: bool,
@@ -77,35 +78,37 @@ impl Default for ContourOptions {
 /// The edges of a model that can be lines, ready for scanning.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ContourEdges {
-    /// What the planes are relative to: near the model, so that their last number keeps its precision.
+    /// The origin of the planes' coordinates: the centre of the model's bounds, so that d keeps its precision in f32.
     pub origin: Vec3,
-    /// Per edge its two planes.
+    /// The two planes of each edge.
     pub planes: Vec<EdgePlanes>,
-    /// Per edge its two vertices, in the order in which the first face runs over them, turned if its plane is.
+    /// The two vertices of each edge in the winding order of the first face, reversed where its plane is negated.
     pub ends: Vec<[u32; 2]>,
-    /// Per edge [`LineKind`] (as a number, in the lower 8 bits) that it has when it is not a silhouette, and flags.
+    /// For each edge the [`LineKind`] that it has when it is not a silhouette, as a number in the lower 8 bits, and
+    /// flags.
     pub traits: Vec<u32>,
-    /// Per edge its first face.
+    /// The first face of each edge.
     pub first_face: Vec<u32>,
-    /// The first so many edges are lines for every eye.
+    /// The number of edges that are lines for every eye; they come first.
     pub always: usize,
 }
 
 /// In [`ContourEdges::traits`]: the edge is a line for every eye.
 pub const TRAIT_ALWAYS: u32 = 1 << 8;
-/// In [`ContourEdges::traits`]: all faces of the edge are cut out by alpha, so the line is seen only where they are.
+/// In [`ContourEdges::traits`]: all faces of the edge are cut out by alpha, so that the line is visible only where they
+/// are.
 pub const TRAIT_CUT_OUT: u32 = 1 << 9;
 
-/// Sorts the edges of a model by whether they are lines for every eye, and makes their planes.
+/// Makes the records of a model's edges, those that are lines for every eye first.
 ///
 /// `edges`: of this model, best found with [`npr_mesh::edges::EdgeOptions::skip_redundant`]. Where the model's
-/// `face_polygon` is empty each face is a polygon by itself; where its `face_material` is, faces are opaque.
+/// `face_polygon` is empty each face is a polygon; where its `face_material` is, faces are opaque.
 ///
-/// A face of zero area borrows the plane of its neighbour over its longest edge, so that a sliver between two
-/// faces passes their silhouette and their crease on instead of swallowing them.
+/// A face of zero area takes the plane of the neighbour across its longest edge, so that a sliver between two faces
+/// does not hide their silhouette or crease.
 ///
-/// A folded polygon's triangles ([`Edges::folds`]) each have their own plane, so that the contour is closed where some of
-/// them are turned away; whether its edges are creases, its Newell normal tells.
+/// A folded polygon's triangles ([`Edges::folds`]) each have their own plane, so that the contour is closed where some
+/// of them are back-facing; for creases the polygon's Newell normal is used.
 ///
 /// # Errors
 /// [`OutlineError::CreaseAngle`].
@@ -116,18 +119,18 @@ pub fn contour_edges(model: &Model, edges: &Edges, options: &ContourOptions) -> 
     }
     let origin = model.bounds().map_or(Vec3::ZERO, |(low, high)| low.midpoint(high));
     let cos_crease = angle_rad.cos();
-    let lent = borrowed_normals(&model.positions, edges);
-    let turned = turned_faces(edges, &model.face_polygon);
-    let is_turned = |face: u32| turned.get(face as usize) == Some(&true);
+    let borrowed = borrowed_normals(&model.positions, edges);
+    let flipped = flipped_faces(edges, &model.face_polygon);
+    let is_flipped = |face: u32| flipped.get(face as usize) == Some(&true);
     let cut_out: Vec<bool> = model.materials.iter().map(|m| matches!(m.alpha_mode, AlphaMode::Mask { .. })).collect();
-    let wound = |normal: Vec3, face: u32| if is_turned(face) { -normal } else { normal };
+    let wound = |normal: Vec3, face: u32| if is_flipped(face) { -normal } else { normal };
     let normal_of = |face: u32| {
         let own = edges.face_normals[face as usize];
-        wound(if own == Vec3::ZERO { lent.get(&face).copied().unwrap_or(Vec3::ZERO) } else { own }, face)
+        wound(if own == Vec3::ZERO { borrowed.get(&face).copied().unwrap_or(Vec3::ZERO) } else { own }, face)
     };
     let points = plane_points(model);
     let folded = folded_normals(model, edges);
-    // Per face, since each is in three edges.
+    // Computed once for each face, since each is in three edges.
     let planes: Vec<[f32; 4]> = (0..edges.face_normals.len() as u32)
         .map(|face| {
             let (normal, on) = match folded.get(&face) {
@@ -144,10 +147,10 @@ pub fn contour_edges(model: &Model, edges: &Edges, options: &ContourOptions) -> 
         let [x, y, z, _] = planes[face as usize];
         if folded.is_empty() { Vec3::new(x, y, z) } else { normal_of(face) }
     };
-    // Only on a surface with one side are two faces left that do not fit.
+    // After flipping, two faces with different windings remain only on non-orientable surfaces.
     let fits = |edge: &Edge| {
         let [first, second] = edge.faces();
-        edge.kind() != EdgeKind::TwoFace || edge.wound_oppositely() == (is_turned(first) != is_turned(second))
+        edge.kind() != EdgeKind::TwoFace || edge.wound_oppositely() == (is_flipped(first) != is_flipped(second))
     };
     let line_of = |edge: &Edge| match edge.kind() {
         EdgeKind::Boundary => Some(LineKind::Boundary),
@@ -180,11 +183,11 @@ pub fn contour_edges(model: &Model, edges: &Edges, options: &ContourOptions) -> 
     // Faces without material are opaque.
     let any_cut_out = !model.face_material.is_empty() && cut_out.contains(&true);
     let of_edges = edges.edges.iter().zip(lines).map(|(edge, line)| (edge, line, fits(edge)));
-    // A polygon's triangles are wound alike, and a fold is a silhouette or nothing.
+    // A polygon's triangles are wound consistently, and a fold is a line only where it is a silhouette.
     let of_folds = edges.folds.iter().map(|fold| (fold, NO_LINE, true));
     let (mut next_always, mut next) = (0, always);
     for (edge, line, fits) in of_edges.chain(of_folds) {
-        let place = if line == NO_LINE { &mut next } else { &mut next_always };
+        let position = if line == NO_LINE { &mut next } else { &mut next_always };
         let [first, second] = edge.faces();
         let mut flags = if line == NO_LINE { 0 } else { u32::from(line) | TRAIT_ALWAYS };
         if any_cut_out && is_cut_out(first) && is_cut_out(second) {
@@ -197,16 +200,16 @@ pub fn contour_edges(model: &Model, edges: &Edges, options: &ContourOptions) -> 
             _ => planes[second as usize].map(|x| -x),
         };
         let [from, to] = edge.ends;
-        contours.planes[*place] = EdgePlanes { plane0, plane1 };
-        contours.ends[*place] = if is_turned(first) { [to, from] } else { [from, to] };
-        contours.traits[*place] = flags;
-        contours.first_face[*place] = first;
-        *place += 1;
+        contours.planes[*position] = EdgePlanes { plane0, plane1 };
+        contours.ends[*position] = if is_flipped(first) { [to, from] } else { [from, to] };
+        contours.traits[*position] = flags;
+        contours.first_face[*position] = first;
+        *position += 1;
     }
     Ok(contours)
 }
 
-/// The normals of those triangles of folded polygons that have one: the others keep their polygon's plane.
+/// The normals of those triangles of folded polygons that have an area; the others keep their polygon's plane.
 fn folded_normals(model: &Model, edges: &Edges) -> HashMap<u32, Vec3> {
     let faces = edges.folds.iter().flat_map(Edge::faces);
     let normals = faces.map(|face| (face, triangle_normal(&model.positions, &model.faces[face as usize])));
@@ -217,8 +220,8 @@ fn first_corner(model: &Model, face: u32) -> DVec3 {
     model.positions[model.faces[face as usize][0] as usize].as_dvec3()
 }
 
-/// Per face a point of its plane, the same for all of its edges: of a polygon, which may be warped, the mean of its
-/// triangles' corners. Empty where each face is a polygon by itself: then it is [`first_corner`].
+/// For each face a point of its plane, the same for all of its edges: of a polygon, which may be warped, the mean of
+/// its triangles' corners. Empty where each face is a polygon; then the point is [`first_corner`].
 fn plane_points(model: &Model) -> Vec<DVec3> {
     let mut points = Vec::with_capacity(model.face_polygon.len());
     for polygon in model.face_polygon.chunk_by(|a, b| a == b) {
@@ -248,9 +251,9 @@ fn borrowed_normals(positions: &[Vec3], edges: &Edges) -> HashMap<u32, Vec3> {
             }
         }
     }
-    // Slivers may lean on slivers: each is asked once, and what is found is handed back along the way. A ring of them, and
-    // what leans on it, has none.
-    let mut lent = HashMap::<u32, Vec3>::new();
+    // The neighbour of a sliver may be a sliver too: chains are followed to the first face with an area, and each face
+    // of the chain gets its normal. Chains that end in a cycle have none.
+    let mut borrowed = HashMap::<u32, Vec3>::new();
     let mut way = Vec::new();
     for &face in lenders.keys() {
         let mut at = face;
@@ -259,53 +262,53 @@ fn borrowed_normals(positions: &[Vec3], edges: &Edges) -> HashMap<u32, Vec3> {
             if own != Vec3::ZERO {
                 break own;
             }
-            if let Some(&known) = lent.get(&at) {
+            if let Some(&known) = borrowed.get(&at) {
                 break known;
             }
             let Some(&(_, lender, oppositely)) = lenders.get(&at) else { break Vec3::ZERO };
-            // Until it is known: whoever comes by again has gone round.
-            lent.insert(at, Vec3::ZERO);
+            // Marks the face as visited, which ends cycles.
+            borrowed.insert(at, Vec3::ZERO);
             way.push((at, oppositely));
             at = lender;
         };
         while let Some((at, oppositely)) = way.pop() {
             found = if oppositely { -found } else { found };
-            lent.insert(at, found);
+            borrowed.insert(at, found);
         }
     }
-    lent.retain(|_, normal| *normal != Vec3::ZERO);
-    lent
+    borrowed.retain(|_, normal| *normal != Vec3::ZERO);
+    borrowed
 }
 
-/// Per face whether it is wound oppositely to the first face of its part of the surface; empty if none is.
+/// For each face whether it is wound oppositely to the first face of its connected component; empty if none is.
 ///
-/// A face as a whole is turned, not its plane in this edge or that: an eye exactly in the plane counts as in front of
-/// it, in front of the negated plane too, and a face must be on one side for all of its edges or their loop is open.
-fn turned_faces(edges: &Edges, face_polygon: &[u32]) -> Vec<bool> {
+/// The plane of a face is negated in all its edges or in none: an eye exactly in the plane is in front of the plane and
+/// of the negated plane, so that a mixture would leave loops of silhouettes open.
+fn flipped_faces(edges: &Edges, face_polygon: &[u32]) -> Vec<bool> {
     let two_face = || edges.edges.iter().filter(|edge| edge.kind() == EdgeKind::TwoFace);
     if !two_face().any(|edge| edge.wound_oppositely()) {
         return Vec::new();
     }
-    // A union-find forest; each face knows a face nearer to the root and whether it is wound oppositely to that.
+    // A union-find forest: for each face its parent and whether the two are wound oppositely.
     let mut above: Vec<(u32, bool)> = (0..edges.face_normals.len() as u32).map(|face| (face, false)).collect();
     fn root(above: &mut [(u32, bool)], mut face: u32) -> (u32, bool) {
-        let mut turned = false;
+        let mut flipped = false;
         loop {
             let (parent, from_parent) = above[face as usize];
             if parent == face {
-                return (face, turned);
+                return (face, flipped);
             }
             let (next, from_next) = above[parent as usize];
-            // A root is its own parent, not turned against itself.
+            // A root is its own parent, with the same winding.
             let step = (next, from_parent != from_next);
             above[face as usize] = step;
-            (face, turned) = (step.0, turned != step.1);
+            (face, flipped) = (step.0, flipped != step.1);
         }
     }
     let mut join = |faces: [u32; 2], oppositely: bool| {
-        let [(a, a_turned), (b, b_turned)] = faces.map(|face| root(&mut above, face));
+        let [(a, a_flipped), (b, b_flipped)] = faces.map(|face| root(&mut above, face));
         if a != b {
-            above[a.max(b) as usize] = (a.min(b), (a_turned != b_turned) != oppositely);
+            above[a.max(b) as usize] = (a.min(b), (a_flipped != b_flipped) != oppositely);
         }
     };
     // The diagonals within a polygon are not among the edges.
@@ -320,7 +323,7 @@ fn turned_faces(edges: &Edges, face_polygon: &[u32]) -> Vec<bool> {
     (0..above.len() as u32).map(|face| root(&mut above, face).1).collect()
 }
 
-/// On which side of a plane a (homogeneous) eye is: positive in front, negative behind, times its distance.
+/// The signed distance of a homogeneous eye from a plane: positive in front, negative behind.
 ///
 /// `eye`: a point with w = 1, or for a parallel view the direction to the viewer with w = 0, relative to
 /// [`ContourEdges::origin`]. The sum is in this order so that the WGSL twin gives the same bits.
@@ -329,20 +332,27 @@ pub fn outline_facing(plane: [f32; 4], eye: Vec4) -> f32 {
     plane[0] * eye.x + plane[1] * eye.y + plane[2] * eye.z + plane[3] * eye.w
 }
 
-/// Whether exactly one of the two faces is turned towards the eye. A face seen exactly edge-on counts as turned
-/// towards it, so that no loop of silhouettes is interrupted there.
+/// Whether exactly one of the two faces is front-facing. A face seen exactly edge-on is front-facing, so that loops of
+/// silhouettes are not interrupted there.
 #[inline]
 pub fn outline_is_silhouette(planes: &EdgePlanes, eye: Vec4) -> bool {
     (outline_facing(planes.plane0, eye) >= 0.0) != (outline_facing(planes.plane1, eye) >= 0.0)
 }
 
+/// The kind of line that an edge with these traits is for an eye, if it is a line. `eye` as for [`outline_facing`].
+fn outline_kind(traits: u32, planes: &EdgePlanes, eye: Vec4) -> LineKind {
+    let own = LineKind::ALL[(traits & 3) as usize];
+    // A boundary's planes make it a silhouette for every eye, but its kind is that of a boundary.
+    if own != LineKind::Boundary && outline_is_silhouette(planes, eye) { LineKind::Silhouette } else { own }
+}
+
 impl ContourEdges {
-    /// The largest buffer that finding these edges' lines on a device takes, bytes.
+    /// The size of the largest buffer for finding these edges' lines on a device, bytes.
     pub fn device_bytes(&self, positions: &[Vec3]) -> u64 {
         size_of_val(&self.planes[..]).max(size_of_val(positions)) as u64
     }
 
-    /// The eye in the planes' own coordinates. `eye` is a world-space point with w = 1 or direction with w = 0.
+    /// The eye in the coordinates of the planes. `eye` is a world-space point with w = 1 or direction with w = 0.
     pub fn local_eye(&self, eye: DVec4) -> Vec4 {
         (eye - self.origin.as_dvec3().extend(0.0) * eye.w).as_vec4()
     }
@@ -350,13 +360,13 @@ impl ContourEdges {
     /// Writes the numbers of all edges that are lines for this eye into `lines`, ascending.
     ///
     /// `eye`: world space, a point with w = 1, or for a parallel view the direction to the viewer with w = 0.
-    /// `lines` is emptied first; at most as many as there are edges.
+    /// `lines` is cleared first and has at most one entry for each edge.
     pub fn scan(&self, eye: DVec4, lines: &mut Vec<u32>) {
         let eye = self.local_eye(eye);
         lines.clear();
         lines.extend(0..self.always as u32);
-        // Two passes over blocks: the test without branches, which the compiler turns into vector code, then
-        // the few hits. Only about one edge in fifty of a scanned model is a hit.
+        // Two passes over each block: the test without branches, which the compiler vectorises, then the hits. Only
+        // about one edge in fifty of a scanned model is a hit.
         const BLOCK: usize = 64;
         for (block_number, block) in self.planes[self.always..].chunks(BLOCK).enumerate() {
             let mut hits = 0u64;
@@ -371,7 +381,7 @@ impl ContourEdges {
         }
     }
 
-    /// Unit normals of an edge's faces, wound alike; the second is zero at a boundary.
+    /// Unit normals of an edge's faces for the same winding; the second is zero at a boundary.
     pub fn normals(&self, edge: usize) -> [Vec3; 2] {
         let EdgePlanes { plane0, plane1 } = self.planes[edge];
         let normal = |plane: [f32; 4]| Vec3::new(plane[0], plane[1], plane[2]);
@@ -382,20 +392,15 @@ impl ContourEdges {
     /// What kind of line an edge is for this eye (in the planes' own coordinates, [`ContourEdges::local_eye`]),
     /// or `None` if it is none.
     pub fn kind(&self, edge: usize, eye: Vec4) -> Option<LineKind> {
-        let traits = self.traits[edge];
-        let own = LineKind::ALL[(traits & 3) as usize];
-        // A boundary's planes make it a silhouette for every eye, but it is not one.
-        if own != LineKind::Boundary && outline_is_silhouette(&self.planes[edge], eye) {
-            Some(LineKind::Silhouette)
-        } else {
-            (traits & TRAIT_ALWAYS != 0).then_some(own)
-        }
+        let (traits, planes) = (self.traits[edge], &self.planes[edge]);
+        let is_line = traits & TRAIT_ALWAYS != 0 || outline_is_silhouette(planes, eye);
+        is_line.then(|| outline_kind(traits, planes, eye))
     }
 }
 
-/// The side of a triangle's plane on which a (homogeneous) eye is, in f64 from its corners: the truth that the
-/// records are measured against. Positive in front.
-pub fn facing_exact([a, b, c]: [Vec3; 3], eye: DVec4) -> f64 {
+/// The side of a triangle's plane on which a homogeneous eye is, in f64 from its corners: positive in front. The
+/// reference that records are compared with.
+pub(crate) fn facing_exact([a, b, c]: [Vec3; 3], eye: DVec4) -> f64 {
     let [a, b, c] = [a.as_dvec3(), b.as_dvec3(), c.as_dvec3()];
     (b - a).cross(c - a).dot(eye.truncate() - a * eye.w)
 }

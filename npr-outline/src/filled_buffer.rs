@@ -1,9 +1,9 @@
-//! Buffers with contents, also from a device that gives none.
+//! Creates buffers with contents without panicking on a lost device.
 
-/// A buffer of some bytes, filled up with zeros to a multiple of four.
+/// Creates a buffer with contents, padded with zeros to a multiple of four bytes.
 ///
-/// `wgpu::util::DeviceExt::create_buffer_init` panics where the device is lost or has no memory left. Here the buffer is
-/// invalid then, as with `create_buffer`, and the device reports it to whoever listens for its errors.
+/// `wgpu::util::DeviceExt::create_buffer_init` panics where the device is lost or has no memory left. Here the buffer
+/// is invalid then, as with `create_buffer`, and the device reports the error to its error scopes and handlers.
 pub fn filled_buffer(device: &wgpu::Device, label: &str, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
     let size = (contents.len() as u64).next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT);
     let is_filled = size > 0;

@@ -1,4 +1,4 @@
-//! The chapter's fins on wgpu: see [`crate::fin_printed`].
+//! Draws the fins of Card & Mitchell 2002 on wgpu: see [`crate::fin_printed`].
 //!
 //! Needs the scene drawn before, with its depth buffer, `Depth32Float` and reversed. Fins are solid ink without
 //! antialiasing, as in 2002.
@@ -7,8 +7,15 @@ use crate::OutlineError;
 use crate::filled_buffer::filled_buffer;
 use crate::fin_printed::{FIN_PRINTED_WGSL, FinDepth, FinView, PrintedFins};
 use crate::normal_format::{NORMAL_FORMAT_WGSL, NormalFormat};
+use crate::shader::assemble;
+use crate::target::{check_color_format, check_reversed, check_view, is_same, size};
 
-pub(crate) const FIN_PASS_WGSL: &str = include_str!("fin_pass.wgsl");
+const PASS: (&str, &str) = ("fin_pass.wgsl", include_str!("fin_pass.wgsl"));
+
+/// The whole shader of the pass.
+pub(crate) fn wgsl() -> String {
+    assemble(&[("normal_format.wgsl", NORMAL_FORMAT_WGSL), ("fin_printed.wgsl", FIN_PRINTED_WGSL), PASS])
+}
 
 /// `FinPrintedView` of `fin_printed.wgsl`.
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -39,11 +46,21 @@ pub struct FinPass {
     layout: wgpu::BindGroupLayout,
     pipeline: wgpu::RenderPipeline,
     format: NormalFormat,
+    color_format: wgpu::TextureFormat,
 }
 
 impl FinPass {
-    /// Makes the pipeline for a colour target of `color_format` and face normals stored in `format`.
-    pub fn new(device: &wgpu::Device, color_format: wgpu::TextureFormat, format: NormalFormat) -> Self {
+    /// Makes the pipeline for a colour target of `color_format`, of floats and without sRGB, and face normals stored in
+    /// `format`.
+    ///
+    /// # Errors
+    /// [`OutlineError::SrgbTarget`]; [`OutlineError::ViewFormat`] for a format that is no colour of floats.
+    pub fn new(
+        device: &wgpu::Device,
+        color_format: wgpu::TextureFormat,
+        format: NormalFormat,
+    ) -> Result<Self, OutlineError> {
+        check_color_format(device, color_format)?;
         let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("printed fins"),
             entries: &[wgpu::BindGroupLayoutEntry {
@@ -59,7 +76,7 @@ impl FinPass {
         });
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("printed fins"),
-            source: wgpu::ShaderSource::Wgsl([NORMAL_FORMAT_WGSL, FIN_PRINTED_WGSL, FIN_PASS_WGSL].concat().into()),
+            source: wgpu::ShaderSource::Wgsl(wgsl().into()),
         });
         let (vertex_format, entry_point) = match format {
             NormalFormat::F32 => (wgpu::VertexFormat::Float32x3, "vs_fin"),
@@ -110,10 +127,10 @@ impl FinPass {
             multiview_mask: None,
             cache: None,
         });
-        Self { layout, pipeline, format }
+        Ok(Self { layout, pipeline, format, color_format })
     }
 
-    /// Sends fins to the device: [`NormalFormat::bytes_per_fin`] and 24 bytes of indices each.
+    /// Uploads fins: [`NormalFormat::bytes_per_fin`] and 24 bytes of indices each.
     ///
     /// # Errors
     /// [`OutlineError::TooManyEdges`] where a buffer would be larger than the device allows.
@@ -129,7 +146,7 @@ impl FinPass {
             .vertices
             .iter()
             .map(|vertex| {
-                let ([x, y, z], [u, v, w]) = (vertex.position.to_array(), vertex.smooth.to_array());
+                let ([x, y, z], [u, v, w]) = (vertex.position.to_array(), vertex.smooth_normal.to_array());
                 [x, y, z, u, v, w]
             })
             .collect();
@@ -148,11 +165,17 @@ impl FinPass {
 
     /// Records drawing a frame's fins.
     ///
+    /// - `view`: with reversed depth.
     /// - `ink`: display-referred colour and alpha, 0..=1, written as they are.
-    /// - `color`: of the format that the pass was made for; kept outside the fins.
-    /// - `depth`: the scene's, `Depth32Float`, reversed, renderable, of the same size; only read.
+    /// - `color`: of the format that the pass was made for, `RENDER_ATTACHMENT`; kept outside the fins.
+    /// - `depth`: the scene's, `Depth32Float`, reversed, `RENDER_ATTACHMENT`, of the same size; only read.
     ///
-    /// `fins` must come from this pass or one of the same normal format.
+    /// Both are views of the first level of textures with one sample a pixel. `fins` must come from this pass or one of
+    /// the same normal format.
+    ///
+    /// # Errors
+    /// If a texture is not as said; [`OutlineError::StandardDepth`], where the matrix can be judged. Nothing is
+    /// recorded then.
     #[expect(clippy::too_many_arguments, reason = "each is a thing of its own; a struct would only rename them")]
     pub fn record(
         &self,
@@ -163,9 +186,14 @@ impl FinPass {
         ink: [f32; 4],
         color: &wgpu::TextureView,
         depth: &wgpu::TextureView,
-    ) {
+    ) -> Result<(), OutlineError> {
+        check_reversed(&view.clip_from_world, None)?;
+        let needed = "the format that the pass was made for";
+        check_view("a target", color, needed, |format| is_same(format, self.color_format), None)?;
+        let is_depth = |format| format == wgpu::TextureFormat::Depth32Float;
+        check_view("the scene's depth", depth, "Depth32Float", is_depth, Some(size(color)))?;
         if fins.index_count == 0 {
-            return;
+            return Ok(());
         }
         let uniform = FinUniform::new(view, ink);
         let usage = wgpu::BufferUsages::UNIFORM;
@@ -197,6 +225,7 @@ impl FinPass {
         pass.set_vertex_buffer(1, fins.normals.slice(..));
         pass.set_index_buffer(fins.indices.slice(..), wgpu::IndexFormat::Uint32);
         pass.draw_indexed(0..fins.index_count, 0, 0..1);
+        Ok(())
     }
 }
 
@@ -204,7 +233,7 @@ impl FinUniform {
     fn new(view: &FinView, ink: [f32; 4]) -> Self {
         let (near, far, as_printed) = match view.depth {
             FinDepth::Printed { near, far } => (near as f32, far as f32, 1),
-            // Any two that differ keep the unused branch finite.
+            // Two different values keep the unused branch finite.
             FinDepth::Eye => (0.0, 1.0, 0),
         };
         Self {

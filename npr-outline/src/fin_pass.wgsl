@@ -1,8 +1,8 @@
-// Entry points of the fin pass; appended to `normal_format.wgsl` and `fin_printed.wgsl`.
+// Entry points of the fin pass.
 
 @group(0) @binding(0) var<uniform> view: FinPrintedView;
 
-// Normals of three numbers: floats, or the first three of a 4-tuple.
+// For normals of three components: floats, or the first three of a 4-tuple.
 @vertex
 fn vs_fin(
     @location(0) position: vec3<f32>,

@@ -1,23 +1,23 @@
-//! Fins as the 2002 chapter has them: a quadrilateral for every edge, that the vertex shader widens where the edge is a
-//! silhouette (Card & Mitchell 2002, "Rendering Outlines", figure 2 and listing 1).
+//! Fins as printed: a quadrilateral for each edge that the vertex shader widens where the edge is a silhouette (Card &
+//! Mitchell 2002, "Rendering Outlines", figure 2 and listing 1).
 //!
-//! Two of a fin's four corners stick to the edge, two are displaced along the smooth normal. Hidden lines fail the
-//! depth test against the scene, which is drawn before. [`crate::segment`] is the form that mends what follows; this
-//! one is kept to be measured against. In f64, the twin of `fin_printed.wgsl`.
+//! Two of a fin's four corners stay on the edge, two are displaced along the smooth normal. Hidden lines fail the
+//! depth test against the scene, which is drawn before. [`crate::segment`] corrects the faults below; this form is
+//! kept for comparison. In f64, the twin of `fin_printed.wgsl`.
 //!
-//! # Where listing, text and what was wanted disagree
+//! # Contradictions and faults
 //!
 //! - *Width from clip z.* The listing takes a vertex' depth from the third row of the view-projection matrix, which is
 //!   clip z, z = f / (f − n) · (w − n) in the chapter's Direct3D: lines grow thinner towards the near plane and have
 //!   no width there. [`FinDepth::Printed`] is that, [`FinDepth::Eye`] takes w instead.
 //! - *The text's reversal.* "If the value is less than zero, the vertex offset is set to zero" is the reverse of the
 //!   listing and of step 6e. The listing is followed: below zero, the offset is one.
-//! - *Products of exactly zero*, of a face seen edge-on or one without area, are not drawn; and since the test is made
-//!   for each vertex, quantised or rounded normals let the two ends of one edge disagree, which tears the fin.
-//! - *Creases are never drawn*, though the text counts them among the outline: all but silhouettes and boundaries
-//!   stay without width.
-//! - A fin that points at the viewer is seen edge-on (the chapter says so of boundaries), and the width on the screen
-//!   is as displaced only where the smooth normal is perpendicular to the view.
+//! - *Products of exactly zero*, of a face seen edge-on or one without area, are not drawn; and since each vertex is
+//!   tested by itself, rounded normals can give the two ends of one edge different results, which leaves half a fin.
+//! - *Creases are never drawn*, though the text counts them among the outline: only silhouettes and boundaries
+//!   have width.
+//! - A fin that points at the viewer is seen edge-on (the chapter says so of boundaries): the width on the screen is
+//!   that of the displacement only where the smooth normal is perpendicular to the view.
 
 use crate::normal_format::NormalFormat;
 use glam::{DMat4, DVec2, DVec3, DVec4, Vec3};
@@ -30,13 +30,13 @@ pub const FIN_PRINTED_WGSL: &str = include_str!("fin_printed.wgsl");
 /// One corner of a fin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrintedFin {
-    /// World space.
+    /// Position, world space.
     pub position: Vec3,
-    /// The smooth normal at a displaced corner, unit; zero at one that sticks to the edge.
-    pub smooth: Vec3,
-    /// Of the edge's first face, unit, or zero if that has no area.
+    /// The unit smooth normal at a displaced corner; zero at a corner on the edge.
+    pub smooth_normal: Vec3,
+    /// The unit normal of the edge's first face; zero if that has no area.
     pub n_face0: Vec3,
-    /// Of the second face; at a boundary the negated first.
+    /// The unit normal of the second face; at a boundary the negated first.
     pub n_face1: Vec3,
 }
 
@@ -52,8 +52,8 @@ pub struct PrintedFins {
 
 /// Makes a fin for every edge of a model.
 ///
-/// The smooth normal of an end is the sum of the model's shading normals at its position, normalised. Of an edge with
-/// more than two faces the first two count; where those two are wound oppositely, the second's normal is turned.
+/// The smooth normal of an end is the sum of the model's shading normals at its position, normalised. For an edge with
+/// more than two faces the first two are used; where those two are wound oppositely, the second normal is negated.
 pub fn printed_fins(model: &Model, edges: &Edges) -> PrintedFins {
     let mut smooth = vec![Vec3::ZERO; model.positions.len()];
     for (normal, &at) in model.normals.iter().zip(&edges.representative) {
@@ -73,8 +73,8 @@ pub fn printed_fins(model: &Model, edges: &Edges) -> PrintedFins {
         let [a, b] = edge.ends.map(|v| v as usize);
         let base = fins.vertices.len() as u32;
         for (end, displaced) in [(a, false), (b, false), (b, true), (a, true)] {
-            let smooth = if displaced { smooth[end].normalize_or_zero() } else { Vec3::ZERO };
-            fins.vertices.push(PrintedFin { position: model.positions[end], smooth, n_face0, n_face1 });
+            let smooth_normal = if displaced { smooth[end].normalize_or_zero() } else { Vec3::ZERO };
+            fins.vertices.push(PrintedFin { position: model.positions[end], smooth_normal, n_face0, n_face1 });
         }
         fins.indices.extend([0, 1, 2, 0, 2, 3].map(|corner| base + corner));
     }
@@ -82,7 +82,7 @@ pub fn printed_fins(model: &Model, edges: &Edges) -> PrintedFins {
 }
 
 impl PrintedFins {
-    /// The fins as a shader sees them whose face normals are stored in a format.
+    /// The fins with face normals rounded as by a format.
     pub fn quantised(&self, format: NormalFormat) -> Self {
         let mut fins = self.clone();
         for vertex in &mut fins.vertices {
@@ -93,7 +93,7 @@ impl PrintedFins {
     }
 }
 
-/// What a fin's width grows with.
+/// The depth that a fin's displacement is proportional to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FinDepth {
     /// Clip z of a Direct3D projection of 2002, 0 at the near plane and w at the far plane, as listing 1 takes it.
@@ -123,12 +123,12 @@ pub struct FinView {
 
 /// Whether the listing displaces a vertex: 1 where the product of the two normals' dot products with the view vector,
 /// from the eye to the vertex, is below zero, and 0 elsewhere.
-pub fn fin_printed_flag(position: DVec3, n_face0: DVec3, n_face1: DVec3, eye: DVec3) -> f64 {
+fn fin_printed_flag(position: DVec3, n_face0: DVec3, n_face1: DVec3, eye: DVec3) -> f64 {
     let view = (position - eye).normalize_or_zero();
     if view.dot(n_face0) * view.dot(n_face1) < 0.0 { 1.0 } else { 0.0 }
 }
 
-/// The depth at a vertex whose clip-space w is given.
+/// The depth at a vertex with clip-space w.
 pub fn fin_printed_depth(w: f64, depth: FinDepth) -> f64 {
     match depth {
         FinDepth::Printed { near, far } => far / (far - near) * (w - near),
@@ -137,12 +137,12 @@ pub fn fin_printed_depth(w: f64, depth: FinDepth) -> f64 {
 }
 
 /// Listing 1: a vertex in clip space, displaced along its smooth normal where its edge is a silhouette.
-pub fn fin_printed_vertex(vertex: &PrintedFin, view: &FinView) -> DVec4 {
+fn fin_printed_vertex(vertex: &PrintedFin, view: &FinView) -> DVec4 {
     let position = vertex.position.as_dvec3();
     let flag = fin_printed_flag(position, vertex.n_face0.as_dvec3(), vertex.n_face1.as_dvec3(), view.eye);
     let clip = view.clip_from_world * position.extend(1.0);
     let thickness = fin_printed_depth(clip.w, view.depth) * view.thickness;
-    view.clip_from_world * (position + vertex.smooth.as_dvec3() * (thickness * flag)).extend(1.0)
+    view.clip_from_world * (position + vertex.smooth_normal.as_dvec3() * (thickness * flag)).extend(1.0)
 }
 
 /// The triangles, in clip space, of all fins that have any width.
@@ -163,7 +163,7 @@ pub fn fin_printed_triangles(fins: &PrintedFins, view: &FinView) -> Vec<[DVec4; 
 /// Visits the pixels that triangles cover and the scene does not hide, as a graphics processor would without
 /// antialiasing: each pixel whose centre a triangle covers (centres on a border belong to the triangle on whose
 /// left or top it is) and where the triangle's depth is at least the scene's. Both windings are drawn. A pixel is
-/// visited once for each triangle.
+/// visited once for each triangle that covers it.
 ///
 /// - `triangles`: clip space, z reversed; cut at the near plane, and beyond the far plane nothing is visited.
 /// - `viewport`: width and height in px.
@@ -179,7 +179,7 @@ pub fn rasterise(
     let viewport_px = DVec2::new(f64::from(viewport[0]), f64::from(viewport[1]));
     for triangle in triangles {
         let (corners, count) = clip_near(triangle);
-        // Not before the eye, in a projection without a near plane.
+        // Without a near plane a corner may lie behind the eye.
         if corners[..count].iter().any(|corner| corner.w <= 0.0) {
             continue;
         }
@@ -193,7 +193,7 @@ pub fn rasterise(
     }
 }
 
-/// What lies before the near plane: the first so many of the corners, 0 or 3 or 4.
+/// The part of a triangle in front of the near plane: corners, of which the first 0, 3 or 4 are valid.
 fn clip_near(triangle: &[DVec4; 3]) -> ([DVec4; 4], usize) {
     let mut kept = [DVec4::W; 4];
     let mut count = 0;
@@ -233,7 +233,7 @@ fn rasterise_one(
     let takes_border = sides.map(|(from, to)| to.y < from.y || (to.y == from.y && to.x > from.x));
     let low = a.min(b).min(c);
     let high = a.max(b).max(c);
-    // Casts from f64 saturate, so what lies outside the picture makes an empty range.
+    // Casts from f64 saturate, so pixels outside the picture give an empty range.
     let first = |v: f64| (v - 0.5).ceil().max(0.0) as u32;
     let end = |v: f64, size: u32| (((v - 0.5).floor() + 1.0).max(0.0) as u32).min(size);
     for y in first(low.y)..end(high.y, height) {

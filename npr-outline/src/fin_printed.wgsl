@@ -1,5 +1,4 @@
-// Fins as the 2002 chapter has them (Card & Mitchell, listing 1). The twin of `fin_printed.rs`, with the same names. No
-// bindings and no entry points.
+// Fins as printed (Card & Mitchell 2002, listing 1). The twin of `fin_printed.rs`. No bindings and no entry points.
 
 struct FinPrintedView {
     clip_from_world: mat4x4<f32>,

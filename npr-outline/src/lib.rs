@@ -1,4 +1,4 @@
-//! Which edges are contours, and the geometry that draws them.
+//! Finds the edges of a model that are contours, and draws them as lines.
 //!
 //! ```
 //! use glam::DVec4;
@@ -14,28 +14,28 @@
 //! # Ok::<(), npr_outline::OutlineError>(())
 //! ```
 //!
-//! From an edge to a line on the screen:
+//! The stages from an edge to a line on the screen:
 //!
-//! 1. [`contour`]: which edges are lines for an eye, decided once per edge. The records are flat, 32 bytes an edge.
-//! 2. [`segment`]: an edge cut at the near plane, projected, widened by px and hidden where its centreline is hidden.
-//! 3. [`line_look`]: width by kind of line, and ink.
+//! 1. [`contour`]: which edges are lines for an eye, decided once for each edge from a record of 32 bytes.
+//! 2. [`segment`]: an edge clipped, projected, with a width in px, and hidden where its centreline is hidden.
+//! 3. [`line_style`]: the line style: width by kind of line, colour and opacity.
 //! 4. With the feature `wgpu`, `line_pass` draws them: with lines found by a scan on the CPU and sent as records, or
-//!    found by a compute pass and drawn indirectly. `line_strokes` draws records without triangles, which is the faster
-//!    way where the rasteriser is software.
+//!    found by a compute pass and drawn indirectly.
 //!
-//! [`fin_printed`] (and `fin_pass`) are the fins of 2002 as they were printed, all edges of a model in a vertex buffer,
-//! to be measured against. [`normal_format`] has their face normals in f32, i16, i8 and octahedral records.
+//! [`fin_printed`] and `fin_pass` are the fins of 2002 as printed, with all edges of a model in a vertex buffer, for
+//! comparison. [`normal_format`] has their face normals in f32, i16, i8 and octahedral records.
 //!
-//! Seen from a light, the same edges bound the model's shadows: [`shadow_volume`], which `shadow_pass` counts in a stencil
-//! buffer, and `shadow_mask` turns the counts into a texture that every device can read.
+//! [`shadow_volume`] makes shadow volumes from the same edges, `shadow_pass` counts them in a stencil buffer, and
+//! `shadow_mask` converts the counts to a texture that every device can read in a shader.
 //!
-//! Formulas stand here twice, in Rust (f64, the reference) and in WGSL under the same names.
+//! Formulas are written twice with the same names and parameters: in Rust, mostly in f64, as the reference, and in
+//! WGSL.
 //!
 //! # Sources
 //!
 //! - D. Card, J. L. Mitchell: *Non-Photorealistic Rendering with Pixel and Vertex Shaders*, in *Direct3D ShaderX*,
-//!   2002, "Rendering Outlines" and listing 1. Where it disagrees with itself is told in [`fin_printed`], what is done
-//!   instead in [`contour`] and [`segment`].
+//!   2002, "Rendering Outlines" and listing 1. Its contradictions are listed in [`fin_printed`], the corrections
+//!   are in [`contour`] and [`segment`].
 #![warn(missing_docs)]
 
 pub mod contour;
@@ -45,18 +45,20 @@ pub mod filled_buffer;
 #[cfg(feature = "wgpu")]
 pub mod fin_pass;
 pub mod fin_printed;
-pub mod line_look;
 #[cfg(feature = "wgpu")]
 pub mod line_pass;
-#[cfg(feature = "wgpu")]
-pub mod line_strokes;
+pub mod line_style;
 pub mod normal_format;
 pub mod segment;
+#[cfg(feature = "wgpu")]
+mod shader;
 #[cfg(feature = "wgpu")]
 pub mod shadow_mask;
 #[cfg(feature = "wgpu")]
 pub mod shadow_pass;
 pub mod shadow_volume;
+#[cfg(feature = "wgpu")]
+mod target;
 
 /// The crate of the vectors and matrices in this API.
 pub use glam;

@@ -1,4 +1,4 @@
-// A line's ink in a pixel, whoever asks; appended to `line.wgsl`.
+// The coverage of a pixel by a line, and the colour that results.
 
 @group(0) @binding(0) var<uniform> view: OutlineView;
 
@@ -7,22 +7,22 @@
 @group(1) @binding(0) var scene_depth: texture_2d<f32>;
 // The picture without lines.
 @group(1) @binding(1) var painted: texture_2d<f32>;
-// Nearest, clamped to the edge.
+// Without filtering, clamped to the edge.
 @group(1) @binding(2) var nearest: sampler;
 
-// The depth at a pixel; outside the picture that of its border.
+// The depth at a pixel; outside the picture that of the nearest border pixel.
 fn ink_depth(pixel: vec2<i32>) -> f32 {
     return textureSampleLevel(scene_depth, nearest, (vec2<f32>(pixel) + 0.5) / view.viewport_px, 0.0).x;
 }
 
-// Whether the surface around a line's point is in front of it by more than rounding and its own bends explain.
+// Whether the surface around a point of a line is in front of it by more than rounding and its curvature explain.
 fn outline_plane_hides(quad: vec4<f32>, corner: vec2<f32>, on_line: vec2<f32>, depth: f32, per_px: f32) -> bool {
     if any(corner < vec2<f32>(0.0)) || any(corner > view.viewport_px - 2.0) {
         return false;
     }
     let within = on_line - 0.5 - corner;
     let at = vec2<i32>(corner);
-    let before = outline_plane_before(quad, within, depth, per_px);
+    let before = outline_plane_in_front(quad, within, depth, per_px);
     if before <= 0.0 {
         return false;
     }
@@ -30,22 +30,22 @@ fn outline_plane_hides(quad: vec4<f32>, corner: vec2<f32>, on_line: vec2<f32>, d
     let row = select(quad.xy, quad.zw, beyond.y);
     let column = select(quad.xz, quad.yw, beyond.x);
     let near = at + vec2<i32>(beyond);
-    let bend_x = outline_bend(
+    let curvature_x = outline_second_difference(
         vec4<f32>(ink_depth(vec2<i32>(at.x - 1, near.y)), row, ink_depth(vec2<i32>(at.x + 2, near.y))),
     );
-    let bend_y = outline_bend(
+    let curvature_y = outline_second_difference(
         vec4<f32>(ink_depth(vec2<i32>(near.x, at.y - 1)), column, ink_depth(vec2<i32>(near.x, at.y + 2))),
     );
-    return before > 2.0 * (bend_x + bend_y);
+    return before > 2.0 * (curvature_x + curvature_y);
 }
 
-// How much of the pixel around a point a line covers; 0 where it is hidden.
+// The share of the pixel around a point that a line covers, 0 where the line is hidden.
 fn ink_coverage(
     ends_px: vec4<f32>, depths_slopes: vec4<f32>, direction: vec2<f32>, width_px: f32, traits: u32, point_px: vec2<f32>,
 ) -> f32 {
     let fraction = outline_nearest(ends_px, point_px);
     let on_line = mix(ends_px.xy, ends_px.zw, fraction);
-    let coverage = outline_coverage(on_line, direction, point_px, width_px);
+    let coverage = outline_coverage_at(on_line, direction, point_px, width_px);
     if coverage <= 0.0 {
         return 0.0;
     }

@@ -1,9 +1,9 @@
-//! Lines on wgpu, in one small pass over the lines' rectangles.
+//! Draws lines on wgpu, as rectangles in one pass.
 //!
-//! Where segments of a polyline overlap at their joints, no pixel may be inked twice: the pixel's ink is that of the
-//! line that covers most of it. So each fragment computes the final colour, from the picture without lines, and puts its
-//! coverage out as depth; a depth test keeps the greatest. The order of the lines does not matter, and no pixel is touched
-//! that has no line near it.
+//! Where segments of a polyline overlap at their joints, no pixel may be inked twice: a pixel's ink is that of the line
+//! with the greatest coverage. Each fragment computes the final colour from the picture without lines and writes its
+//! coverage as depth; a depth test keeps the greatest. The result does not depend on the order of the lines, and only
+//! pixels near lines are drawn.
 //!
 //! Needs the scene's depth buffer as a texture of the same size, `Depth32Float`, reversed, and the picture twice: as a
 //! texture to read, and as a target that starts as its copy.
@@ -11,24 +11,43 @@
 use crate::OutlineError;
 use crate::contour::{ContourEdges, TRAIT_ALWAYS, TRAIT_CUT_OUT};
 use crate::filled_buffer::filled_buffer;
-use crate::line_look::LineLook;
+use crate::line_style::LineStyle;
 use crate::segment::LineView;
+use crate::shader::assemble;
+use crate::target::{check_color_format, check_reversed, check_view, is_same};
 use glam::{DVec4, Vec3};
 
-/// The WGSL library of this crate: no bindings, no entry points.
-pub const WGSL: &str = include_str!("line.wgsl");
-pub(crate) const INK_WGSL: &str = include_str!("line_ink.wgsl");
-const PASS_WGSL: &str = include_str!("line_pass.wgsl");
-const PULLED_WGSL: &str = include_str!("line_pulled.wgsl");
-const COMPACTION_WGSL: &str = include_str!("compaction.wgsl");
+/// WGSL of [`crate::contour`] and [`crate::segment`]: no bindings, no entry points.
+pub const WGSL: &str = concat!(include_str!("contour.wgsl"), include_str!("segment.wgsl"));
+const CONTOUR: (&str, &str) = ("contour.wgsl", include_str!("contour.wgsl"));
+const LINE: (&str, &str) = ("segment.wgsl", include_str!("segment.wgsl"));
+const INK: (&str, &str) = ("line_ink.wgsl", include_str!("line_ink.wgsl"));
+const PASS: (&str, &str) = ("line_pass.wgsl", include_str!("line_pass.wgsl"));
+const PULLED: (&str, &str) = ("line_pulled.wgsl", include_str!("line_pulled.wgsl"));
+const COMPACTION: (&str, &str) = ("compaction.wgsl", include_str!("compaction.wgsl"));
 
-/// Of the target that keeps the greatest coverage.
-pub const WINNER_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth16Unorm;
+/// The shader that draws records.
+pub(crate) fn record_wgsl() -> String {
+    assemble(&[CONTOUR, LINE, INK, PASS])
+}
 
-/// `OutlineView` of `line.wgsl`.
+/// The shader that draws edges by their numbers.
+pub(crate) fn pulled_wgsl() -> String {
+    assemble(&[CONTOUR, LINE, INK, PASS, PULLED])
+}
+
+/// The shader that finds the edges that are lines.
+pub(crate) fn compaction_wgsl() -> String {
+    assemble(&[CONTOUR, LINE, COMPACTION])
+}
+
+/// The format of the depth target that keeps the greatest coverage.
+pub const COVERAGE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth16Unorm;
+
+/// `OutlineView` of `segment.wgsl`.
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
-pub struct OutlineUniform {
+struct OutlineUniform {
     clip_from_world: [[f32; 4]; 4],
     viewport_px: [f32; 2],
     depth_per_px: [f32; 2],
@@ -43,25 +62,25 @@ pub struct OutlineUniform {
 
 const _: () = assert!(size_of::<OutlineUniform>() == 144);
 
-/// A line as a scan on the CPU sends it: 52 bytes.
+/// A line found by a scan on the CPU, as it is uploaded: 52 bytes.
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub struct LineRecord {
-    /// World space, in the order in which the first face runs over the edge.
+    /// The first end, world space, in the winding order of the first face.
     pub end0: [f32; 3],
     /// [`crate::LineKind`] in the two lowest bits, and the edge's traits.
     pub kind_traits: u32,
-    /// World space.
+    /// The second end, world space.
     pub end1: [f32; 3],
-    /// Of the first face, unit.
+    /// The unit normal of the first face.
     pub normal0: [f32; 3],
-    /// Of the second face, wound like the first; zero at a boundary.
+    /// The unit normal of the second face for the winding of the first; zero at a boundary.
     pub normal1: [f32; 3],
 }
 
 const _: () = assert!(size_of::<LineRecord>() == 52);
 
-/// Gathers the records of the lines that a scan found. `eye` as for [`ContourEdges::scan`].
+/// Makes the records of the lines that a scan found; `records` is cleared first. `eye` as for [`ContourEdges::scan`].
 pub fn line_records(
     contours: &ContourEdges,
     positions: &[Vec3],
@@ -81,7 +100,7 @@ pub fn line_records(
     }));
 }
 
-/// All edges of a model on the device, for finding lines there.
+/// All edges of a model in buffers of the device, for finding lines there.
 #[derive(Debug)]
 pub struct EdgesOnDevice {
     compaction_group: wgpu::BindGroup,
@@ -96,23 +115,25 @@ pub struct EdgesOnDevice {
 /// Where the lines of a frame come from.
 #[derive(Clone, Copy, Debug)]
 pub enum LineSource<'a> {
-    /// Scanned on the CPU, sent as records. The way of choice where vertex and compute work run on the same cores.
+    /// Found by a scan on the CPU and uploaded as records. Faster on software adapters.
     Records(&'a [LineRecord]),
-    /// Found by a compute pass and drawn indirectly, nothing sent. The way of choice on hardware.
+    /// Found by a compute pass and drawn indirectly, without uploads. Faster on hardware.
     OnDevice(&'a EdgesOnDevice),
 }
 
-/// What a frame reads and draws into, all of one size.
+/// What a frame reads and draws into: views of the first level of textures of the size of [`LineView::viewport_px`],
+/// with one sample a pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct LineTargets<'a> {
-    /// The picture without lines, readable.
+    /// The picture without lines: a colour format of floats, `TEXTURE_BINDING`.
     pub painted: &'a wgpu::TextureView,
-    /// The scene's depth, reversed, readable.
+    /// The scene's depth, reversed: the depth aspect of a depth format, or `R32Float`; `TEXTURE_BINDING`.
     pub depth: &'a wgpu::TextureView,
-    /// Of the format that the pass was made for, renderable; holds a copy of `painted` and gets the lines.
+    /// Of the format that the pass was made for, `RENDER_ATTACHMENT`; holds a copy of `painted`; lines are drawn over
+    /// it. A view without sRGB of an sRGB texture will do.
     pub inked: &'a wgpu::TextureView,
-    /// [`WINNER_FORMAT`], renderable; overwritten.
-    pub winner: &'a wgpu::TextureView,
+    /// [`COVERAGE_FORMAT`], `RENDER_ATTACHMENT`; overwritten.
+    pub coverage: &'a wgpu::TextureView,
 }
 
 /// The pipelines that draw lines.
@@ -123,6 +144,7 @@ pub struct LinePass {
     nearest: wgpu::Sampler,
     record_pipeline: wgpu::RenderPipeline,
     on_device: Option<OnDevicePipelines>,
+    color_format: wgpu::TextureFormat,
 }
 
 #[derive(Debug)]
@@ -148,12 +170,21 @@ const EDGE_NUMBER_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBuffer
 };
 
 impl LinePass {
-    /// Makes the pipelines for a colour target of `color_format`.
+    /// Makes the pipelines for a colour target of `color_format`, of floats and without sRGB: coverage blends in
+    /// display space.
     ///
-    /// `on_device`: also those of [`LineSource::OnDevice`], which need compute shaders, storage buffers in vertex shaders and
-    /// indirect drawing ([`wgpu::DownlevelFlags::COMPUTE_SHADERS`], [`wgpu::DownlevelFlags::VERTEX_STORAGE`],
-    /// [`wgpu::DownlevelFlags::INDIRECT_EXECUTION`]).
-    pub fn new(device: &wgpu::Device, color_format: wgpu::TextureFormat, on_device: bool) -> Self {
+    /// `on_device`: also those of [`LineSource::OnDevice`], which need compute shaders, storage buffers in vertex
+    /// shaders and indirect drawing ([`wgpu::DownlevelFlags::COMPUTE_SHADERS`],
+    /// [`wgpu::DownlevelFlags::VERTEX_STORAGE`], [`wgpu::DownlevelFlags::INDIRECT_EXECUTION`]).
+    ///
+    /// # Errors
+    /// [`OutlineError::SrgbTarget`]; [`OutlineError::ViewFormat`] for a format that is no colour of floats.
+    pub fn new(
+        device: &wgpu::Device,
+        color_format: wgpu::TextureFormat,
+        on_device: bool,
+    ) -> Result<Self, OutlineError> {
+        check_color_format(device, color_format)?;
         let layout = |label, entries: &[wgpu::BindGroupLayoutEntry]| {
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
         };
@@ -166,7 +197,7 @@ impl LinePass {
                 let groups = [Some(&view_layout), Some(&picture_layout), pulled];
                 line_pipeline(device, module, vertex, &groups[..2 + usize::from(pulled.is_some())], color_format)
             };
-        let module = shader(device, "outline lines", &[WGSL, INK_WGSL, PASS_WGSL]);
+        let module = shader(device, "outline lines", record_wgsl());
         let record_pipeline = pipeline(&module, ("vs_record", &RECORD_LAYOUT), None);
         let on_device = on_device.then(|| {
             let read = wgpu::BufferBindingType::Storage { read_only: true };
@@ -181,7 +212,7 @@ impl LinePass {
                 "outline compaction",
                 &[buffer_entry(0, compute, read), buffer_entry(1, compute, write), buffer_entry(2, compute, write)],
             );
-            let module = shader(device, "outline pulled lines", &[WGSL, INK_WGSL, PASS_WGSL, PULLED_WGSL]);
+            let module = shader(device, "outline pulled lines", pulled_wgsl());
             let pulled_pipeline = pipeline(&module, ("vs_pulled", &EDGE_NUMBER_LAYOUT), Some(&pulled_layout));
             let compaction = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
                 label: Some("outline compaction"),
@@ -190,17 +221,24 @@ impl LinePass {
                     bind_group_layouts: &[Some(&view_layout), Some(&compaction_layout)],
                     immediate_size: 0,
                 })),
-                module: &shader(device, "outline compaction", &[WGSL, COMPACTION_WGSL]),
+                module: &shader(device, "outline compaction", compaction_wgsl()),
                 entry_point: Some("compact"),
                 compilation_options: Default::default(),
                 cache: None,
             });
             OnDevicePipelines { pulled_layout, compaction_layout, compaction, pulled_pipeline }
         });
-        Self { view_layout, picture_layout, nearest: nearest_sampler(device), record_pipeline, on_device }
+        Ok(Self {
+            view_layout,
+            picture_layout,
+            nearest: nearest_sampler(device),
+            record_pipeline,
+            on_device,
+            color_format,
+        })
     }
 
-    /// Sends a model's edges to the device: 52 bytes an edge and 12 a position.
+    /// Uploads a model's edges: 52 bytes an edge and 12 a position.
     ///
     /// # Errors
     /// [`OutlineError::TooManyEdges`] where a buffer would be larger than the device allows.
@@ -219,7 +257,7 @@ impl LinePass {
         if bytes > limit {
             return Err(OutlineError::TooManyEdges { bytes, limit });
         }
-        // A binding of no bytes is refused; one blank record stands in where there are no edges.
+        // Empty bindings are invalid; without edges the buffer has one blank record.
         let buffer = |label, contents: &[u8], usage| {
             let contents = if contents.is_empty() { &[0u8; 32][..] } else { contents };
             filled_buffer(device, label, contents, usage)
@@ -236,7 +274,7 @@ impl LinePass {
             usage: storage | wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_SRC,
             mapped_at_creation: false,
         });
-        // Four corners, no instance yet.
+        // Four vertices; the compute pass counts the instances.
         let copied = wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
         let arguments = buffer(
             "outline draw arguments",
@@ -266,23 +304,27 @@ impl LinePass {
 
     /// Records finding and drawing a frame's lines.
     ///
-    /// `eye`: world space, a point with w = 1 or the direction to the viewer with w = 0.
+    /// `eye`: world space, a point with w = 1 or the direction to the viewer with w = 0. The depth of
+    /// [`LineView::clip_from_world`] is reversed: 1 at the near plane, falling with distance.
     ///
     /// # Errors
-    /// [`OutlineError::Width`]; [`OutlineError::TooManyEdges`] where the records do not fit a buffer.
+    /// [`OutlineError::Width`]; [`OutlineError::TooManyEdges`] where the records do not fit a buffer; if a texture is
+    /// not as [`LineTargets`] says; [`OutlineError::StandardDepth`], where the matrix can be judged. Nothing is
+    /// recorded then.
     #[expect(clippy::too_many_arguments, reason = "each is a thing of its own; a struct would only rename them")]
     pub fn record(
         &self,
         device: &wgpu::Device,
         encoder: &mut wgpu::CommandEncoder,
         source: LineSource<'_>,
-        look: &LineLook,
+        style: &LineStyle,
         view: &LineView,
         eye: DVec4,
         targets: &LineTargets<'_>,
     ) -> Result<(), OutlineError> {
-        look.validate()?;
-        let uniform = OutlineUniform::new(look, view, eye, source);
+        style.validate()?;
+        self.check(view, eye, targets)?;
+        let uniform = OutlineUniform::new(style, view, eye, source);
         let uniform = filled_buffer(device, "outline view", bytemuck::bytes_of(&uniform), wgpu::BufferUsages::UNIFORM);
         let group = |layout, resources: &[_]| bind_group(device, "outline", layout, resources);
         let view_group = group(&self.view_layout, &[uniform.as_entire_binding()]);
@@ -311,7 +353,7 @@ impl LinePass {
                 ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
             })],
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: targets.winner,
+                view: targets.coverage,
                 depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard }),
                 stencil_ops: None,
             }),
@@ -338,10 +380,28 @@ impl LinePass {
         Ok(())
     }
 
-    /// Records the compute pass alone: afterwards [`EdgesOnDevice::lines`] holds the lines' numbers.
+    /// Refuses what the pass cannot draw right with.
+    fn check(&self, view: &LineView, eye: DVec4, targets: &LineTargets<'_>) -> Result<(), OutlineError> {
+        let towards_viewer = (eye.w == 0.0).then(|| eye.truncate());
+        check_reversed(&view.clip_from_world, towards_viewer)?;
+        let size_px = Some([view.viewport_px.x as u32, view.viewport_px.y as u32]);
+        let is_float = |format: wgpu::TextureFormat| {
+            !format.has_depth_aspect()
+                && matches!(format.sample_type(None, None), Some(wgpu::TextureSampleType::Float { .. }))
+        };
+        let is_depth =
+            |format: wgpu::TextureFormat| format.has_depth_aspect() || format == wgpu::TextureFormat::R32Float;
+        check_view("a picture without lines", targets.painted, "a colour format of floats", is_float, size_px)?;
+        check_view("the scene's depth", targets.depth, "a depth format or R32Float", is_depth, size_px)?;
+        let needed = "the format that the pass was made for";
+        check_view("a target", targets.inked, needed, |format| is_same(format, self.color_format), size_px)?;
+        check_view("the coverage target", targets.coverage, "Depth16Unorm", |format| format == COVERAGE_FORMAT, size_px)
+    }
+
+    /// Records the compute pass; afterwards [`EdgesOnDevice::lines`] holds the lines' numbers.
     fn record_compaction(&self, encoder: &mut wgpu::CommandEncoder, view: &wgpu::BindGroup, edges: &EdgesOnDevice) {
         let pipelines = self.on_device.as_ref().expect("the edges were uploaded by this pass");
-        // The vertex count stays what it is; the instances are counted from 0.
+        // The instance count starts at 0; the other arguments do not change.
         encoder.clear_buffer(&edges.arguments, 4, Some(4));
         let mut pass = encoder
             .begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("line scan"), timestamp_writes: None });
@@ -358,7 +418,7 @@ impl EdgesOnDevice {
         workgroups(self.edge_count)
     }
 
-    /// The numbers of the lines that the last frame's compute pass found, in no order; the first
+    /// The numbers of the lines that the last frame's compute pass found, in no particular order; the first
     /// [`EdgesOnDevice::arguments`]' instance count of them are valid. `COPY_SRC`.
     pub fn lines(&self) -> &wgpu::Buffer {
         &self.lines
@@ -371,47 +431,43 @@ impl EdgesOnDevice {
 }
 
 impl OutlineUniform {
-    fn new(look: &LineLook, view: &LineView, eye: DVec4, source: LineSource<'_>) -> Self {
-        let LineSource::OnDevice(edges) = source else { return Self::of_records(look, view, 0, 0) };
+    fn new(style: &LineStyle, view: &LineView, eye: DVec4, source: LineSource<'_>) -> Self {
+        let of_records = Self {
+            clip_from_world: view.clip_from_world.as_mat4().to_cols_array_2d(),
+            viewport_px: view.viewport_px.as_vec2().to_array(),
+            depth_per_px: view.depth_per_px.as_vec2().to_array(),
+            width_px: style.width_px,
+            ink: style.ink,
+            local_eye: [0.0; 4],
+            edge_count: 0,
+            always_count: 0,
+            row_stride: 0,
+            padding: 0,
+        };
+        let LineSource::OnDevice(edges) = source else { return of_records };
         Self {
             local_eye: (eye - edges.local_origin.as_dvec3().extend(0.0) * eye.w).as_vec4().to_array(),
             edge_count: edges.edge_count,
             always_count: edges.always_count,
             row_stride: 64 * edges.workgroups().0,
-            ..Self::of_records(look, view, 0, 0)
-        }
-    }
-
-    /// For so many records, with so many invocations in a row of workgroups.
-    pub(crate) fn of_records(look: &LineLook, view: &LineView, records: u32, row_stride: u32) -> Self {
-        Self {
-            clip_from_world: view.clip_from_world.as_mat4().to_cols_array_2d(),
-            viewport_px: view.viewport_px.as_vec2().to_array(),
-            depth_per_px: view.depth_per_px.as_vec2().to_array(),
-            width_px: look.width_px,
-            ink: look.ink,
-            local_eye: [0.0; 4],
-            edge_count: records,
-            always_count: 0,
-            row_stride,
-            padding: 0,
+            ..of_records
         }
     }
 }
 
-/// Workgroups of 64 for so many invocations, in rows of at most 65,535, which every device can dispatch.
-pub(crate) fn workgroups(invocations: u32) -> (u32, u32) {
+/// The numbers of columns and rows of workgroups of 64 invocations, at most 65,535 a row, which every device supports.
+fn workgroups(invocations: u32) -> (u32, u32) {
     let groups = invocations.div_ceil(64).max(1);
     let rows = groups.div_ceil(65_535);
     (groups.div_ceil(rows), rows)
 }
 
-/// The most bytes that a storage buffer can have.
-pub(crate) fn storage_limit(device: &wgpu::Device) -> u64 {
+/// The largest size of a storage buffer, bytes.
+fn storage_limit(device: &wgpu::Device) -> u64 {
     device.limits().max_storage_buffer_binding_size.min(device.limits().max_buffer_size)
 }
 
-/// A group of resources, bound in their order.
+/// A bind group of resources with consecutive bindings.
 pub(crate) fn bind_group(
     device: &wgpu::Device,
     label: &str,
@@ -425,10 +481,10 @@ pub(crate) fn bind_group(
     device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
 }
 
-pub(crate) fn shader(device: &wgpu::Device, label: &str, parts: &[&str]) -> wgpu::ShaderModule {
+fn shader(device: &wgpu::Device, label: &str, source: String) -> wgpu::ShaderModule {
     device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some(label),
-        source: wgpu::ShaderSource::Wgsl(parts.concat().into()),
+        source: wgpu::ShaderSource::Wgsl(source.into()),
     })
 }
 
@@ -441,8 +497,8 @@ pub(crate) fn buffer_entry(
     wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None }
 }
 
-/// Group 1 of `line_ink.wgsl`: depth and picture, read texel by texel, and the sampler for depth.
-pub(crate) fn picture_layout(device: &wgpu::Device, visibility: wgpu::ShaderStages) -> wgpu::BindGroupLayout {
+/// The layout of group 1 of `line_ink.wgsl`: depth, the picture without lines, and the sampler for depth.
+fn picture_layout(device: &wgpu::Device, visibility: wgpu::ShaderStages) -> wgpu::BindGroupLayout {
     let texture = wgpu::BindingType::Texture {
         sample_type: wgpu::TextureSampleType::Float { filterable: false },
         view_dimension: wgpu::TextureViewDimension::D2,
@@ -456,8 +512,8 @@ pub(crate) fn picture_layout(device: &wgpu::Device, visibility: wgpu::ShaderStag
     })
 }
 
-/// What [`picture_layout`] is for.
-pub(crate) fn picture_group(
+/// The bind group of [`picture_layout`].
+fn picture_group(
     device: &wgpu::Device,
     layout: &wgpu::BindGroupLayout,
     depth: &wgpu::TextureView,
@@ -472,8 +528,8 @@ pub(crate) fn picture_group(
     bind_group(device, "outline picture", layout, &resources)
 }
 
-/// Filters nothing, and repeats the border outside of a texture.
-pub(crate) fn nearest_sampler(device: &wgpu::Device) -> wgpu::Sampler {
+/// A sampler without filtering that repeats the border texels outside a texture.
+fn nearest_sampler(device: &wgpu::Device) -> wgpu::Sampler {
     device.create_sampler(&wgpu::SamplerDescriptor { label: Some("nearest"), ..Default::default() })
 }
 
@@ -499,7 +555,7 @@ fn line_pipeline(
         },
         primitive: wgpu::PrimitiveState { topology: wgpu::PrimitiveTopology::TriangleStrip, ..Default::default() },
         depth_stencil: Some(wgpu::DepthStencilState {
-            format: WINNER_FORMAT,
+            format: COVERAGE_FORMAT,
             depth_write_enabled: Some(true),
             depth_compare: Some(wgpu::CompareFunction::Greater),
             stencil: Default::default(),

@@ -1,4 +1,4 @@
-// The line pass's entry points; appended to `line.wgsl` and `line_ink.wgsl`.
+// Entry points of the line pass.
 
 struct LineVertex {
     @builtin(position) position: vec4<f32>,
@@ -25,7 +25,7 @@ fn line_vertex(
     }
     out.ends_px = segment.ends_px;
     out.depths_slopes = vec4<f32>(segment.depths, segment.slopes);
-    // A rectangle around the line and its round ends, and the pixel beside them that they cover in part.
+    // A rectangle around the line and its round ends, with a margin for partly covered pixels.
     let reach = 0.5 * out.width_px + 0.75;
     let along = outline_direction(segment.ends_px);
     out.direction = along;
@@ -38,7 +38,7 @@ fn line_vertex(
     return out;
 }
 
-// A line from a record of its own: what a scan on the CPU sends.
+// A line from an uploaded record of its own, found by a scan on the CPU.
 @vertex
 fn vs_record(
     @builtin(vertex_index) corner: u32,
@@ -53,7 +53,7 @@ fn vs_record(
 
 struct Inked {
     @location(0) color: vec4<f32>,
-    // Coverage as depth: of the lines over a pixel the one that covers most of it is kept, whatever their order.
+    // Coverage as depth: the depth test keeps the line with the greatest coverage, in any order.
     @builtin(frag_depth) coverage: f32,
 }
 

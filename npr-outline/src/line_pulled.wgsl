@@ -1,4 +1,4 @@
-// A line from the records of all edges, by its number: what a compute pass sends. Appended to `line_pass.wgsl`.
+// The vertex shader for lines that the compute pass found: it reads an edge's record by the edge's number.
 
 @group(2) @binding(0) var<storage, read> planes: array<vec4<f32>>;
 // Two vertices, traits, unused.

@@ -1,17 +1,17 @@
-//! Formats for the face normals of edges, and how often a silhouette is told wrongly because of them.
+//! Formats for the face normals of edges, and the share of silhouettes that they misclassify.
 //!
 //! Card & Mitchell 2002 keep two face normals with each of a fin's vertices and propose byte or short 4-tuples for
-//! them. Of a unit vector two numbers are enough: the octahedral formats unfold the octahedron |x| + |y| + |z| = 1
+//! them. Two numbers suffice for a unit vector: the octahedral formats unfold the octahedron |x| + |y| + |z| = 1
 //! into a square (Meyer, Süßmuth, Sußner, Stamminger & Greiner 2010, "On Floating-Point Normal Vectors"). Rounding is
 //! that of the "precise" encoder of Cigolle, Donow, Evangelakos, Mara, McGuire & Meyer 2014, "A Survey of Efficient
 //! Representations for Independent Unit Vectors": of the four neighbours on the grid the one is taken whose direction
 //! is nearest, compared in f64.
 //!
-//! The zero normal of a face without area stays zero in every format. An octahedral code has no place for it, but
-//! it has four for −z, the square's corners: the corner (−1, −1) is kept for zero.
+//! The zero normal of a face without area stays zero in every format. No octahedral code stands for it, but
+//! four stand for −z, the square's corners: the corner (−1, −1) is used for zero.
 //!
 //! The tuples are signed-normalised, −1..=1 in steps of 1/32767 or 1/127, each number rounded to the nearest; they
-//! are not renormalised after decoding, since only signs of dot products are asked of them. The twin of
+//! are not renormalised after decoding, since only the signs of their dot products are used. The twin of
 //! `normal_format.wgsl`.
 
 use crate::contour::{contour_edges, facing_exact, outline_is_silhouette};
@@ -51,11 +51,6 @@ impl NormalFormat {
             Self::Snorm8 | Self::Oct16 => 4,
             Self::Oct8 => 2,
         }
-    }
-
-    /// Bytes that a flat scan reads for one edge: a position of three f32 and two normals.
-    pub fn bytes_per_edge(self) -> usize {
-        12 + 2 * self.bytes_per_normal()
     }
 
     /// Bytes of one fin of [`crate::fin_printed`]: four vertices, each with a position and a smooth normal of three f32
@@ -104,7 +99,7 @@ impl NormalFormat {
 }
 
 /// The direction that a point of the unfolded octahedron, −1..=1, stands for; zero for (−1, −1).
-pub fn normal_oct_decode(code: Vec2) -> Vec3 {
+fn normal_oct_decode(code: Vec2) -> Vec3 {
     if code == Vec2::NEG_ONE { Vec3::ZERO } else { oct_direction(code.as_dvec2()).as_vec3() }
 }
 
@@ -164,8 +159,8 @@ fn eyes(model: &Model, views: usize) -> Vec<DVec3> {
     fibonacci_sphere(views).map(|direction| centre + 3.0 * radius * direction).collect()
 }
 
-/// Per face the side on which the eye is: [`facing_exact`], and for a polygon's faces that of the polygon's plane, with
-/// its Newell normal through the mean of its triangles' corners, as [`crate::contour`] has it.
+/// For each face whether the eye is in front: [`facing_exact`], and for a polygon's faces that of the polygon's plane,
+/// with its Newell normal through the mean of its triangles' corners, as [`crate::contour`] has it.
 fn true_sides(model: &Model, eye: DVec3) -> Vec<bool> {
     let corners = |face: &[u32; 3]| face.map(|v| model.positions[v as usize]);
     if model.face_polygon.is_empty() {
@@ -185,7 +180,7 @@ fn true_sides(model: &Model, eye: DVec3) -> Vec<bool> {
     sides
 }
 
-/// As [`true_sides`], but the triangles of folded polygons by themselves.
+/// As [`true_sides`], with the triangles of folded polygons each judged by its own plane.
 fn true_sides_with_folds(model: &Model, edges: &Edges, eye: DVec3) -> Vec<bool> {
     let mut sides = true_sides(model, eye);
     for face in edges.folds.iter().flat_map(Edge::faces) {
@@ -202,12 +197,12 @@ fn truly_silhouette(edge: &Edge, sides: &[bool]) -> bool {
     (first != second) != edge.wound_oppositely()
 }
 
-/// Edges whose being a silhouette depends on the eye and has a truth: two faces, neither without area.
+/// The edges that are compared: those with two faces, neither of zero area.
 fn judged(edges: &Edges) -> impl Iterator<Item = &Edge> {
     edges.edges.iter().filter(|edge| edge.kind() == EdgeKind::TwoFace && edges.cos_dihedral(edge).is_some())
 }
 
-/// The share, 0..=1, of (edge, view) pairs that the chapter's test tells wrongly with normals of a format.
+/// The share, 0..=1, of (edge, view) pairs that the chapter's test misclassifies with normals of a format.
 ///
 /// The test: the product of the two normals' dot products with the vector from the eye to the edge's first end is
 /// below zero, in f32. The truth: on which sides of its two faces the eye is, in f64 from the corners. Over
@@ -215,7 +210,7 @@ fn judged(edges: &Edges) -> impl Iterator<Item = &Edge> {
 /// 0 where there is no pair.
 pub fn misclassified_share(model: &Model, edges: &Edges, format: NormalFormat, views: usize) -> f64 {
     let normals: Vec<Vec3> = edges.face_normals.iter().map(|&normal| format.quantised(normal)).collect();
-    let told = |edge: &Edge, eye: Vec3| {
+    let classified = |edge: &Edge, eye: Vec3| {
         let view = model.positions[edge.ends[0] as usize] - eye;
         let [first, second] = edge.faces().map(|face| view.dot(normals[face as usize]));
         let product = first * second;
@@ -225,14 +220,14 @@ pub fn misclassified_share(model: &Model, edges: &Edges, format: NormalFormat, v
     for eye in eyes(model, views) {
         let sides = true_sides(model, eye);
         for edge in judged(edges) {
-            wrong += usize::from(told(edge, eye.as_vec3()) != truly_silhouette(edge, &sides));
+            wrong += usize::from(classified(edge, eye.as_vec3()) != truly_silhouette(edge, &sides));
             pairs += 1;
         }
     }
     wrong as f64 / pairs.max(1) as f64
 }
 
-/// As [`misclassified_share`], of the plane records and the test of [`crate::contour`], folds included.
+/// As [`misclassified_share`], for the plane records and the test of [`crate::contour`], folds included.
 ///
 /// # Errors
 /// None that the input could cause; those of [`contour_edges`].

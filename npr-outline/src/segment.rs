@@ -1,49 +1,50 @@
-//! A line on the screen: an edge clipped, projected, widened, and hidden where its centreline is hidden.
+//! Lines on the screen: edges clipped, projected, with a width in px, and hidden where their centreline is hidden.
 //!
-//! The twin of `line.wgsl`, in f64 and with the same names.
+//! The twin of `segment.wgsl`, in f64.
 //!
 //! # Width
 //!
-//! A line is the set of points within half its width of the segment, so its ends are round and lines that meet
-//! close their joint. The coverage of a pixel is the area of the pixel's square between the line's two borders, exact for
-//! straight ones: summed across a line it gives the width at any angle and any place, and hair lines fade instead of
-//! breaking. Being measured on the screen, the width is the same at any distance; the chapter's listing 1 scales by clip z instead of
-//! w, which thins lines towards the near plane.
+//! A line is the set of points within half its width of the segment, so its ends are round and joints of
+//! adjacent lines are closed. The coverage of a pixel is the area of the pixel's square between the line's two borders,
+//! exact for straight ones: its sum across a line is the width at any angle and position, and lines thinner than a
+//! pixel fade instead of breaking. The width is measured on the screen and does not depend on the distance; listing 1
+//! of Card & Mitchell 2002 scales by clip z instead of w, which makes lines thinner towards the near plane.
 //!
 //! # Visibility
 //!
 //! A fin centred on a silhouette lies half inside its own surface, so a depth test of the fin's own triangles cuts the
-//! line in half. Here one decision is taken for each point of the centreline: it is seen if at least one of
+//! line in half. Here visibility is decided for each point of the centreline: it is visible if at least one of
 //! the four pixel centres around it shows a surface that is not in front of it. On the outer side of a
 //! silhouette that surface is the background; at a crease it is one of the edge's own faces, whose slope across
 //! the line is known from its normal and allowed for, up to 8 px of depth a px (83°). Half a pixel's depth is
-//! allowed on top: what lies less than that behind a surface cannot be told from it by one of its pixels.
+//! allowed in addition: from one pixel, a point that is less than that behind a surface cannot be distinguished from
+//! one on it.
 //!
-//! By several it can. On a surface that is seen at a grazing angle depth changes by many px within one, so that of the
-//! four pixels around a line that lies a hair behind it one or the other lets it through: seen from below, a table's top
-//! would show the rims of all that stands on it. Hence a second look: a line is hidden where the surface between the
-//! four pixels, interpolated to the line's own point, is in front of it by more than rounding explains, and by more than
-//! the surface bends there. On both sides of a silhouette, a crease or a contact it bends by more, whatever their angle,
-//! and of a line on it a plane is not in front.
+//! From several pixels it can. On a surface seen at a grazing angle depth changes by many px of depth within one px, so
+//! that some of the four pixels around a line just behind it would let the line through: seen from below, the top of a
+//! table would show the rims of all objects on it. A second test therefore hides a line where the surface through the
+//! four pixels, interpolated to the line's point, is in front of it by more than rounding and by more than twice the
+//! second differences of depth there. At silhouettes, creases and contacts these differences are larger than any such
+//! distance, and a plane that contains the line is not in front of it.
 //!
-//! Depth is the depth buffer's own, reversed: 1 at the near plane, falling with distance. It is linear on the screen, in
-//! perspective too, so that interpolating and extrapolating it are exact.
+//! Depth is the depth buffer's own, reversed: 1 at the near plane, falling with distance. It is linear on the screen,
+//! in perspective too, so that interpolating and extrapolating it are exact.
 
 use glam::{DMat4, DVec2, DVec3, DVec4, Vec4Swizzles};
 
-/// Depth that a surface may gain within a px across the line, in px of depth.
+/// The largest slope of a face across the line that is allowed for, px of depth a px.
 pub const MAX_SLOPE: f64 = 8.0;
-/// A face that gains more depth than this within a px across the line, in px of depth, is seen edge-on: it covers no
-/// pixel, and the side on which it lies is rounding.
-pub const EDGE_ON_SLOPE: f64 = 1024.0;
-/// How far a line may lie behind a surface and still be seen, in px of depth.
-pub const DEPTH_SLACK_PX: f64 = 0.5;
-/// How far a line may lie behind the surface interpolated to it and still be seen, in px of depth: what touches may miss
-/// by as much.
-pub const PLANE_SLACK_PX: f64 = 0.01;
-/// The same for each px of depth that the surface gains within a px: rasterisers round corners to 1/256 px, which
+/// From this slope on, px of depth a px, a face is taken as edge-on: it covers no pixel, and its side of the line is
+/// only rounding.
+const EDGE_ON_SLOPE: f64 = 1024.0;
+/// How far a line may be behind a surface and still be visible, px of depth.
+const DEPTH_SLACK_PX: f64 = 0.5;
+/// How far a line may be behind the surface interpolated to it and still be visible, px of depth: the tolerance for
+/// surfaces in contact.
+const PLANE_SLACK_PX: f64 = 0.01;
+/// The same for each px of depth a px of the surface's slope: rasterisers round corners to 1/256 px, which
 /// moves a face's depths by its slope times that.
-pub const PLANE_SLACK_PER_SLOPE: f64 = 1.0 / 128.0;
+const PLANE_SLACK_PER_SLOPE: f64 = 1.0 / 128.0;
 
 /// The view that lines are drawn for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,7 +53,7 @@ pub struct LineView {
     pub clip_from_world: DMat4,
     /// Width and height of the picture in px.
     pub viewport_px: DVec2,
-    /// Depth-buffer units that correspond to one px's size along the view: `depth * .x + .y`. In perspective the
+    /// Depth-buffer units of a distance along the view as long as one px is wide: `depth * .x + .y`. In perspective the
     /// size of a px grows with distance, and `.x` is 2 tan(fov/2) / height; in a parallel view `.y` is a px's size over
     /// the depth range.
     pub depth_per_px: DVec2,
@@ -65,16 +66,17 @@ pub struct ScreenSegment {
     pub ends_px: [DVec2; 2],
     /// Depth-buffer values at the ends.
     pub depths: [f64; 2],
-    /// On the side of positive and of negative [`ScreenSegment::offset_px`]: by how much an own face's depth-buffer
-    /// value grows a px away from the line; not below 0.
+    /// On the side of positive and of negative [`ScreenSegment::offset_px`]: by how much the depth-buffer value of the
+    /// edge's own face grows a px away from the line; not below 0.
     pub slopes: [f64; 2],
 }
 
-/// Cuts a segment to the near plane and to the viewport widened by `margin_px`, and returns its ends in clip
+/// Clips a segment at the near plane and to the viewport widened by `margin_px`, and returns its ends in clip
 /// space, or `None` if nothing is left.
 ///
-/// Everything that follows divides by w, and f32 loses the centreline's place when an end is a thousand screens away.
-pub fn outline_clip(ends: [DVec4; 2], viewport_px: DVec2, margin_px: f64) -> Option<[DVec4; 2]> {
+/// The following steps divide by w, and f32 loses the position of the centreline when an end is a thousand screens
+/// away.
+fn outline_clip(ends: [DVec4; 2], viewport_px: DVec2, margin_px: f64) -> Option<[DVec4; 2]> {
     let guard = DVec2::ONE + 2.0 * margin_px / viewport_px;
     let inside =
         |p: DVec4| [p.w - p.z, guard.x * p.w - p.x, guard.x * p.w + p.x, guard.y * p.w - p.y, guard.y * p.w + p.y];
@@ -93,7 +95,7 @@ pub fn outline_clip(ends: [DVec4; 2], viewport_px: DVec2, margin_px: f64) -> Opt
     }
     let span = ends[1] - ends[0];
     let clipped = [ends[0] + span * from, ends[0] + span * to];
-    // An eye without a near plane has w = 0 on its own plane.
+    // Without a near plane w = 0 in the plane of the eye.
     (from <= to && clipped.iter().all(|end| end.w > 0.0)).then_some(clipped)
 }
 
@@ -103,8 +105,8 @@ pub fn outline_screen(clip: DVec4, viewport_px: DVec2) -> (DVec2, f64) {
     (DVec2::new(0.5 + 0.5 * ndc.x, 0.5 - 0.5 * ndc.y) * viewport_px, ndc.z)
 }
 
-/// Where the face lies beside the line, and how its depth-buffer value changes there: (offset, slope), with the sign of
-/// the offset telling the side and the slope in depth per px. Zero offset where the face is seen edge-on.
+/// On which side of the line a face is, and how its depth-buffer value changes there: (offset, slope), with the side as
+/// the sign of the offset, and the slope in depth a px. The offset is 0 where the face is seen edge-on.
 fn outline_face_slope(inward: DVec3, middle: DVec4, segment: &ScreenSegment, view: &LineView) -> (f64, f64) {
     // The derivative of the projection along a direction in the face, away from the edge.
     let step = view.clip_from_world * inward.extend(0.0);
@@ -117,10 +119,11 @@ fn outline_face_slope(inward: DVec3, middle: DVec4, segment: &ScreenSegment, vie
     (across, (moved.z - along * depth_along) / across.abs())
 }
 
-/// Projects an edge.
+/// Projects an edge to the screen; `None` where nothing of it is in front of the near plane and within the widened
+/// viewport.
 ///
 /// - `ends`: world space, in the order in which the first face runs over the edge.
-/// - `normals`: unit normals of the two faces, wound alike; zero where there is none.
+/// - `normals`: unit normals of the two faces for the same winding; zero where there is no face.
 /// - `width_px`: of the line.
 pub fn outline_project(ends: [DVec3; 2], normals: [DVec3; 2], width_px: f64, view: &LineView) -> Option<ScreenSegment> {
     let clip = ends.map(|end| view.clip_from_world * end.extend(1.0));
@@ -143,16 +146,12 @@ pub fn outline_project(ends: [DVec3; 2], normals: [DVec3; 2], width_px: f64, vie
 impl ScreenSegment {
     /// Unit vector from the first end to the second, and the length in px. Along x where the length is 0.
     pub fn direction(&self) -> (DVec2, f64) {
-        let span = self.ends_px[1] - self.ends_px[0];
-        let length = span.length();
-        if length > 0.0 { (span / length, length) } else { (DVec2::X, 0.0) }
+        (outline_direction(self.ends_px), self.ends_px[0].distance(self.ends_px[1]))
     }
 
     /// The nearest point of the centreline, as a fraction of the way from the first end to the second.
     pub fn nearest(&self, point_px: DVec2) -> f64 {
-        let span = self.ends_px[1] - self.ends_px[0];
-        let squared = span.length_squared();
-        if squared > 0.0 { ((point_px - self.ends_px[0]).dot(span) / squared).clamp(0.0, 1.0) } else { 0.0 }
+        outline_nearest(self.ends_px, point_px)
     }
 
     /// The centreline at a fraction of the way.
@@ -168,9 +167,23 @@ impl ScreenSegment {
     }
 }
 
+/// Unit vector from the first end to the second; along x where the length is 0.
+fn outline_direction(ends_px: [DVec2; 2]) -> DVec2 {
+    let span = ends_px[1] - ends_px[0];
+    let length = span.length();
+    if length > 0.0 { span / length } else { DVec2::X }
+}
+
+/// The nearest point of the centreline, as a fraction of the way from the first end to the second.
+fn outline_nearest(ends_px: [DVec2; 2], point_px: DVec2) -> f64 {
+    let span = ends_px[1] - ends_px[0];
+    let squared = span.length_squared();
+    if squared > 0.0 { ((point_px - ends_px[0]).dot(span) / squared).clamp(0.0, 1.0) } else { 0.0 }
+}
+
 /// The share of a unit square around the origin on the near side of a straight border at `distance` along the unit
 /// vector `normal`: the distribution of a sum of two uniform variables, a trapezoid's integral.
-pub fn outline_half_plane(distance: f64, normal: DVec2) -> f64 {
+fn outline_half_plane(distance: f64, normal: DVec2) -> f64 {
     let (a, b) = (normal.x.abs().max(normal.y.abs()), normal.x.abs().min(normal.y.abs()));
     let reach = 0.5 * (a + b);
     let inner = 0.5 * (a - b);
@@ -178,7 +191,7 @@ pub fn outline_half_plane(distance: f64, normal: DVec2) -> f64 {
     let near = if from_border <= inner {
         0.5 + from_border / a
     } else {
-        // Past the middle strip the square is cut by a corner; the corner left over is a triangle.
+        // Beyond the middle strip the border cuts off a corner of the square, a triangle.
         let left = (reach - from_border).max(0.0);
         1.0 - 0.5 * left * left / (a * b).max(f64::MIN_POSITIVE)
     };
@@ -194,25 +207,45 @@ fn outline_band(distance: f64, normal: DVec2, width_px: f64) -> f64 {
     covered.clamp(0.0, 1.0)
 }
 
-/// How much of the pixel around `point_px` a line of `width_px` covers, 0..=1: exact beside the line; past its ends by the
-/// distance from them, and never more than a longer line would cover, so that a line in pieces looks like the whole.
+/// How much of the pixel around `point_px` a line of `width_px` covers, 0..=1: exact beside the line; past its ends by
+/// the distance from them, and never more than a longer line would cover, so that a line in pieces has the coverage of
+/// the whole.
 pub fn outline_coverage(segment: &ScreenSegment, point_px: DVec2, width_px: f64) -> f64 {
-    let direction = segment.direction().0;
-    let to_point = point_px - segment.at(segment.nearest(point_px)).0;
+    let on_line = segment.at(segment.nearest(point_px)).0;
+    outline_coverage_at(on_line, segment.direction().0, point_px, width_px)
+}
+
+/// [`outline_coverage`] where the nearest point of the centreline and the line's direction are known.
+fn outline_coverage_at(on_line: DVec2, direction: DVec2, point_px: DVec2, width_px: f64) -> f64 {
+    let to_point = point_px - on_line;
     let distance = to_point.length();
-    let beside = outline_band(segment.offset_px(point_px).abs(), DVec2::new(-direction.y, direction.x), width_px);
+    let beside = outline_band(direction.perp_dot(to_point).abs(), DVec2::new(-direction.y, direction.x), width_px);
     if to_point.dot(direction).abs() <= 1e-3 * distance || distance <= 1e-3 {
         return beside;
     }
     beside.min((0.5 * width_px + 0.5 - distance).clamp(0.0, 1.0))
 }
 
-/// How far in front of a line's point the plane through four pixels passes there, less what rounding and their not
-/// lying in one plane explain, in depth-buffer units.
+/// What one of the four pixels around a point of the centreline says: whether its surface is not in front of the line,
+/// and whether it may be one of the edge's own faces.
+///
+/// - `offset`: of the pixel's centre from the centreline, px; positive as in [`ScreenSegment::offset_px`].
+/// - `slopes`: as in [`ScreenSegment::slopes`].
+/// - `per_px`: depth-buffer units of one px along the view.
+fn outline_vote(scene_depth: f64, depth: f64, offset: f64, slopes: [f64; 2], per_px: f64) -> (bool, bool) {
+    let slope = slopes[usize::from(offset < 0.0)].min(MAX_SLOPE * per_px);
+    let allowed = DEPTH_SLACK_PX * per_px + slope * offset.abs();
+    let behind = scene_depth - depth;
+    // A face of the edge may lie as far behind the line as it may lie in front.
+    (behind <= allowed, behind.abs() <= (DEPTH_SLACK_PX + MAX_SLOPE) * per_px)
+}
+
+/// How far in front of a point of a line the plane through four pixels is, less the tolerance for rounding and for the
+/// deviation of the four from a plane, in depth-buffer units.
 ///
 /// - `quad`: their depths: upper left and right, lower left and right.
 /// - `within`: the point from the upper left pixel's centre, px.
-fn outline_plane_before(quad: DVec4, within: DVec2, depth: f64, per_px: f64) -> f64 {
+fn outline_plane_in_front(quad: DVec4, within: DVec2, depth: f64, per_px: f64) -> f64 {
     let along_x = 0.5 * (quad.y - quad.x + quad.w - quad.z);
     let along_y = 0.5 * (quad.z - quad.x + quad.w - quad.y);
     let there = 0.25 * (quad.x + quad.y + quad.z + quad.w) + along_x * (within.x - 0.5) + along_y * (within.y - 0.5);
@@ -220,12 +253,12 @@ fn outline_plane_before(quad: DVec4, within: DVec2, depth: f64, per_px: f64) -> 
     there - depth - PLANE_SLACK_PX * per_px - PLANE_SLACK_PER_SLOPE * (along_x.abs() + along_y.abs()) - twist
 }
 
-/// The greater of the second differences of four depths in a row.
-fn outline_bend(depths: DVec4) -> f64 {
+/// The greater of the two second differences of four consecutive depths.
+fn outline_second_difference(depths: DVec4) -> f64 {
     (depths.x - 2.0 * depths.y + depths.z).abs().max((depths.y - 2.0 * depths.z + depths.w).abs())
 }
 
-/// Whether the surface around a line's point is in front of it by more than rounding and its own bends explain.
+/// Whether the surface around a point of a line is in front of it by more than rounding and its curvature explain.
 ///
 /// - `corner`: the upper left one of the four pixels around it, and `quad` their depths.
 fn outline_plane_hides(
@@ -236,14 +269,14 @@ fn outline_plane_hides(
     view: &LineView,
     depth_at: impl Fn(i64, i64) -> f64,
 ) -> bool {
-    // What stands for a pixel outside the picture tells nothing of the surface there.
+    // Outside the picture there are no depths.
     if corner.cmplt(DVec2::ZERO).any() || corner.cmpgt(view.viewport_px - 2.0).any() {
         return false;
     }
     let per_px = depth * view.depth_per_px.x + view.depth_per_px.y;
     let within = on_line - 0.5 - corner;
     let (x, y) = (corner.x as i64, corner.y as i64);
-    let before = outline_plane_before(quad, within, depth, per_px);
+    let before = outline_plane_in_front(quad, within, depth, per_px);
     if before <= 0.0 {
         return false;
     }
@@ -252,17 +285,20 @@ fn outline_plane_hides(
     let row = if lower { quad.zw() } else { quad.xy() };
     let column = if right { quad.yw() } else { quad.xz() };
     let (row_y, column_x) = (y + i64::from(lower), x + i64::from(right));
-    let bend_x = outline_bend(DVec4::new(depth_at(x - 1, row_y), row.x, row.y, depth_at(x + 2, row_y)));
-    let bend_y = outline_bend(DVec4::new(depth_at(column_x, y - 1), column.x, column.y, depth_at(column_x, y + 2)));
-    // Twice, since towards a silhouette a surface bends more than where it is measured.
-    before > 2.0 * (bend_x + bend_y)
+    let curvature_x =
+        outline_second_difference(DVec4::new(depth_at(x - 1, row_y), row.x, row.y, depth_at(x + 2, row_y)));
+    let curvature_y =
+        outline_second_difference(DVec4::new(depth_at(column_x, y - 1), column.x, column.y, depth_at(column_x, y + 2)));
+    // Twice, since towards a silhouette the curvature is greater than where it is measured.
+    before > 2.0 * (curvature_x + curvature_y)
 }
 
-/// Whether the centreline is seen at a fraction of its length.
+/// Whether the centreline is visible at a fraction of its length.
 ///
 /// - `depth_at`: the depth buffer's value at a pixel; x and y may lie outside the picture by a few px, and the
 ///   caller clamps them.
-/// - `cut_out`: the edge's own faces may be absent; the line is then seen only where a surface at its own depth is.
+/// - `cut_out`: the edge's own faces may be absent; the line is then visible only where there is a surface at its own
+///   depth.
 pub fn outline_is_visible(
     segment: &ScreenSegment,
     fraction: f64,
@@ -279,13 +315,9 @@ pub fn outline_is_visible(
     for (tap, scene) in (0u8..).zip(&mut quad) {
         let pixel = corner + DVec2::new(f64::from(tap & 1), f64::from(tap >> 1));
         let offset = direction.perp_dot(pixel + 0.5 - on_line);
-        let slope = segment.slopes[usize::from(offset < 0.0)].min(MAX_SLOPE * per_px);
-        let allowed = DEPTH_SLACK_PX * per_px + slope * offset.abs();
         *scene = depth_at(pixel.x as i64, pixel.y as i64);
-        let behind = *scene - depth;
-        seen |= behind <= allowed;
-        // A surface of its own may lie as far behind the line as it may lie in front.
-        surface |= behind.abs() <= (DEPTH_SLACK_PX + MAX_SLOPE) * per_px;
+        let votes = outline_vote(*scene, depth, offset, segment.slopes, per_px);
+        (seen, surface) = (seen || votes.0, surface || votes.1);
     }
     seen && (surface || !cut_out) && !outline_plane_hides(quad.into(), corner, on_line, depth, view, depth_at)
 }

@@ -1,24 +1,33 @@
-//! The verdict of a stencil buffer of shadow volumes, as a colour texture.
+//! Converts the counts in a stencil buffer of shadow volumes to a texture.
 //!
-//! [`crate::shadow_pass`] leaves counts in a stencil. Few GLES 3.0 and WebGL2 devices can read a stencil in a shader, so
-//! this pass lets the stencil test itself write 1 where [`crate::shadow_volume::outline_in_shadow`] holds, 0 elsewhere.
+//! [`crate::shadow_pass`] leaves counts in a stencil. Few GLES 3.0 and WebGL2 devices can read a stencil in a shader,
+//! so this pass uses the stencil test to write 1 where [`crate::shadow_volume::outline_in_shadow`] holds, 0 elsewhere.
 //! Reading the mask takes one load of an unsigned byte.
 
-/// Of the mask: 0 lit, 1 in shadow.
+use crate::OutlineError;
+use crate::shadow_pass::check_depth_stencil_format;
+use crate::target::{check_area, check_view, size};
+
+/// The format of the mask: 0 lit, 1 in shadow.
 pub const MASK_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Uint;
 
 const MASK_WGSL: &str = include_str!("shadow_mask.wgsl");
 
-/// The pipelines: one for counts other than 0, one that takes back those from 128 on.
+/// The pipelines: one writes 1 for counts other than 0, the other writes 0 for counts of 128 and more.
 #[derive(Debug)]
 pub struct ShadowMaskPass {
     some: wgpu::RenderPipeline,
     wrapped: wgpu::RenderPipeline,
+    format: wgpu::TextureFormat,
 }
 
 impl ShadowMaskPass {
     /// Makes the pipelines for a depth and stencil buffer of `format`, that of [`crate::shadow_pass::ShadowPass::new`].
-    pub fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
+    ///
+    /// # Errors
+    /// [`OutlineError::ViewFormat`] for a format without depth or without stencil.
+    pub fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Result<Self, OutlineError> {
+        check_depth_stencil_format(format)?;
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("shadow mask"),
             source: wgpu::ShaderSource::Wgsl(MASK_WGSL.into()),
@@ -59,22 +68,32 @@ impl ShadowMaskPass {
             })
         };
         // The reference of the stencil test is 0: NotEqual under all bits is "not 0", under the highest "128 and more".
-        Self {
+        Ok(Self {
             some: pipeline("fs_in_shadow", wgpu::CompareFunction::NotEqual, 0xff),
             wrapped: pipeline("fs_lit", wgpu::CompareFunction::NotEqual, 0x80),
-        }
+            format,
+        })
     }
 
-    /// Records writing the mask, [`MASK_FORMAT`], from a depth and stencil buffer of the same size.
+    /// Records writing the mask, [`MASK_FORMAT`], from a depth and stencil buffer of the same size: views of the first
+    /// level of textures with one sample a pixel.
     ///
     /// `area`: left, top, width and height, px, outside of which the mask becomes 0; `None` for all of it.
+    ///
+    /// # Errors
+    /// If a texture is not as said; [`OutlineError::Area`]. Nothing is recorded then.
     pub fn record(
         &self,
         encoder: &mut wgpu::CommandEncoder,
         depth_stencil: &wgpu::TextureView,
         mask: &wgpu::TextureView,
         area: Option<[u32; 4]>,
-    ) {
+    ) -> Result<(), OutlineError> {
+        let size_px = size(mask);
+        check_view("the mask", mask, "R8Uint", |format| format == MASK_FORMAT, None)?;
+        let needed = "the format that the pass was made for";
+        check_view("depth and stencil", depth_stencil, needed, |format| format == self.format, Some(size_px))?;
+        check_area(area, size_px)?;
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("shadow mask"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -96,7 +115,7 @@ impl ShadowMaskPass {
         });
         if let Some([x, y, width, height]) = area {
             if width == 0 || height == 0 {
-                return;
+                return Ok(());
             }
             pass.set_scissor_rect(x, y, width, height);
         }
@@ -105,5 +124,6 @@ impl ShadowMaskPass {
             pass.set_pipeline(pipeline);
             pass.draw(0..3, 0..1);
         }
+        Ok(())
     }
 }

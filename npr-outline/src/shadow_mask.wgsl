@@ -1,4 +1,4 @@
-// A triangle over the target; the stencil test decides which pixels get the number.
+// A triangle over the target; the stencil test selects the pixels that are written.
 
 @vertex
 fn vs_shadow_mask(@builtin(vertex_index) corner: u32) -> @builtin(position) vec4<f32> {

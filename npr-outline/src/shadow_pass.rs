@@ -1,24 +1,26 @@
-//! Shadow volumes into a stencil buffer on wgpu.
+//! Counts shadow volumes in a stencil buffer on wgpu.
 //!
-//! Counted behind the surface (depth fail), so that the eye may stand inside a volume: where
-//! [`crate::shadow_volume::outline_in_shadow`] says so of the stencil after the pass, what the depth buffer holds is in
-//! shadow, or turned away from the light. Volumes end at infinity, so the
-//! matrix must have no far plane, or the pass be made without depth clipping.
+//! Volumes are counted behind the surface (depth fail), so that the eye may be inside a volume. Where
+//! [`crate::shadow_volume::outline_in_shadow`] holds for the stencil after the pass, the surface in the depth buffer is
+//! in shadow or faces away from the light. Volumes reach to infinity, so that either the matrix has no far plane or the
+//! pass is made without depth clipping.
 //!
 //! The depth buffer must hold the same faces, placed by the same product of matrix and position with an `@invariant`
-//! result: a cap lies exactly on its face, equal depth counts as behind, and so a lit face does not shadow itself. No
-//! bias is needed, and none is there.
+//! result: a cap lies exactly on its face, equal depth counts as behind, and so a lit face does not shadow itself.
+//! There is no depth bias.
 //!
-//! 8 bits: a pixel under 128 to 256 layers of faces between it and the light is taken for lit.
+//! The stencil has 8 bits: a pixel with 128 to 256 layers of faces between it and the light is classified as lit.
 
 use crate::OutlineError;
 use crate::filled_buffer::filled_buffer;
+use crate::shader::assemble;
 use crate::shadow_volume::{ShadowCasters, VolumeEdge, VolumeFace};
+use crate::target::{check_area, check_no_far_plane, check_reversed, check_view, size, towards_viewer};
 use glam::{DMat4, DVec4};
 
 /// WGSL of [`crate::shadow_volume`]: no bindings, no entry points.
 pub const SHADOW_WGSL: &str = include_str!("shadow_volume.wgsl");
-const PASS_WGSL: &str = include_str!("shadow_pass.wgsl");
+const PASS: (&str, &str) = ("shadow_pass.wgsl", include_str!("shadow_pass.wgsl"));
 
 /// `ShadowView` of `shadow_pass.wgsl`.
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -29,7 +31,7 @@ struct ShadowUniform {
     local_light: [f32; 4],
 }
 
-/// What casts, on the device.
+/// The shadow casters of a model in buffers of the device.
 #[derive(Debug)]
 pub struct CastersOnDevice {
     origin: glam::Vec3,
@@ -38,14 +40,14 @@ pub struct CastersOnDevice {
 
 #[derive(Debug)]
 enum Source {
-    /// All of a model, of which the device takes its own.
+    /// All edges and faces of a model, from which vertex shaders select those that bound volumes.
     All { edges: Option<wgpu::Buffer>, edge_count: u32, faces: Option<wgpu::Buffer>, face_count: u32, open: bool },
     /// The triangles of one light's volumes: those of sides and of caps towards the light, then the other caps.
     Triangles { vertices: Option<wgpu::Buffer>, towards: u32, away: u32 },
 }
 
 impl CastersOnDevice {
-    /// Uploads all that can cast, for lights that the device sorts out itself: 64 bytes an edge and a face.
+    /// Uploads all edges and faces that can cast, for any light: 64 bytes for each edge and each face.
     ///
     /// # Errors
     /// [`OutlineError::TooManyEdges`].
@@ -60,12 +62,12 @@ impl CastersOnDevice {
         Ok(Self { origin: casters.origin, source })
     }
 
-    /// Uploads the volumes of one light, found on the CPU: [`ShadowCasters::triangles`]. The way of choice where the
-    /// device is software, which is slow at many small instances. Good for as long as the light stays where it is.
+    /// Uploads the volumes of one light, found on the CPU: [`ShadowCasters::triangles`]. Faster on software
+    /// adapters, which are slow at many small instances. Valid until the light changes.
     ///
     /// # Errors
     /// [`OutlineError::TooManyEdges`].
-    pub fn scanned(device: &wgpu::Device, casters: &ShadowCasters, light: DVec4) -> Result<Self, OutlineError> {
+    pub fn of_light(device: &wgpu::Device, casters: &ShadowCasters, light: DVec4) -> Result<Self, OutlineError> {
         let (mut triangles, away) = casters.triangles(light);
         let towards = triangles.len() as u32;
         triangles.extend_from_slice(&away);
@@ -82,12 +84,14 @@ impl CastersOnDevice {
 #[derive(Debug)]
 pub struct ShadowPass {
     layout: wgpu::BindGroupLayout,
-    /// For a light far away, and for one near.
+    /// For a directional light, and for a point light.
     sides: [wgpu::RenderPipeline; 2],
-    /// Turned towards the light, and away from it.
+    /// For faces towards the light, and for faces away from it.
     caps: [wgpu::RenderPipeline; 2],
-    /// The same of triangles that are there already.
+    /// The same for triangles made on the CPU.
     placed: [wgpu::RenderPipeline; 2],
+    format: wgpu::TextureFormat,
+    unclipped: bool,
 }
 
 /// Vertices of one sweep of an edge, and of the caps of a face, for a light far away and for one near.
@@ -98,8 +102,12 @@ impl ShadowPass {
     /// Makes the pipelines.
     ///
     /// - `format`: of the depth buffer, reversed, with a stencil: `Depth32FloatStencil8` where there is that.
-    /// - `unclipped`: needed for parallel views, whose depth ends; asks for `Features::DEPTH_CLIP_CONTROL`.
-    pub fn new(device: &wgpu::Device, format: wgpu::TextureFormat, unclipped: bool) -> Self {
+    /// - `unclipped`: needed for parallel views and others with a far plane; needs `Features::DEPTH_CLIP_CONTROL`.
+    ///
+    /// # Errors
+    /// [`OutlineError::ViewFormat`] for a format without depth or without stencil.
+    pub fn new(device: &wgpu::Device, format: wgpu::TextureFormat, unclipped: bool) -> Result<Self, OutlineError> {
+        check_depth_stencil_format(format)?;
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("shadow volumes"),
             source: wgpu::ShaderSource::Wgsl(wgsl().into()),
@@ -128,9 +136,9 @@ impl ShadowPass {
             depth_fail_op: operation,
             pass_op: wgpu::StencilOperation::Keep,
         };
-        let pipeline = |entry_point, buffer, constants: &[(&str, f64)], turned: bool| {
+        let pipeline = |entry_point, buffer, constants: &[(&str, f64)], faces_away: bool| {
             let (more, less) = (wgpu::StencilOperation::IncrementWrap, wgpu::StencilOperation::DecrementWrap);
-            let (front, back) = if turned { (more, less) } else { (less, more) };
+            let (front, back) = if faces_away { (more, less) } else { (less, more) };
             device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
                 label: Some(entry_point),
                 layout: Some(&pipeline_layout),
@@ -144,7 +152,7 @@ impl ShadowPass {
                 depth_stencil: Some(wgpu::DepthStencilState {
                     format,
                     depth_write_enabled: Some(false),
-                    // Reversed: what is strictly nearer than the surface is not counted.
+                    // Reversed depth: fragments strictly nearer than the surface are not counted.
                     depth_compare: Some(wgpu::CompareFunction::Greater),
                     stencil: wgpu::StencilState {
                         front: counted(front),
@@ -190,8 +198,9 @@ impl ShadowPass {
             step_mode: wgpu::VertexStepMode::Vertex,
             attributes: &wgpu::vertex_attr_array![0 => Float32x4],
         };
-        let placed = [false, true].map(|turned| pipeline("vs_placed", placed_buffer.clone(), &[], turned));
-        Self { sides: SWEEP_VERTICES.map(side), caps: [cap(1.0), cap(-1.0)], placed, layout }
+        let placed = [false, true].map(|faces_away| pipeline("vs_placed", placed_buffer.clone(), &[], faces_away));
+        let (sides, caps) = (SWEEP_VERTICES.map(side), [cap(1.0), cap(-1.0)]);
+        Ok(Self { sides, caps, placed, layout, format, unclipped })
     }
 
     /// Records the pass: clears the stencil, and counts the volumes against the depth that is there.
@@ -199,8 +208,13 @@ impl ShadowPass {
     /// - `light`: world space, a point with w = 1 or the direction to the light with w = 0;
     /// - `clip_from_world`: of the depth buffer, reversed, rounded to f32 as the scene's own was;
     /// - `endless`: of a parallel view what [`ShadowCasters::endless`] says of its direction, else 0;
-    /// - `area`: left, top, width and height, px, in which there are surfaces: volumes reach to infinity, and what is
-    ///   counted before nothing is of no use. All of it without.
+    /// - `area`: left, top, width and height, px, in which there are surfaces: volumes reach to infinity, and counting
+    ///   where there is no surface is wasted. `None` for the whole target.
+    ///
+    /// # Errors
+    /// If `depth_stencil` is no view of the first level of a texture of the pass's format with one sample a pixel;
+    /// [`OutlineError::Area`]; [`OutlineError::StandardDepth`] and, of a pass with depth clipping,
+    /// [`OutlineError::FarPlane`], where the matrix can be judged. Nothing is recorded then.
     #[expect(clippy::too_many_arguments, reason = "each is a thing of its own; a struct would only rename them")]
     pub fn record(
         &self,
@@ -212,7 +226,14 @@ impl ShadowPass {
         depth_stencil: &wgpu::TextureView,
         endless: u32,
         area: Option<[u32; 4]>,
-    ) {
+    ) -> Result<(), OutlineError> {
+        check_reversed(&clip_from_world, Some(towards_viewer(&clip_from_world)))?;
+        if !self.unclipped {
+            check_no_far_plane(&clip_from_world)?;
+        }
+        let needed = "the format that the pass was made for";
+        check_view("depth and stencil", depth_stencil, needed, |format| format == self.format, None)?;
+        check_area(area, size(depth_stencil))?;
         let local = light - casters.origin.as_dvec3().extend(0.0) * light.w;
         let uniform = ShadowUniform {
             clip_from_world: clip_from_world.as_mat4().to_cols_array_2d(),
@@ -242,14 +263,14 @@ impl ShadowPass {
         pass.set_bind_group(0, &group, &[]);
         if let Some([x, y, width, height]) = area {
             if width == 0 || height == 0 {
-                return;
+                return Ok(());
             }
             pass.set_scissor_rect(x, y, width, height);
         }
         let near = usize::from(light.w != 0.0);
         match &casters.source {
             Source::All { edges, edge_count, faces, face_count, open } => {
-                // Of a closed model no edge sweeps twice, and no face casts that is turned away.
+                // In a closed model no edge sweeps twice, and no face casts that faces away from the light.
                 let times = if *open { 2 } else { 1 };
                 if let Some(edges) = edges {
                     pass.set_pipeline(&self.sides[near]);
@@ -265,7 +286,7 @@ impl ShadowPass {
                 }
             }
             Source::Triangles { vertices, towards, away } => {
-                let Some(vertices) = vertices else { return };
+                let Some(vertices) = vertices else { return Ok(()) };
                 pass.set_vertex_buffer(0, vertices.slice(..));
                 for (pipeline, range) in self.placed.iter().zip([0..*towards, *towards..towards + away]) {
                     if !range.is_empty() {
@@ -275,12 +296,22 @@ impl ShadowPass {
                 }
             }
         }
+        Ok(())
     }
 }
 
+/// Refuses formats without depth or without stencil.
+pub(crate) fn check_depth_stencil_format(format: wgpu::TextureFormat) -> Result<(), OutlineError> {
+    if format.has_depth_aspect() && format.has_stencil_aspect() {
+        return Ok(());
+    }
+    let needed = "a format of depth and stencil, such as Depth32FloatStencil8,";
+    Err(OutlineError::ViewFormat { what: "depth and stencil", format, needed })
+}
+
 /// The whole shader of the pass.
-pub fn wgsl() -> String {
-    [SHADOW_WGSL, PASS_WGSL].concat()
+pub(crate) fn wgsl() -> String {
+    assemble(&[("shadow_volume.wgsl", SHADOW_WGSL), PASS])
 }
 
 const fn attribute(shader_location: u32, offset: u64, format: wgpu::VertexFormat) -> wgpu::VertexAttribute {

@@ -1,10 +1,10 @@
-// Shadow volumes into a stencil buffer. Appended to `shadow_volume.wgsl`.
+// Counts shadow volumes in a stencil buffer.
 
 struct ShadowView {
     clip_from_world: mat4x4<f32>,
     // World space: a point with w = 1, or the direction to the light with w = 0.
     light: vec4<f32>,
-    // The same, relative to what the planes are relative to.
+    // The light relative to the origin of the planes.
     local_light: vec4<f32>,
 }
 
@@ -12,10 +12,10 @@ struct ShadowView {
 
 // Vertices of one sweep of an edge: a triangle to the one point at infinity, or two.
 override sweep_vertices: u32 = 6u;
-// 1: the faces that are turned towards the light, -1: the others.
+// 1: faces towards the light, -1: faces away from it.
 override cap_turn: i32 = 1;
 
-// Where nothing is drawn.
+// A position that draws nothing: all corners of a triangle are here.
 const NOWHERE: vec4<f32> = vec4<f32>(0.0, 0.0, 0.0, 1.0);
 
 struct Placed {
@@ -33,14 +33,14 @@ fn vs_side(
     }
     let start = select(second, first, sweeps > 0);
     let end = select(first, second, sweeps > 0);
-    var place = vec4<f32>(end, 1.0);
+    var corner = vec4<f32>(end, 1.0);
     switch index % sweep_vertices {
-        case 1u: { place = vec4<f32>(start, 1.0); }
-        case 2u, 4u: { place = outline_swept(start, view.light); }
-        case 5u: { place = outline_swept(end, view.light); }
+        case 1u: { corner = vec4<f32>(start, 1.0); }
+        case 2u, 4u: { corner = outline_swept(start, view.light); }
+        case 5u: { corner = outline_swept(end, view.light); }
         default: {}
     }
-    return Placed(view.clip_from_world * place);
+    return Placed(view.clip_from_world * corner);
 }
 
 @vertex
@@ -51,7 +51,7 @@ fn vs_cap(
     if outline_casting(plane, (flags & VOLUME_OPEN) != 0u, view.local_light) != cap_turn {
         return Placed(NOWHERE);
     }
-    // The near cap as wound, the far one turned over.
+    // The near cap as wound, the far cap with the opposite winding.
     var corner = a;
     switch index {
         case 1u, 5u: { corner = b; }
@@ -61,11 +61,11 @@ fn vs_cap(
     if index > 2u {
         return Placed(view.clip_from_world * outline_swept(corner, view.light));
     }
-    // As the scene's faces are placed, to the last bit: a cap lies exactly on its face.
+    // The same arithmetic as for the scene's faces, so that a cap lies exactly on its face.
     return Placed(view.clip_from_world * vec4<f32>(corner, 1.0));
 }
 
-// A corner of a triangle that was made on the CPU: where it is with w = 1, or with w = 0 what is swept from there.
+// A corner of a triangle made on the CPU: a position with w = 1, or with w = 0 the position that is swept to infinity.
 @vertex
 fn vs_placed(@location(0) corner: vec4<f32>) -> Placed {
     if corner.w == 0.0 {

@@ -1,33 +1,33 @@
-//! Shadow volumes: what lies in the dark behind a model's faces, from the same edges as the lines.
+//! Shadow volumes of a model, from the same edges as the lines.
 //!
 //! # What casts
 //!
 //! A shadow volume is bounded by the casting faces themselves (its near caps), by the quadrilaterals that edges sweep
-//! away from the light, and by the faces swept to infinity (its far caps). How often a point lies inside is how many
-//! casting faces there are between it and the light, so whatever else the topology is, a count above zero is shadow.
+//! away from the light, and by the faces swept to infinity (its far caps). The number of volumes around a point is the
+//! number of casting faces between it and the light, so that for any topology a count above zero is shadow.
 //!
-//! - Of a *closed* surface, every edge with two faces that are wound alike, only the faces towards the light cast. Then
-//!   an edge sweeps where one of its faces is turned towards the light and the other away from it: the contour seen from
-//!   the light, by the very test that finds contours for the eye ([`outline_facing`], once a face).
-//! - Elsewhere every face casts on its own, turned so that it faces the light, and an edge sweeps as often as the
-//!   directions in which its faces run over it do not cancel out: once at a boundary, not at all where a surface goes
-//!   on, twice where it folds over. No winding is believed and no neighbour is needed, so nothing can leak.
+//! - Of a *closed* surface, every edge with two faces that are wound consistently, only the faces towards the light
+//!   cast. Then an edge sweeps where one of its faces faces the light and the other does not: the contour seen from the
+//!   light, by the same test that finds contours for the eye ([`outline_facing`], once for each face).
+//! - Elsewhere every face casts by itself, oriented so that it faces the light, and the number of sweeps of an edge is
+//!   the sum of the directions in which its faces run over it: 1 at a boundary, 0 where a surface continues, 2 where it
+//!   folds over. This depends on no winding and no neighbour, so that no volume is open.
 //!
-//! Since each face is turned as a whole, by one number that all its edges share, the volumes are closed by construction,
-//! also where a face is within rounding of edge-on.
+//! Since the orientation of a face is decided once and is the same for all its edges, the volumes are closed, also
+//! where a face is within rounding of edge-on.
 //!
-//! Faces of zero area cast nothing, but stay, so that the edges around them fit. Redundant faces
-//! ([`npr_mesh::edges::EdgeOptions::skip_redundant`]) and blended materials cast nothing. A material that alpha cuts out
-//! casts the shadow of its whole faces: a volume knows no texture.
+//! Faces of zero area cast nothing, but are kept, so that the edges around them match. Redundant faces
+//! ([`npr_mesh::edges::EdgeOptions::skip_redundant`]) and blended materials cast nothing. A material that alpha cuts
+//! out casts the shadow of its whole faces, since volumes have no textures.
 //!
 //! # Sources
 //!
 //! - F. C. Crow: *Shadow Algorithms for Computer Graphics*, SIGGRAPH 1977: shadow volumes.
-//! - C. Everitt, M. J. Kilgard: *Practical and Robust Stenciled Shadow Volumes for Hardware-Accelerated Rendering*, 2002:
-//!   counting behind the surface (depth fail), caps at infinity, a projection without far plane.
-//! - G. Aldridge, E. Woods: *Robust, geometry-independent shadow volumes*, GRAPHITE 2004, and B. Kim, K. Kim, G. Turk: *A
-//!   Shadow-Volume Algorithm for Opaque and Transparent Nonmanifold Casters*, Journal of Graphics Tools 13:3, 2008: edges
-//!   that sweep as often as their faces' directions do not cancel out.
+//! - C. Everitt, M. J. Kilgard: *Practical and Robust Stenciled Shadow Volumes for Hardware-Accelerated Rendering*,
+//!   2002: counting behind the surface (depth fail), caps at infinity, a projection without far plane.
+//! - G. Aldridge, E. Woods: *Robust, geometry-independent shadow volumes*, GRAPHITE 2004, and B. Kim, K. Kim, G. Turk:
+//!   *A Shadow-Volume Algorithm for Opaque and Transparent Nonmanifold Casters*, Journal of Graphics Tools 13:3, 2008:
+//!   edges that sweep as often as their faces' directions do not cancel out.
 //! - D. Card, J. L. Mitchell 2002, "Shadow Outlines": stencil shadows in an NPR renderer.
 
 use crate::contour::outline_facing;
@@ -35,30 +35,30 @@ use glam::{DVec3, DVec4, Vec3, Vec4};
 use npr_mesh::edges::{Edge, EdgeKind, Edges, NO_FACE};
 use npr_mesh::{AlphaMode, Model};
 
-/// Of a [`VolumeEdge`]: there is a second face.
+/// In [`VolumeEdge::flags`]: there is a second face.
 pub const VOLUME_SECOND: u32 = 1;
-/// Of a [`VolumeEdge`]: the second face runs over the edge in the direction of the first.
-pub const VOLUME_SAME_WAY: u32 = 2;
-/// Of a [`VolumeEdge`] and a [`VolumeFace`]: the (first) face casts whichever side the light is on.
+/// In [`VolumeEdge::flags`]: the second face runs over the edge in the direction of the first.
+pub const VOLUME_SAME_DIRECTION: u32 = 2;
+/// In [`VolumeEdge::flags`] and [`VolumeFace::flags`]: the (first) face casts on whichever side the light is.
 pub const VOLUME_OPEN: u32 = 4;
-/// Of a [`VolumeEdge`]: the second face does.
+/// In [`VolumeEdge::flags`]: the second face casts on whichever side the light is.
 pub const VOLUME_SECOND_OPEN: u32 = 8;
 
 /// An edge that may sweep a side of a volume: 64 bytes.
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub struct VolumeEdge {
-    /// World space; the first face runs from here.
+    /// The end at which the first face's winding enters the edge, world space.
     pub from: [f32; 3],
-    /// Of the `VOLUME_` bits.
+    /// A sum of `VOLUME_` bits.
     pub flags: u32,
-    /// World space.
+    /// The other end, world space.
     pub to: [f32; 3],
     /// Unused, 0.
     pub padding: u32,
-    /// Of the first face, as it is wound, relative to [`ShadowCasters::origin`].
+    /// The plane of the first face, for its own winding, relative to [`ShadowCasters::origin`].
     pub plane0: [f32; 4],
-    /// Of the second face, as it is wound; zeros without one.
+    /// The plane of the second face, for its own winding; zeros without one.
     pub plane1: [f32; 4],
 }
 
@@ -66,44 +66,44 @@ pub struct VolumeEdge {
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub struct VolumeFace {
-    /// World space, as wound.
+    /// The first corner, world space.
     pub a: [f32; 3],
     /// [`VOLUME_OPEN`] or 0.
     pub flags: u32,
-    /// World space.
+    /// The second corner, world space.
     pub b: [f32; 3],
     /// Unused, 0.
     pub padding0: u32,
-    /// World space.
+    /// The third corner, world space.
     pub c: [f32; 3],
     /// Unused, 0.
     pub padding1: u32,
-    /// As in the edges.
+    /// The plane of the face, as [`VolumeEdge::plane0`].
     pub plane: [f32; 4],
 }
 
 const _: () = assert!(size_of::<VolumeEdge>() == 64 && size_of::<VolumeFace>() == 64);
 
-/// Everything of a model that can cast a shadow.
+/// The edges and faces of a model that can cast a shadow.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ShadowCasters {
-    /// What the planes are relative to.
+    /// The origin of the planes' coordinates.
     pub origin: Vec3,
-    /// At most as many as there are sides of faces.
+    /// The edges that may sweep, at most three for each face.
     pub edges: Vec<VolumeEdge>,
-    /// At most as many as the model has.
+    /// The faces that may cap, at most those of the model.
     pub faces: Vec<VolumeFace>,
-    /// Whether some face casts whichever side the light is on; then an edge may sweep twice.
+    /// Whether some face casts on whichever side the light is; then an edge may sweep twice.
     pub open: bool,
 }
 
-/// Whether a face casts at all, whatever its place.
+/// Whether a face can cast a shadow.
 fn casts(model: &Model, edges: &Edges, face: usize) -> bool {
     let blended = model.material_of(face as u32).is_some_and(|material| material.alpha_mode == AlphaMode::Blend);
     !blended && edges.skipped.get(face) != Some(&true)
 }
 
-/// Gathers what casts.
+/// Gathers the edges and faces of a model that can cast.
 ///
 /// `edges`: of this model's triangles, found without polygons (an empty `face_polygon`), so that diagonals are among
 /// them: a polygon may be warped, and its triangles then face a light differently. Where the model's `face_material` is
@@ -137,7 +137,7 @@ pub fn shadow_casters(model: &Model, edges: &Edges) -> ShadowCasters {
         let mut flags = if open[first as usize] { VOLUME_OPEN } else { 0 };
         if let Some((second, same_way)) = second {
             flags |= VOLUME_SECOND;
-            flags |= if same_way { VOLUME_SAME_WAY } else { 0 };
+            flags |= if same_way { VOLUME_SAME_DIRECTION } else { 0 };
             flags |= if open[second as usize] { VOLUME_SECOND_OPEN } else { 0 };
         }
         casters.edges.push(VolumeEdge {
@@ -174,7 +174,7 @@ pub fn shadow_casters(model: &Model, edges: &Edges) -> ShadowCasters {
 /// The plane of a triangle as it is wound: a unit normal and −n · a; zeros where it has no area.
 fn plane(corners: [Vec3; 3], origin: Vec3) -> [f32; 4] {
     let [a, b, c] = corners.map(|corner| corner.as_dvec3() - origin.as_dvec3());
-    // Brought to a common size, so that no square leaves the range.
+    // Scaled to a common size, so that no square overflows or underflows.
     let (ab, ac) = (b - a, c - a);
     let size = ab.abs().max_element().max(ac.abs().max_element());
     let normal = (ab / size).cross(ac / size).normalize_or_zero();
@@ -184,7 +184,7 @@ fn plane(corners: [Vec3; 3], origin: Vec3) -> [f32; 4] {
     normal.as_vec3().extend(-normal.dot(a) as f32).to_array()
 }
 
-/// Per face whether its part of the surface is not closed, or is not wound alike.
+/// For each face whether its connected component is open or inconsistently wound.
 fn open_faces(edges: &Edges, casting: &[bool]) -> Vec<bool> {
     let mut above: Vec<u32> = (0..casting.len() as u32).collect();
     fn root(above: &mut [u32], mut face: u32) -> u32 {
@@ -216,42 +216,42 @@ fn open_faces(edges: &Edges, casting: &[bool]) -> Vec<bool> {
     (0..casting.len() as u32).map(|face| open[root(&mut above, face) as usize]).collect()
 }
 
-/// 1 where a face is turned towards the light, −1 where away from it: how it casts.
+/// 1 where a face faces the light, −1 where it faces away.
 #[inline]
-pub fn outline_turn(plane: [f32; 4], light: Vec4) -> i32 {
+pub fn outline_light_side(plane: [f32; 4], light: Vec4) -> i32 {
     if outline_facing(plane, light) >= 0.0 { 1 } else { -1 }
 }
 
-/// How a face casts: 1 turned towards the light, −1 away from it, 0 not at all.
+/// How a face casts: 1 facing the light, −1 facing away from it, 0 where it does not cast.
 #[inline]
-pub fn outline_casting(plane: [f32; 4], open: bool, light: Vec4) -> i32 {
-    let turn = outline_turn(plane, light);
-    if open { turn } else { turn.max(0) }
+fn outline_casting(plane: [f32; 4], open: bool, light: Vec4) -> i32 {
+    let side = outline_light_side(plane, light);
+    if open { side } else { side.max(0) }
 }
 
-/// How often an edge sweeps, −2..=2: from `from` to `to` if positive, else from `to` to `from`.
+/// The number of sweeps of an edge, −2..=2: from `from` to `to` if positive, else from `to` to `from`.
 ///
 /// `light`: relative to [`ShadowCasters::origin`], a point with w = 1 or the direction to the light with w = 0.
 #[inline]
-pub fn outline_sweeps(edge: &VolumeEdge, light: Vec4) -> i32 {
+fn outline_sweeps(edge: &VolumeEdge, light: Vec4) -> i32 {
     let mut sweeps = outline_casting(edge.plane0, edge.flags & VOLUME_OPEN != 0, light);
     if edge.flags & VOLUME_SECOND != 0 {
         let second = outline_casting(edge.plane1, edge.flags & VOLUME_SECOND_OPEN != 0, light);
-        sweeps += if edge.flags & VOLUME_SAME_WAY != 0 { second } else { -second };
+        sweeps += if edge.flags & VOLUME_SAME_DIRECTION != 0 { second } else { -second };
     }
     sweeps
 }
 
-/// Whether a stencil's count of 8 bits says shadow: that of 1 to 127 volumes.
+/// Whether a stencil count of 8 bits means shadow: 1 to 127 volumes.
 ///
-/// What is above are the negative numbers. No point lies in fewer than no volumes, but where an edge runs through a pixel's
-/// centre a side that was clipped, and so rounded, may miss a pixel that its cap has.
+/// Larger values are negative counts. Exact counts are never negative, but where an edge runs through a pixel's centre
+/// a side that was clipped, and so rounded, may miss a pixel that its cap covers.
 #[inline]
 pub fn outline_in_shadow(count: u8) -> bool {
     (1..128).contains(&count)
 }
 
-/// Where what lies at a point ends up, swept away from the light to infinity: a direction, w = 0.
+/// The homogeneous position of a point swept away from the light to infinity: a direction, w = 0.
 ///
 /// `light`: world space, a point with w = 1 or the direction to the light with w = 0.
 #[inline]
@@ -260,12 +260,12 @@ pub fn outline_swept(point: DVec3, light: DVec4) -> DVec4 {
 }
 
 impl ShadowCasters {
-    /// The light in the planes' own coordinates. `light` is a world-space point with w = 1 or direction with w = 0.
-    pub fn local_light(&self, light: DVec4) -> Vec4 {
+    /// The light in the coordinates of the planes. `light` is a world-space point with w = 1 or direction with w = 0.
+    fn local_light(&self, light: DVec4) -> Vec4 {
         (light - self.origin.as_dvec3().extend(0.0) * light.w).as_vec4()
     }
 
-    /// Gathers the edges that sweep and the faces that cap for a light. `edges` and `faces` are emptied first; at most as many as there are.
+    /// Gathers the edges that sweep and the faces that cap for a light. `edges` and `faces` are cleared first.
     ///
     /// `light`: world space, a point with w = 1 or the direction to the light with w = 0.
     pub fn scan(&self, light: DVec4, edges: &mut Vec<VolumeEdge>, faces: &mut Vec<VolumeFace>) {
@@ -278,12 +278,12 @@ impl ShadowCasters {
         );
     }
 
-    /// The triangles of a light's volumes, three corners each: first those of sides and of caps towards the light, counted
-    /// where they are seen from outside as what they are; then the caps of faces turned away from the light, as these are
-    /// wound, counted the other way round. A corner is a place with w = 1, or with w = 0 what is swept from there to
-    /// infinity ([`outline_swept`]).
+    /// The triangles of a light's volumes, three corners each: first those of sides and of caps of faces
+    /// towards the light, wound counter-clockwise seen from outside; then the caps of faces away from the light with
+    /// their own winding, which count with the opposite sign. A corner is a position with w = 1, or with w = 0 one that
+    /// is swept to infinity ([`outline_swept`]).
     ///
-    /// At most 12 corners a side of a face and 6 a face. `light`: as for [`ShadowCasters::scan`].
+    /// At most 12 corners for each edge record and 6 for each face. `light`: as for [`ShadowCasters::scan`].
     pub fn triangles(&self, light: DVec4) -> (Vec<[f32; 4]>, Vec<[f32; 4]>) {
         let local = self.local_light(light);
         let (mut towards, mut away) = (Vec::new(), Vec::new());
@@ -313,12 +313,12 @@ impl ShadowCasters {
         (towards, away)
     }
 
-    /// In how many volumes a way that goes on for ever ends: through how many casting faces the ray from the light in its
-    /// direction goes.
+    /// The number of volumes around the point at infinity in a direction: the number of casting faces that the ray from
+    /// the light in that direction crosses.
     ///
-    /// The lines of sight of a parallel view all go one way, and there caps at infinity are seen edge-on: this is what they
-    /// would count, for every pixel. 0 under a light far away, whose volumes end in a point. A sum over all faces; `light`:
-    /// as for [`ShadowCasters::scan`].
+    /// In a parallel view the caps at infinity are seen edge-on and are not rasterised; this is their count, the same
+    /// for every pixel. 0 for a directional light, whose volumes end in a point. A sum over all faces; `light`: as for
+    /// [`ShadowCasters::scan`].
     pub fn endless(&self, light: DVec4, direction: DVec3) -> u32 {
         if light.w == 0.0 {
             return 0;
@@ -333,54 +333,6 @@ impl ShadowCasters {
         let casting = |face: &&VolumeFace| outline_casting(face.plane, face.flags & VOLUME_OPEN != 0, local) != 0;
         self.faces.iter().filter(casting).filter(is_hit).count() as u32
     }
-
-    /// In how many volumes a point lies, by the signed crossings of a ray from it to `beyond`, a point that lies in none:
-    /// the definition, for tests, in f64. Sides are taken as they are swept, caps as they are turned.
-    pub fn count_at(&self, point: DVec3, beyond: DVec3, light: DVec4) -> i32 {
-        let local = self.local_light(light);
-        let mut count = 0;
-        let mut crossed = |corners: [DVec4; 3], times: i32| count += times * crossing(corners, point, beyond);
-        for edge in &self.edges {
-            let sweeps = outline_sweeps(edge, local);
-            let ends = [edge.from, edge.to].map(|end| Vec3::from(end).as_dvec3());
-            let [from, to] = if sweeps > 0 { ends } else { [ends[1], ends[0]] };
-            let [near_from, near_to] = [from, to].map(|end| end.extend(1.0));
-            let [far_from, far_to] = [from, to].map(|end| outline_swept(end, light));
-            crossed([near_to, near_from, far_from], sweeps.abs());
-            if light.w != 0.0 {
-                crossed([near_to, far_from, far_to], sweeps.abs());
-            }
-        }
-        for face in &self.faces {
-            let casting = outline_casting(face.plane, face.flags & VOLUME_OPEN != 0, local);
-            let corners = [face.a, face.b, face.c].map(|corner| Vec3::from(corner).as_dvec3());
-            crossed(corners.map(|corner| corner.extend(1.0)), casting);
-            if light.w != 0.0 {
-                let [a, b, c] = corners.map(|corner| outline_swept(corner, light));
-                crossed([a, c, b], casting);
-            }
-        }
-        count
-    }
-}
-
-/// 1 where the way from `inside` to `outside` leaves through a homogeneous triangle, counter-clockwise from outside, −1
-/// where it enters, 0 where it passes by.
-fn crossing(corners: [DVec4; 3], inside: DVec3, outside: DVec3) -> i32 {
-    // Signs of 4×4 determinants: the sides of planes through three homogeneous points.
-    let side = |a: DVec4, b: DVec4, c: DVec4, d: DVec4| glam::DMat4::from_cols(a, b, c, d).determinant();
-    let [a, b, c] = corners;
-    let (p, q) = (inside.extend(1.0), outside.extend(1.0));
-    let (at_p, at_q) = (side(a, b, c, p), side(a, b, c, q));
-    if at_p * at_q >= 0.0 {
-        return 0;
-    }
-    let [u, v, w] = [side(p, q, a, b), side(p, q, b, c), side(p, q, c, a)];
-    let within = (u > 0.0 && v > 0.0 && w > 0.0) || (u < 0.0 && v < 0.0 && w < 0.0);
-    if !within {
-        return 0;
-    }
-    if at_p > 0.0 { 1 } else { -1 }
 }
 
 #[cfg(test)]

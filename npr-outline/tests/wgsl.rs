@@ -1,10 +1,14 @@
 //! All WGSL of the crate parses and validates, alone where it is a library and together as the passes use it.
 
-use naga::valid::{Capabilities, ValidationFlags, Validator};
+#[path = "../../npr-imagespace/tests/wgsl/twins.rs"]
+mod twins;
 
-const LINE: &str = include_str!("../src/line.wgsl");
+use naga::valid::{Capabilities, ValidationFlags, Validator};
+use twins::{Except, Twins};
+
+const CONTOUR: &str = include_str!("../src/contour.wgsl");
+const LINE: &str = include_str!("../src/segment.wgsl");
 const LINE_INK: &str = include_str!("../src/line_ink.wgsl");
-const LINE_STROKES: &str = include_str!("../src/line_strokes.wgsl");
 const LINE_PASS: &str = include_str!("../src/line_pass.wgsl");
 const LINE_PULLED: &str = include_str!("../src/line_pulled.wgsl");
 const COMPACTION: &str = include_str!("../src/compaction.wgsl");
@@ -31,10 +35,9 @@ fn entry_points(parts: &[&str]) -> Vec<String> {
 
 #[test]
 fn modules_validate_as_the_passes_use_them() {
-    assert_eq!(entry_points(&[LINE, LINE_INK, LINE_PASS]), ["vs_record", "fs_ink"]);
-    assert_eq!(entry_points(&[LINE, LINE_INK, LINE_PASS, LINE_PULLED]), ["vs_record", "fs_ink", "vs_pulled"]);
-    assert_eq!(entry_points(&[LINE, LINE_INK, LINE_STROKES]), ["stroke", "mix_ink", "lay_ink"]);
-    assert_eq!(entry_points(&[LINE, COMPACTION]), ["compact"]);
+    assert_eq!(entry_points(&[CONTOUR, LINE, LINE_INK, LINE_PASS]), ["vs_record", "fs_ink"]);
+    assert_eq!(entry_points(&[CONTOUR, LINE, LINE_INK, LINE_PASS, LINE_PULLED]), ["vs_record", "fs_ink", "vs_pulled"]);
+    assert_eq!(entry_points(&[CONTOUR, LINE, COMPACTION]), ["compact"]);
     assert_eq!(entry_points(&[NORMAL_FORMAT, FIN_PRINTED, FIN_PASS]), ["vs_fin", "vs_fin_oct", "fs_fin"]);
     assert_eq!(entry_points(&[SHADOW_VOLUME, SHADOW_PASS]), ["vs_side", "vs_cap", "vs_placed"]);
     assert_eq!(entry_points(&[SHADOW_MASK]), ["vs_shadow_mask", "fs_in_shadow", "fs_lit"]);
@@ -43,9 +46,14 @@ fn modules_validate_as_the_passes_use_them() {
 #[test]
 fn libraries_have_no_bindings_no_entry_points_and_one_prefix_each() {
     // Together, too: no name stands in two of them.
-    validated(&[LINE, NORMAL_FORMAT, FIN_PRINTED, SHADOW_VOLUME]);
-    let libraries =
-        [(LINE, "outline_"), (NORMAL_FORMAT, "normal_"), (FIN_PRINTED, "fin_printed_"), (SHADOW_VOLUME, "outline_")];
+    validated(&[CONTOUR, LINE, NORMAL_FORMAT, FIN_PRINTED, SHADOW_VOLUME]);
+    let libraries = [
+        (CONTOUR, "outline_"),
+        (LINE, "outline_"),
+        (NORMAL_FORMAT, "normal_"),
+        (FIN_PRINTED, "fin_printed_"),
+        (SHADOW_VOLUME, "outline_"),
+    ];
     for (library, prefix) in libraries {
         let module = validated(&[library]);
         assert!(module.entry_points.is_empty() && module.global_variables.is_empty());
@@ -53,5 +61,52 @@ fn libraries_have_no_bindings_no_entry_points_and_one_prefix_each() {
         for (_, function) in module.functions.iter() {
             assert!(function.name.as_deref().unwrap().starts_with(prefix), "{:?}", function.name);
         }
+    }
+}
+
+const TWINS: Twins<'_> = Twins {
+    types: &[
+        ("LineKind", "u32"),
+        ("LineView", "OutlineView"),
+        ("ScreenSegment", "OutlineSegment"),
+        ("FinView", "FinPrintedView"),
+    ],
+    members: &[
+        ("EdgePlanes", &[("plane0", "vec4<f32>"), ("plane1", "vec4<f32>")]),
+        (
+            "PrintedFin",
+            &[
+                ("position", "vec3<f32>"),
+                ("smooth_normal", "vec3<f32>"),
+                ("n_face0", "vec3<f32>"),
+                ("n_face1", "vec3<f32>"),
+            ],
+        ),
+        // Its ends do not decide how often it sweeps.
+        ("VolumeEdge", &[("flags", "u32"), ("plane0", "vec4<f32>"), ("plane1", "vec4<f32>")]),
+    ],
+    exceptions: &[
+        ("outline_cross", Except::Missing, "DVec2::perp_dot"),
+        ("outline_clip", Except::Result, "fractions, of which the first is above the second where Rust has None"),
+        ("fin_printed_depth", Except::Parameters, "the view has what FinDepth has, as a flag and two numbers"),
+    ],
+};
+
+#[test]
+fn functions_have_the_signatures_of_the_rust_ones() {
+    let files = [
+        ("contour.wgsl", "contour.rs"),
+        ("segment.wgsl", "segment.rs"),
+        ("normal_format.wgsl", "normal_format.rs"),
+        ("fin_printed.wgsl", "fin_printed.rs"),
+        ("shadow_volume.wgsl", "shadow_volume.rs"),
+    ];
+    let source = |file: &str| std::fs::read_to_string(format!("{}/src/{file}", env!("CARGO_MANIFEST_DIR"))).unwrap();
+    let module = validated(&[CONTOUR, LINE, NORMAL_FORMAT, FIN_PRINTED, SHADOW_VOLUME]);
+    let differences: Vec<_> =
+        (files.iter()).flat_map(|(wgsl, rust)| TWINS.differences(&module, &source(wgsl), &source(rust))).collect();
+    assert!(differences.is_empty(), "{}", differences.join("\n"));
+    for (name, ..) in TWINS.exceptions {
+        assert!(module.functions.iter().any(|(_, function)| function.name.as_deref() == Some(*name)), "{name}");
     }
 }

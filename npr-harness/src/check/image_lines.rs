@@ -21,15 +21,15 @@ use crate::truth::lines::{
 };
 use crate::view::View;
 use glam::UVec2;
-use npr_imagespace::filter::depth::{ANY_OS, DepthPlain, SUM_CM};
+use npr_imagespace::filter::depth::{DEPTH_ANY_OUTLINING_SKETCH, DEPTH_SUM_CARD_MITCHELL, DepthPlain};
 use npr_imagespace::filter::fused::{DepthTest, FusedFilter};
 use npr_imagespace::filter::inker::{Inker, InkerForm};
-use npr_imagespace::filter::normal::COS_CM;
+use npr_imagespace::filter::normal::NORMAL_COS_CARD_MITCHELL;
 use npr_imagespace::filter::printed::{
     PrintedDepth, PrintedEdges, PrintedFilter, PrintedNormal, PrintedUniform, ink_printed_edges, ink_printed_inker,
 };
 use npr_imagespace::format::printed::{CLEAR, CLEAR_PRINTED, ink_printed_encode};
-use npr_imagespace::format::texel::{TexelLayout, ink_wide_tap};
+use npr_imagespace::format::texel::{TexelLayout, ink_texel64_tap};
 use npr_imagespace::picture::{Taps, filter_picture};
 use npr_outline::LineKind;
 
@@ -41,7 +41,7 @@ pub const LEAST_STEP: f64 = 0.01;
 fn filters() -> [(&'static str, ImageInk); 6] {
     let none = FusedFilter { normal_cos: None, depth: None, regions: false, ..FusedFilter::default() };
     let with = |filter: FusedFilter| ImageInk { filter, ..ImageInk::default() };
-    let plain = DepthTest { step: ANY_OS, plain: true };
+    let plain = DepthTest { step: DEPTH_ANY_OUTLINING_SKETCH, plain: true };
     [
         ("image lines", ImageInk::default()),
         ("image, normals", with(FusedFilter { normal_cos: FusedFilter::default().normal_cos, ..none })),
@@ -110,8 +110,8 @@ impl Checker<'_> {
 fn printed_filters() -> [(&'static str, PrintedFilter, [u8; 4]); 4] {
     let corrected = PrintedEdges::default();
     let printed = PrintedEdges {
-        normal: Some(PrintedNormal { cos: COS_CM, printed_background: true }),
-        depth: Some(PrintedDepth { form: DepthPlain::SumPrinted, threshold: SUM_CM }),
+        normal: Some(PrintedNormal { cos: NORMAL_COS_CARD_MITCHELL, printed_background: true }),
+        depth: Some(PrintedDepth { form: DepthPlain::SumPrinted, threshold: DEPTH_SUM_CARD_MITCHELL }),
         taps: Taps::Diagonal,
     };
     let inker = |form| PrintedFilter::Inker(Inker { form, ..Inker::default() });
@@ -132,11 +132,11 @@ fn printed_ink(
 ) -> Result<Vec<f64>, HarnessError> {
     let Some(image) = &plan.image else { return Ok(vec![0.0; texels.len()]) };
     let depth = |code: u32| image.code.depth(code);
-    let (near, far) = (depth(TexelLayout::Wide.depth_most()), depth(0));
+    let (near, far) = (depth(TexelLayout::Bits64.depth_max()), depth(0));
     let bytes: Vec<[u8; 4]> = texels
         .iter()
         .map(|&words| {
-            let tap = ink_wide_tap(words);
+            let tap = ink_texel64_tap(words);
             if tap.region == 0 {
                 return clear;
             }

@@ -15,7 +15,7 @@ use crate::style::Lines;
 use crate::view::View;
 use glam::{DVec2, DVec3, Vec3};
 use npr_mesh::Model;
-use npr_outline::line_look::LineLook;
+use npr_outline::line_style::LineStyle;
 use npr_outline::normal_format::{NormalFormat, misclassified_share, misclassified_share_of_planes};
 
 /// Units: how far away the segments lie whose width is measured.
@@ -119,8 +119,8 @@ impl Checker<'_> {
     }
 }
 
-fn black(width_px: f32) -> LineLook {
-    LineLook { width_px: [width_px; 4], ink: [0.0, 0.0, 0.0, 1.0] }
+fn black(width_px: f32) -> LineStyle {
+    LineStyle { width_px: [width_px; 4], ink: [0.0, 0.0, 0.0, 1.0] }
 }
 
 /// Over all distances, widths and rises, how far the width is off, in widths.

@@ -116,7 +116,7 @@ impl<'a> Reference<'a> {
             join(&mut self.exempt, &changes);
         }
         let Some(image) = &plan.image else { return Ok(()) };
-        let states = [ShadowState::Lit, ShadowState::Cast, ShadowState::Turned].map(Perturbation::State);
+        let states = [ShadowState::Lit, ShadowState::Cast, ShadowState::BackFacing].map(Perturbation::State);
         let of_shadows: &[Perturbation] = match image.ink.shadows {
             ShadowLines::None | ShadowLines::Negated => &[],
             ShadowLines::Lines | ShadowLines::Separate { .. } => &states,

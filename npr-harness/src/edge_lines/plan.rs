@@ -5,7 +5,7 @@ use crate::scene::Scene;
 use crate::schema::{within, within_colors};
 use glam::DVec4;
 use npr_outline::contour::{ContourEdges, ContourOptions, contour_edges};
-use npr_outline::line_look::LineLook;
+use npr_outline::line_style::LineStyle;
 use std::sync::Arc;
 
 /// Not quite black: the ink of the styles of this crate.
@@ -17,7 +17,7 @@ pub struct EdgeLinePlan {
     /// The edges that can be lines.
     pub contours: Arc<ContourEdges>,
     /// Their widths in px of the picture, and their ink.
-    pub style: LineLook,
+    pub style: LineStyle,
     /// How a device finds them.
     pub method: EdgeLineMethod,
 }
@@ -39,7 +39,7 @@ impl EdgeLinePlan {
     /// `method`: chosen by the bytes that the edges take on a device.
     pub(crate) fn new(
         scene: &Scene,
-        style: &LineLook,
+        style: &LineStyle,
         crease_angle_rad: f32,
         method: impl FnOnce(u64) -> EdgeLineMethod,
     ) -> Result<Self, HarnessError> {
@@ -65,7 +65,7 @@ impl EdgeLinePlan {
 }
 
 /// Whether widths and colours are in their ranges.
-pub(crate) fn validate(style: &LineLook) -> Result<(), HarnessError> {
+pub(crate) fn validate(style: &LineStyle) -> Result<(), HarnessError> {
     for &width_px in &style.width_px {
         // Wider ones take as long as there are pixels, each.
         within("a line's width", width_px, 0.0, 256.0, "0..=256 px")?;

@@ -3,7 +3,7 @@
 use crate::schema::Color;
 use glam::Vec3;
 use npr_outline::LineKind;
-use npr_outline::line_look::{LineLook, widths_px};
+use npr_outline::line_style::{LineStyle, widths_px};
 use serde::{Deserialize, Serialize};
 
 #[derive(Serialize, Deserialize)]
@@ -20,12 +20,12 @@ pub(crate) struct EdgesTable {
 /// As in the style `cartoon`, but for borders between materials.
 impl Default for EdgesTable {
     fn default() -> Self {
-        Self::new(&LineLook { width_px: widths_px(2.0, 2.0, 1.3, 0.0), ink: super::plan::INK })
+        Self::new(&LineStyle { width_px: widths_px(2.0, 2.0, 1.3, 0.0), ink: super::plan::INK })
     }
 }
 
 impl EdgesTable {
-    pub(crate) fn new(style: &LineLook) -> Self {
+    pub(crate) fn new(style: &LineStyle) -> Self {
         let width = |kind: LineKind| style.width_px[kind as usize];
         let [r, g, b, opacity] = style.ink;
         Self {
@@ -38,8 +38,8 @@ impl EdgesTable {
         }
     }
 
-    pub(crate) fn style(self) -> LineLook {
-        LineLook {
+    pub(crate) fn style(self) -> LineStyle {
+        LineStyle {
             width_px: widths_px(self.silhouette_px, self.boundary_px, self.crease_px, self.material_border_px),
             ink: self.ink.0.extend(self.opacity).to_array(),
         }

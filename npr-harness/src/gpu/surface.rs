@@ -483,7 +483,7 @@ impl SurfacePass {
             write_mask: wgpu::ColorWrites::ALL,
         });
         let (narrow, line_kind, region_of_texture) = inking.map_or((false, LineKind::Normals, false), |inking| {
-            (inking.layout == TexelLayout::Narrow, inking.line_kind, inking.region_of_texture)
+            (inking.layout == TexelLayout::Bits32, inking.line_kind, inking.region_of_texture)
         });
         let constants: Vec<_> = key
             .constants

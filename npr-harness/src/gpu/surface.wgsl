@@ -318,16 +318,16 @@ fn inked_normal(normal: vec3<f32>, texel: vec4<f32>, color: vec4<f32>, position_
 
 // The largest number of a region beside a state of shadow.
 fn shadowed_most() -> u32 {
-    return select(INK_WIDE_SHADOWED_MOST, INK_NARROW_SHADOWED_MOST, surface_narrow);
+    return select(INK_TEXEL64_SHADOWED_REGION_MAX, INK_TEXEL32_SHADOWED_REGION_MAX, surface_narrow);
 }
 
 fn words(normal: vec3<f32>, region: u32, position: vec4<f32>, at: ShadowAt) -> vec2<u32> {
     let depth = ink_depth_code_of(position.z, ink.code);
     let number = shadow_region(region, at, shadowed_most());
     if surface_narrow {
-        return vec2<u32>(ink_narrow_word(normal, number, depth), 0u);
+        return vec2<u32>(ink_texel32_bits(normal, number, depth), 0u);
     }
-    return ink_wide_words(normal, number, depth);
+    return ink_texel64_bits(normal, number, depth);
 }
 
 fn plain_words(in: InkedSurface, front: bool, at: ShadowAt) -> vec2<u32> {
@@ -343,7 +343,7 @@ fn textured_words(in: InkedTexturedSurface, front: bool, texel: vec4<f32>, at: S
         if surface_shadow_lines == 1u {
             region = ink_fold_region(region, shadowed_most());
         } else if surface_narrow {
-            region = ink_fold_region(region, INK_NARROW_REGION_MOST);
+            region = ink_fold_region(region, INK_TEXEL32_REGION_MAX);
         }
     }
     let own = shadow_normal(facing(in.normal, front), at);

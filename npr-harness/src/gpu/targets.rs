@@ -11,7 +11,7 @@ use npr_imagespace::format::texel::TexelLayout;
 use npr_imagespace::pass::INK_FORMAT;
 use npr_imagespace::pass::disc::DiscScratch;
 use npr_imagespace::pass::fused::texel_format;
-use npr_outline::line_pass::WINNER_FORMAT;
+use npr_outline::line_pass::COVERAGE_FORMAT;
 use std::cell::{Cell, Ref, RefCell};
 
 /// Display-referred values, so no encoding on store.
@@ -35,7 +35,7 @@ pub struct Targets {
     /// The picture with lines on it.
     inked: wgpu::Texture,
     pub(crate) inked_view: wgpu::TextureView,
-    pub(crate) winner_view: wgpu::TextureView,
+    pub(crate) coverage_view: wgpu::TextureView,
     /// Made when first needed, and anew for a style that needs others.
     ink: RefCell<Option<InkTargets>>,
     /// Where shadow volumes are counted.
@@ -137,7 +137,7 @@ impl Targets {
             depth_view: view(&texture("depth", DEPTH_FORMAT, read)),
             inked_view: view(&inked),
             inked,
-            winner_view: view(&texture("greatest coverage", WINNER_FORMAT, wgpu::TextureUsages::empty())),
+            coverage_view: view(&texture("greatest coverage", COVERAGE_FORMAT, wgpu::TextureUsages::empty())),
             ink: RefCell::default(),
             stencil: StencilTarget::default(),
             is_inked: Cell::new(false),
@@ -191,8 +191,8 @@ impl Targets {
         let Some(ink) = ink.as_ref() else { return Ok(None) };
         let words: Vec<u32> = bytemuck::pod_collect_to_vec(&read_texture(context, ink.texels.texture())?);
         Ok(Some(match ink.kind.0 {
-            TexelLayout::Narrow => words.into_iter().map(|word| [word, 0]).collect(),
-            TexelLayout::Wide => words.as_chunks::<2>().0.to_vec(),
+            TexelLayout::Bits32 => words.into_iter().map(|word| [word, 0]).collect(),
+            TexelLayout::Bits64 => words.as_chunks::<2>().0.to_vec(),
         }))
     }
 }

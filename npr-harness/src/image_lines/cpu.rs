@@ -9,8 +9,8 @@ use glam::{DMat3, DVec3, DVec4, UVec2};
 use npr_imagespace::artist::{LineKind, ink_artist_direction, ink_artist_index, ink_artist_texel};
 use npr_imagespace::composite::ink_composite;
 use npr_imagespace::format::texel::{
-    BACKGROUND, TexelLayout, ink_fold_region, ink_narrow_pack, ink_narrow_tap, ink_narrow_word, ink_wide_pack,
-    ink_wide_tap, ink_wide_words,
+    BACKGROUND, TexelLayout, ink_fold_region, ink_texel32_bits, ink_texel32_pack, ink_texel32_tap, ink_texel64_bits,
+    ink_texel64_pack, ink_texel64_tap,
 };
 use npr_imagespace::region::{ink_region_of_color, ink_region_pair};
 use npr_imagespace::resample::resample;
@@ -49,15 +49,15 @@ pub(crate) fn texel(image: &ImagePlan, sample: Option<&InkSample<'_>>) -> [u32; 
     let of_texture = if kind == LineKind::Regions { (sample.texture_bytes)() } else { None };
     let region = of_texture.map_or(of_face, |rgb| ink_region_pair(of_face, ink_region_of_color(rgb)));
     let region = if image.ink.shadows.has_states() {
-        let folded = ink_fold_region(region, image.ink.region_most());
+        let folded = ink_fold_region(region, image.ink.region_max());
         ink_shadow_region(folded, shadow.state as u32, image.ink.layout)
     } else {
         region
     };
     let depth = sample.depth as f32;
     match image.ink.layout {
-        TexelLayout::Narrow => [ink_narrow_pack(normal, region, depth, &image.code), 0],
-        TexelLayout::Wide => ink_wide_pack(normal, region, depth, &image.code),
+        TexelLayout::Bits32 => [ink_texel32_pack(normal, region, depth, &image.code), 0],
+        TexelLayout::Bits64 => ink_texel64_pack(normal, region, depth, &image.code),
     }
 }
 
@@ -96,13 +96,13 @@ impl Perturbation {
             Self::State(state) => {
                 let shadowed = |region: u32| ink_shadow_region(region & !layout.shadow_bits(), state as u32, layout);
                 match layout {
-                    TexelLayout::Narrow => {
-                        let tap = ink_narrow_tap(texel[0]);
-                        [ink_narrow_word(tap.normal.as_vec3(), shadowed(tap.region), tap.depth as u32), 0]
+                    TexelLayout::Bits32 => {
+                        let tap = ink_texel32_tap(texel[0]);
+                        [ink_texel32_bits(tap.normal.as_vec3(), shadowed(tap.region), tap.depth as u32), 0]
                     }
-                    TexelLayout::Wide => {
-                        let tap = ink_wide_tap(texel);
-                        ink_wide_words(tap.normal.as_vec3(), shadowed(tap.region), tap.depth as u32)
+                    TexelLayout::Bits64 => {
+                        let tap = ink_texel64_tap(texel);
+                        ink_texel64_bits(tap.normal.as_vec3(), shadowed(tap.region), tap.depth as u32)
                     }
                 }
             }

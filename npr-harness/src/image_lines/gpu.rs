@@ -7,16 +7,19 @@ use crate::gpu::targets::{COLOR_FORMAT, InkTargets};
 use glam::Vec3;
 use npr_imagespace::format::texel::TexelLayout;
 use npr_imagespace::morphology::Operation;
+use npr_imagespace::pass::composite::CompositePass;
 use npr_imagespace::pass::disc::DiscPass;
 use npr_imagespace::pass::fused::FusedPass;
-use npr_imagespace::pass::lay::LayPass;
-use npr_imagespace::pass::{InkTarget, Onto};
+use npr_imagespace::pass::{InkTarget, PassTarget};
 use npr_imagespace::picture::Taps;
 use std::cell::{OnceCell, RefCell};
 use std::collections::HashMap;
 
 /// What distinguishes one filter's pipeline from another's.
 type FilterKey = (Taps, bool, TexelLayout, InkTarget);
+
+/// Why a pass takes the formats of this crate's pictures and ink.
+const UNORM: &str = "the format is Unorm";
 
 const PICTURE: InkTarget = InkTarget::Picture(COLOR_FORMAT);
 
@@ -25,7 +28,7 @@ const PICTURE: InkTarget = InkTarget::Picture(COLOR_FORMAT);
 pub(crate) struct InkPasses {
     filters: RefCell<HashMap<FilterKey, FusedPass>>,
     dilations: RefCell<HashMap<InkTarget, DiscPass>>,
-    lay: OnceCell<LayPass>,
+    composite: OnceCell<CompositePass>,
 }
 
 /// A picture over which lines are drawn.
@@ -56,7 +59,8 @@ impl InkPasses {
     ) -> Result<(), HarnessError> {
         let InkFrame { device, image, ink, picture, picture_size, .. } = *frame;
         let area = |size, around_px| frame.bounds.map(|bounds| frame.camera.area(bounds, size, around_px));
-        let onto = |view, size, around_px| Onto { view, composite: &lines.composite, area: area(size, around_px) };
+        let onto =
+            |view, size, around_px| PassTarget { view, composite: &lines.composite, area: area(size, around_px) };
         // Beside a surface there is a pixel of line, and then what a dilation adds.
         let dilation_px = lines.dilation.map_or(0, |disc| disc.radius_px.ceil() as u32 + 1);
 
@@ -65,7 +69,9 @@ impl InkPasses {
         let target = if found.is_some() { InkTarget::Ink } else { PICTURE };
         let key = (filter.taps, filter.softness > 0.0, image.ink.layout, target);
         let mut filters = self.filters.borrow_mut();
-        let pass = filters.entry(key).or_insert_with(|| FusedPass::new(device, filter, image.ink.layout, target));
+        let pass = filters
+            .entry(key)
+            .or_insert_with(|| FusedPass::new(device, filter, image.ink.layout, target).expect(UNORM));
         let view = found.unwrap_or(picture);
         pass.record(device, encoder, filter, &image.code, &ink.texels, &onto(view, ink.size, 1))?;
         let Some(mut line) = found else { return Ok(()) };
@@ -74,7 +80,7 @@ impl InkPasses {
             let thick = ink.thick.as_ref();
             let target = if thick.is_some() { InkTarget::Ink } else { PICTURE };
             let mut dilations = self.dilations.borrow_mut();
-            let pass = dilations.entry(target).or_insert_with(|| DiscPass::new(device, target));
+            let pass = dilations.entry(target).or_insert_with(|| DiscPass::new(device, target).expect(UNORM));
             let onto = onto(thick.unwrap_or(picture), ink.size, 1 + dilation_px);
             pass.record(device, encoder, Operation::Dilate, disc, line, scratch, &onto)?;
             let Some(thick) = thick else { return Ok(()) };
@@ -82,7 +88,8 @@ impl InkPasses {
         }
         // A pixel of ink is at most two of the picture's, and reaches as far again.
         let onto = onto(picture, picture_size, 4 + 2 * dilation_px);
-        self.lay.get_or_init(|| LayPass::new(device, PICTURE)).record(device, encoder, line, &onto);
+        let composite = self.composite.get_or_init(|| CompositePass::new(device, PICTURE).expect(UNORM));
+        composite.record(device, encoder, line, &onto)?;
         Ok(())
     }
 }

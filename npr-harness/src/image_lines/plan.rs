@@ -11,7 +11,7 @@ use npr_imagespace::ImageSpaceError;
 use npr_imagespace::artist::LineKind;
 use npr_imagespace::composite::Composite;
 use npr_imagespace::filter::fused::{FilterUniform, FusedFilter, ShadowTest, ink_fused};
-use npr_imagespace::format::texel::{DepthCode, TexelLayout, ink_fold_region, ink_narrow_tap, ink_wide_tap};
+use npr_imagespace::format::texel::{DepthCode, TexelLayout, ink_fold_region, ink_texel32_tap, ink_texel64_tap};
 use npr_imagespace::morphology::disc::Disc;
 use npr_imagespace::morphology::flood::{FloodPlan, disc_plan, flood};
 use npr_imagespace::picture::filter_picture;
@@ -85,21 +85,23 @@ impl ImagePlan {
             test.step = (test.step * 2.0 * scene.radius() as f32).min(f32::MAX);
         }
         let test = match ink.shadows {
-            ShadowLines::None | ShadowLines::Negated => ShadowTest::Absent,
+            ShadowLines::None | ShadowLines::Negated => ShadowTest::NoStates,
             ShadowLines::Lines => ShadowTest::Lines,
             ShadowLines::Separate { .. } => ShadowTest::Ignored,
         };
         let lines = ImageLines::new(FusedFilter { shadows: test, ..ink.filter }, ink.dilation, ink.composite)?;
         FilterUniform::new(&lines.filter, ink.layout, &code)?;
         let shadow_lines = match ink.shadows {
-            ShadowLines::Separate { composite, dilation } => {
-                Some(ImageLines::new(FusedFilter { shadows: ShadowTest::Alone, ..ink.filter }, dilation, composite)?)
-            }
+            ShadowLines::Separate { composite, dilation } => Some(ImageLines::new(
+                FusedFilter { shadows: ShadowTest::OnlyShadows, ..ink.filter },
+                dilation,
+                composite,
+            )?),
             _ => None,
         };
         let materials = scene.model.materials.len();
         let line_kinds = if ink.artist { scene.line_kinds.clone() } else { vec![LineKind::Normals; materials] };
-        let most = ink.region_most();
+        let most = ink.region_max();
         let key = FaceRegionKey { regions: ink.regions, crease_angle_rad, line_kinds: line_kinds.clone(), most };
         let face_region = scene.derived.get(key, || {
             let regions = face_regions(scene, ink.regions, &line_kinds, crease_angle_rad)?;
@@ -153,8 +155,8 @@ impl ImagePlan {
         let filter = &lines.filter;
         let uniform = FilterUniform::new(filter, self.ink.layout, &self.code).expect("it was checked");
         let tap = |words: [u32; 2]| match self.ink.layout {
-            TexelLayout::Narrow => ink_narrow_tap(words[0]),
-            TexelLayout::Wide => ink_wide_tap(words),
+            TexelLayout::Bits32 => ink_texel32_tap(words[0]),
+            TexelLayout::Bits64 => ink_texel64_tap(words),
         };
         let found = filter_picture(texels, size_px, filter.taps, |centre, taps| {
             ink_fused(&uniform, &tap(centre), &taps.map(tap)) as f32

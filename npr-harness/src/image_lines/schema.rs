@@ -173,8 +173,8 @@ impl ImageTable {
             },
             softness,
             layout: match ink.layout {
-                TexelLayout::Narrow => LayoutName::Narrow,
-                TexelLayout::Wide => LayoutName::Wide,
+                TexelLayout::Bits32 => LayoutName::Narrow,
+                TexelLayout::Bits64 => LayoutName::Wide,
             },
             artist: ink.artist,
             scale: match ink.scale {
@@ -203,7 +203,7 @@ impl ImageTable {
                 depth: self.depth.then_some(DepthTest { step: self.depth_step, plain: self.depth_plain }),
                 regions: !matches!(self.regions, RegionsName::None),
                 // The plan says.
-                shadows: ShadowTest::Absent,
+                shadows: ShadowTest::NoStates,
                 taps: match self.taps {
                     TapsName::Diagonal => Taps::Diagonal,
                     TapsName::Cross => Taps::Cross,
@@ -211,8 +211,8 @@ impl ImageTable {
                 softness: self.softness,
             },
             layout: match self.layout {
-                LayoutName::Narrow => TexelLayout::Narrow,
-                LayoutName::Wide => TexelLayout::Wide,
+                LayoutName::Narrow => TexelLayout::Bits32,
+                LayoutName::Wide => TexelLayout::Bits64,
             },
             regions: match self.regions {
                 RegionsName::One => Regions::One,

@@ -73,8 +73,8 @@ pub struct ImageInk {
 
 impl ImageInk {
     /// The largest number of a region, beside a state of shadow where there is one.
-    pub fn region_most(&self) -> u32 {
-        if self.shadows.has_states() { self.layout.shadowed_region_most() } else { self.layout.region_most() }
+    pub fn region_max(&self) -> u32 {
+        if self.shadows.has_states() { self.layout.shadowed_region_max() } else { self.layout.region_max() }
     }
 
     /// Whether thresholds, dilations and colours are within their ranges.

@@ -33,7 +33,7 @@ pub(crate) fn shadow_at(shadow: &ShadowPlan, scene: &Scene, hit: &Hit, at: DVec3
     let falls = scene.rays().any(at, way, range, is_caster);
     let n_dot_l = normal.normalize_or_zero().dot(way.normalize_or_zero());
     let state = match falls {
-        _ if n_dot_l <= f64::from(shadow.terminator) => ShadowState::Turned,
+        _ if n_dot_l <= f64::from(shadow.terminator) => ShadowState::BackFacing,
         true => ShadowState::Cast,
         false => ShadowState::Lit,
     };

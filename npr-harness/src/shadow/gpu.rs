@@ -214,28 +214,29 @@ impl ShadowPasses {
         let (depth_stencil, mask) = target.views(device, format, frame.size);
         draw_depth(encoder, depth_stencil)?;
         let parallel = matches!(frame.camera.projection, Projection::Orthographic { .. });
-        let pass = self.volumes[usize::from(parallel)].get_or_init(|| ShadowPass::new(device, format, parallel));
+        let pass = self.volumes[usize::from(parallel)]
+            .get_or_init(|| ShadowPass::new(device, format, parallel).expect(STENCIL));
         let aspect = f64::from(frame.size.0) / f64::from(frame.size.1);
         let clip_from_world = frame.camera.clip_from_world(aspect);
         let casting = frame.casting.expect("what a plan with volumes uploads");
         let endless = if parallel { casters.endless(light, -frame.camera.axes()[2]) } else { 0 };
         let area = frame.scene.bounds().map(|bounds| frame.camera.area(bounds, frame.size, 1));
         let mut draw = |casters: &CastersOnDevice| {
-            pass.record(device, encoder, casters, light, clip_from_world, depth_stencil, endless, area);
+            pass.record(device, encoder, casters, light, clip_from_world, depth_stencil, endless, area)
         };
         match casting {
-            ShadowCasting::OnDevice(casters) => draw(casters),
+            ShadowCasting::OnDevice(casters) => draw(casters)?,
             ShadowCasting::Scanned(last) => {
                 let is_same = last.borrow().as_ref().is_some_and(|(of, _)| *of == light);
                 if !is_same {
-                    let scanned = CastersOnDevice::scanned(device, casters, light)?;
+                    let scanned = CastersOnDevice::of_light(device, casters, light)?;
                     *last.borrow_mut() = Some((light, scanned));
                 }
-                draw(&Ref::map(last.borrow(), |last| &last.as_ref().expect("it was just made").1));
+                draw(&Ref::map(last.borrow(), |last| &last.as_ref().expect("it was just made").1))?;
             }
         }
-        let pass = self.mask.get_or_init(|| ShadowMaskPass::new(device, format));
-        pass.record(encoder, depth_stencil, mask, area);
+        let pass = self.mask.get_or_init(|| ShadowMaskPass::new(device, format).expect(STENCIL));
+        pass.record(encoder, depth_stencil, mask, area)?;
         Ok(ShadowOnDevice { uniform, mask: Some(mask.clone()), map: None })
     }
 
@@ -252,6 +253,9 @@ impl ShadowPasses {
         view
     }
 }
+
+/// Why a pass takes the formats of [`stencil_format`].
+const STENCIL: &str = "the format has a stencil";
 
 /// Depth with a stencil.
 fn stencil_format(float_depth: bool) -> wgpu::TextureFormat {

@@ -69,7 +69,7 @@ struct ShadowAt {
     state: u32,
 }
 
-const NO_SHADOW: ShadowAt = ShadowAt(false, false, INK_TURNED);
+const NO_SHADOW: ShadowAt = ShadowAt(false, false, INK_BACK_FACING);
 
 // The normal is of any length, on the side that is seen. In uniform control flow.
 fn shadow_at(position: vec4<f32>, normal: vec3<f32>) -> ShadowAt {
@@ -79,7 +79,7 @@ fn shadow_at(position: vec4<f32>, normal: vec3<f32>) -> ShadowAt {
     let faces = shadow_faces_light(position);
     let falls = shadow_falls(position);
     let n_dot_l = dot(toon_unit(normal), shadow_to_light(position));
-    let state = select(INK_TURNED, select(INK_LIT, INK_CAST, falls), faces && n_dot_l > shadow.terminator);
+    let state = select(INK_BACK_FACING, select(INK_LIT, INK_CAST, falls), faces && n_dot_l > shadow.terminator);
     return ShadowAt(faces && falls && n_dot_l > 0.0, !faces || falls, state);
 }
 

@@ -17,7 +17,7 @@ use npr_gooch::Gooch;
 use npr_hatch::TamParameters;
 use npr_imagespace::composite::Composite;
 use npr_imagespace::morphology::disc::Disc;
-use npr_outline::line_look::{LineLook, widths_px};
+use npr_outline::line_style::{LineStyle, widths_px};
 use npr_toon::Bands;
 use npr_toon::half_lambert::HalfLambert;
 use npr_toon::normal::NormalUse;
@@ -32,7 +32,7 @@ const PAPER: Vec3 = Vec3::new(0.98, 0.97, 0.94);
 
 fn ink_lines(silhouette_px: f32, crease_px: f32) -> Lines {
     let width_px = widths_px(silhouette_px, silhouette_px, crease_px, crease_px);
-    Lines::edges(LineLook { width_px, ink: INK })
+    Lines::edges(LineStyle { width_px, ink: INK })
 }
 
 fn image_lines(ink: ImageInk) -> Lines {

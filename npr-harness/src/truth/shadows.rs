@@ -20,7 +20,7 @@ use crate::style::{Lines, Style, style};
 use crate::view::View;
 use glam::{DVec2, DVec3, UVec2, Vec3};
 use npr_imagespace::composite::Composite;
-use npr_imagespace::format::texel::{TexelLayout, ink_wide_tap};
+use npr_imagespace::format::texel::{TexelLayout, ink_texel64_tap};
 use npr_imagespace::shadow::{ShadowState, ink_shadow_state};
 use npr_outline::segment::MAX_SLOPE;
 use npr_toon::source::{Light, LightKind};
@@ -138,9 +138,9 @@ pub struct StatesDifference {
 impl States {
     /// From what a geometry pass writes in the wide layout.
     pub fn of_texels(texels: &[[u32; 2]], size: (u32, u32)) -> Self {
-        let layout = TexelLayout::Wide;
+        let layout = TexelLayout::Bits64;
         let state = |&texel: &[u32; 2]| {
-            let region = ink_wide_tap(texel).region;
+            let region = ink_texel64_tap(texel).region;
             (region != 0).then(|| ink_shadow_state(region, layout))
         };
         Self { size, states: texels.iter().map(state).collect() }

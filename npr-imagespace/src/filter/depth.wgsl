@@ -1,6 +1,6 @@
 // Discontinuities of depth. The twin of `depth.rs`. No bindings and no entry points.
 
-// What four differences of depth are made into.
+// How four differences of depth are combined.
 const INK_DEPTH_SUM: u32 = 0u;
 const INK_DEPTH_SUM_PRINTED: u32 = 1u;
 const INK_DEPTH_ANY: u32 = 2u;
@@ -33,18 +33,18 @@ fn ink_depth_plain_codes(centre: u32, taps: vec4<u32>, form: u32, threshold: u32
 
 // Ink of one pair of opposite taps, all three of them surfaces; v is 1/z, or z in a parallel view.
 fn ink_depth_pair(a: f32, centre: f32, b: f32, step: f32, parallel: bool, softness: f32) -> f32 {
-    let bend = abs((a - centre) - (centre - b));
+    let second_difference = abs((a - centre) - (centre - b));
     let threshold = step * select(max(max(a, centre), b), 1.0, parallel);
-    return ink_ramp(bend - threshold, softness * threshold);
+    return ink_ramp(second_difference - threshold, softness * threshold);
 }
 
-// The test for bends, on eye-space depths.
+// The test of second differences, on eye-space depths.
 fn ink_depth_bend(centre: f32, taps: vec4<f32>, step: f32, parallel: bool, softness: f32, weight: f32) -> f32 {
     let surface = ink_is_surface(centre);
     let surfaces =
         vec4<bool>(ink_is_surface(taps.x), ink_is_surface(taps.y), ink_is_surface(taps.z), ink_is_surface(taps.w));
     let outside = surfaces != vec4<bool>(surface);
-    // What is no surface takes no part below; 1 stands for it.
+    // Background is masked out below; 1 in its place keeps the arithmetic finite.
     let depths = select(vec4<f32>(1.0), taps, surfaces);
     let depth = select(1.0, centre, surface);
     let v = select(1.0 / depths, depths, vec4<bool>(parallel));
@@ -61,7 +61,7 @@ fn ink_depth_bend(centre: f32, taps: vec4<f32>, step: f32, parallel: bool, softn
     return select(max(pairs.x, pairs.y), 1.0, any(outside));
 }
 
-// Whether one tap lies a step away, a share of the distance.
+// Whether one tap differs by more than a share `step` of the distance.
 fn ink_depth_step_tap(centre: f32, tap: f32, step: f32) -> bool {
     let surface = ink_is_surface(centre);
     if !surface || !ink_is_surface(tap) {
@@ -72,7 +72,7 @@ fn ink_depth_step_tap(centre: f32, tap: f32, step: f32) -> bool {
     return abs(a - b) > step * max(a, b);
 }
 
-// The plain test with a share of the distance as its threshold.
+// First differences with a share of the distance as the threshold.
 fn ink_depth_step(centre: f32, taps: vec4<f32>, step: f32) -> bool {
     return ink_depth_step_tap(centre, taps.x, step) || ink_depth_step_tap(centre, taps.y, step)
         || ink_depth_step_tap(centre, taps.z, step) || ink_depth_step_tap(centre, taps.w, step);

@@ -10,19 +10,19 @@
 //! dⱼ = zⱼ − zⱼ₊₂
 //! ```
 //!
-//! - [`InkerForm::Printed`]: ink where (1 − N) + d₀² + ¼ + d₁ > ½. What was wrong in print: d₁ is not squared, though
-//!   the comment says "square the differences"; `mad r1.a, r1.a, r1.a, c1.a` is missing. So its sign decides, and a
-//!   border is inked in one direction only.
-//! - [`InkerForm::Repaired`]: the missing instruction put in, ink where (1 − N) + d₀² + d₁² + ½ > ½. In exact
-//!   arithmetic that is any difference of depth at all: every slanted face is ink. On the hardware of 2002 a square
+//! - [`InkerForm::Printed`]: ink where (1 − N) + d₀² + ¼ + d₁ > ½. Error in print: d₁ is not squared, though
+//!   the comment says "square the differences"; `mad r1.a, r1.a, r1.a, c1.a` is missing. So the sign of d₁ matters, and
+//!   a border is inked in one direction only.
+//! - [`InkerForm::Corrected`]: the missing instruction put in, ink where (1 − N) + d₀² + d₁² + ½ > ½. In exact
+//!   arithmetic any difference of depth satisfies that, and every slanted face is ink. On the hardware of 2002 a square
 //!   below half a step of 8 bits was 0.
-//! - [`InkerForm::Explicit`]: both thresholds by name. Ink where 1 − N > ½ or d₀² + d₁² > δ². The default
-//!   δ = [`DEPTH_DELTA`] is what the rounding of 2002 amounted to: √(1/512) = 0.044, 11 steps of 8 bits.
+//! - [`InkerForm::Explicit`]: two separate thresholds. Ink where 1 − N > ½ or d₀² + d₁² > δ². The default
+//!   δ = [`DEPTH_DELTA`] is the effect of rounding to 8 bits in 2002: √(1/512) = 0.044, 11 steps of 8 bits.
 //!
 //! On a flat face N = sat(4 sat(0.4 + z)²), below 1 where z < 0.1: near faces are ink below z = 0.03 as printed and
 //! below 0.1 repaired, and nowhere with explicit thresholds, N being at least 0.64.
 //!
-//! Soft, the explicit form gives 2 (1 − N), clamped, which is the soft ×4 arithmetic itself with ½ taken for a full
+//! Soft, the explicit form gives 2 (1 − N), clamped, which is the listing's own ramp scaled so that ½ is a full
 //! line, or if larger the ramp of d₀² + d₁² around δ².
 
 use crate::filter::ink_ramp;
@@ -32,13 +32,13 @@ use glam::DVec3;
 /// √(1/512): the smallest difference of depth whose square is not 0 in 8 bits.
 pub const DEPTH_DELTA: f32 = 0.044_194_174;
 
-/// Which reading of listing 4.
+/// The form of listing 4.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum InkerForm {
-    /// As the listing computes.
+    /// As printed.
     Printed,
-    /// With its missing instruction.
-    Repaired,
+    /// With the missing instruction added.
+    Corrected,
     /// With a threshold for normals and one for depth.
     #[default]
     Explicit,
@@ -47,11 +47,11 @@ pub enum InkerForm {
 /// The constants of listing 4.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inker {
-    /// Which reading.
+    /// The form.
     pub form: InkerForm,
-    /// The cosine above which normals are alike at depth 0.
+    /// The cosine above which normals are similar at depth 0.
     pub normal_cos: f32,
-    /// By how much that cosine falls from depth 0 to depth 1: what keeps smooth surfaces from turning to ink far away.
+    /// By how much that cosine falls from depth 0 to depth 1: this keeps distant smooth surfaces free of ink.
     pub normal_fall: f32,
     /// δ of the explicit form.
     pub depth_delta: f32,
@@ -96,8 +96,8 @@ impl From<&Inker> for InkerUniform {
     }
 }
 
-/// N: 1 where both pairs of normals are alike, falling to 0.
-pub fn ink_inker_alike(inker: &Inker, normals: [DVec3; 4], depth0: f64) -> f64 {
+/// N: 1 where both pairs of normals are similar, falling to 0.
+pub fn ink_inker_similarity(inker: &Inker, normals: [DVec3; 4], depth0: f64) -> f64 {
     let threshold = f64::from(inker.normal_cos) - f64::from(inker.normal_fall) * depth0;
     let pair = |a: DVec3, b: DVec3| (4.0 * (a.dot(b) - threshold)).clamp(0.0, 1.0);
     (4.0 * pair(normals[0], normals[2]) * pair(normals[1], normals[3])).clamp(0.0, 1.0)
@@ -105,12 +105,12 @@ pub fn ink_inker_alike(inker: &Inker, normals: [DVec3; 4], depth0: f64) -> f64 {
 
 /// Ink of a pixel from its four diagonal taps: normals as decoded, depths 0..=1.
 pub fn ink_inker(inker: &Inker, normals: [DVec3; 4], depths: [f64; 4]) -> f64 {
-    let unlike = 1.0 - ink_inker_alike(inker, normals, depths[0]);
+    let unlike = 1.0 - ink_inker_similarity(inker, normals, depths[0]);
     let (d0, d1) = (depths[0] - depths[2], depths[1] - depths[3]);
     let hard = |ink: bool| f64::from(u8::from(ink));
     match inker.form {
         InkerForm::Printed => hard(unlike + (d0 * d0 + 0.25 + d1) > 0.5),
-        InkerForm::Repaired => hard(unlike + (d0 * d0 + 0.25 + (d1 * d1 + 0.25)) > 0.5),
+        InkerForm::Corrected => hard(unlike + (d0 * d0 + 0.25 + (d1 * d1 + 0.25)) > 0.5),
         InkerForm::Explicit => {
             let limit = f64::from(inker.depth_delta).powi(2);
             let excess = d0 * d0 + d1 * d1 - limit;

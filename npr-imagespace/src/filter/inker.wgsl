@@ -1,7 +1,7 @@
 // The filter of four taps that compares opposite pixels. The twin of `inker.rs`. No bindings and no entry points.
 
 const INK_INKER_PRINTED: u32 = 0u;
-const INK_INKER_REPAIRED: u32 = 1u;
+const INK_INKER_CORRECTED: u32 = 1u;
 const INK_INKER_EXPLICIT: u32 = 2u;
 
 struct InkInker {
@@ -16,8 +16,8 @@ struct InkInker {
     padding2: u32,
 }
 
-// 1 where both pairs of normals are alike, falling to 0.
-fn ink_inker_alike(
+// 1 where both pairs of normals are similar, falling to 0.
+fn ink_inker_similarity(
     inker: InkInker,
     normal0: vec3<f32>,
     normal1: vec3<f32>,
@@ -39,12 +39,12 @@ fn ink_inker(
     normal3: vec3<f32>,
     depths: vec4<f32>,
 ) -> f32 {
-    let unlike = 1.0 - ink_inker_alike(inker, normal0, normal1, normal2, normal3, depths.x);
+    let unlike = 1.0 - ink_inker_similarity(inker, normal0, normal1, normal2, normal3, depths.x);
     let d = depths.xy - depths.zw;
     if inker.form == INK_INKER_PRINTED {
         return select(0.0, 1.0, unlike + (d.x * d.x + 0.25 + d.y) > 0.5);
     }
-    if inker.form == INK_INKER_REPAIRED {
+    if inker.form == INK_INKER_CORRECTED {
         return select(0.0, 1.0, unlike + (d.x * d.x + 0.25 + (d.y * d.y + 0.25)) > 0.5);
     }
     let limit = inker.depth_delta * inker.depth_delta;

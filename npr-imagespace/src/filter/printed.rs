@@ -1,16 +1,18 @@
 //! The filters of 2002 over the RGBA8 target of [`crate::format::printed`], on its bytes.
 //!
-//! Discontinuities of normals and of depth are decided on whole numbers, both in one pass; the chapter runs a pass for
-//! each and multiplies. The inker of [`crate::filter::inker`] decides on floats, as its source does.
+//! Discontinuities of normals and of depth are decided with integers, both in one pass; the chapter runs one pass for
+//! each and multiplies the results. The inker of [`crate::filter::inker`] uses floats, as its source does.
 
 use crate::ImageSpaceError;
-use crate::filter::depth::{DepthPlain, SUM_CM, depth_code_threshold, ink_depth_plain_codes};
+use crate::filter::depth::{DEPTH_SUM_CARD_MITCHELL, DepthPlain, depth_code_threshold, ink_depth_plain_codes};
 use crate::filter::inker::{Inker, ink_inker};
-use crate::filter::normal::{COS_CM, ink_normal_bytes_edge, ink_normal_bytes_edge_printed, normal_bytes_threshold};
+use crate::filter::normal::{
+    NORMAL_COS_CARD_MITCHELL, ink_normal_bytes_edge, ink_normal_bytes_edge_printed, normal_bytes_threshold,
+};
 use crate::picture::Taps;
 use bytemuck::{Pod, Zeroable};
 
-/// What is looked for.
+/// A filter of 2002.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PrintedFilter {
     /// Card & Mitchell 2002, listings 9 and 10.
@@ -26,25 +28,25 @@ pub struct PrintedEdges {
     pub normal: Option<PrintedNormal>,
     /// Jumps of depth.
     pub depth: Option<PrintedDepth>,
-    /// Where it looks.
+    /// The neighbours that are compared.
     pub taps: Taps,
 }
 
-/// How normals are told apart.
+/// How normals are compared.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrintedNormal {
     /// The cosine below which two differ, 0..=1.
     pub cos: f32,
-    /// Whether zeros are a normal like any other, as printed, and not what no surface has.
+    /// Whether a texel of zeros is a normal like any other, as printed, instead of background.
     pub printed_background: bool,
 }
 
-/// How depth is told apart.
+/// How depth is compared.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrintedDepth {
-    /// What the four differences are made into.
+    /// How the four differences are combined.
     pub form: DepthPlain,
-    /// 0..=1 is from near to far.
+    /// The threshold, as a share of the range from near to far.
     pub threshold: f32,
 }
 
@@ -55,17 +57,17 @@ impl Default for PrintedFilter {
 }
 
 impl Default for PrintedEdges {
-    /// Both, with the chapter's thresholds and its faults mended.
+    /// Both, with the chapter's thresholds and its errors corrected.
     fn default() -> Self {
         Self {
-            normal: Some(PrintedNormal { cos: COS_CM, printed_background: false }),
-            depth: Some(PrintedDepth { form: DepthPlain::Sum, threshold: SUM_CM }),
+            normal: Some(PrintedNormal { cos: NORMAL_COS_CARD_MITCHELL, printed_background: false }),
+            depth: Some(PrintedDepth { form: DepthPlain::Sum, threshold: DEPTH_SUM_CARD_MITCHELL }),
             taps: Taps::Diagonal,
         }
     }
 }
 
-/// [`PrintedEdges`] in steps of bytes: `InkPrinted` of the WGSL, 16 bytes. Which of the tests are asked for is not in
+/// [`PrintedEdges`] in steps of bytes: `InkPrinted` of the WGSL, 16 bytes. Which tests are enabled is not in
 /// it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
@@ -103,7 +105,7 @@ impl PrintedUniform {
     }
 }
 
-/// Whether a pixel is a line. `uniform` is that of the edges asked for.
+/// Whether a pixel is a line. `uniform` is that of `edges`.
 pub fn ink_printed_edges(edges: &PrintedEdges, uniform: &PrintedUniform, centre: [u8; 4], taps: [[u8; 4]; 4]) -> bool {
     let rgb = |[x, y, z, _]: [u8; 4]| [x, y, z];
     let depth = |texel: [u8; 4]| u32::from(texel[3]);

@@ -1,12 +1,13 @@
-//! The filters over someone else's G-buffer: normals, depth and regions each in a texture of its own, any of them.
+//! The filters over a G-buffer with normals, depth and regions in separate textures, any of which may be missing.
 //!
-//! What is asked for is filtered by [`ink_normal`], by one of the tests of [`crate::filter::depth`] and by
-//! [`ink_region`], each by itself, and the largest ink of the three counts. Decisions are made on floats.
+//! The enabled tests are [`ink_normal`], by one of the tests of [`crate::filter::depth`] and by
+//! [`ink_region`]; the result is the largest ink of the three. Decisions are made on floats.
 //!
 //! # Depth buffers
 //!
-//! A depth buffer holds a number d from which v = d · scale + bias is what is linear on the screen: 1/z of the eye-space
-//! depth z in a perspective view, z itself in a parallel one. With n and f the nearest and farthest depths:
+//! A depth buffer holds a number d. The quantity that is linear on the screen, 1/z of the eye-space depth z in a
+//! perspective view and z itself in a parallel one, is v = d · scale + bias. With n and f the nearest and farthest
+//! depths:
 //!
 //! | projection | d at n, f | scale | bias | |
 //! | --- | --- | --- | --- | --- |
@@ -16,19 +17,19 @@
 //! | parallel | 0, 1 | f − n | n | [`DepthSource::parallel`] |
 //! | parallel, reversed | 1, 0 | n − f | f | [`DepthSource::parallel_reversed`] |
 //!
-//! Where d runs from −1 to 1, as OpenGL's normalised device coordinates do, take half of the scale, and the bias and
-//! half of the scale. For a matrix of one's own, with clip z = A · z + B and clip w = z for eye-space depth z > 0:
-//! d = A + B/z, so that scale = 1/B and bias = −A/B.
+//! Where d runs from −1 to 1, as OpenGL's normalised device coordinates do, the scale is half of that in the table, and
+//! the bias is that in the table plus half the table's scale. For another matrix, with clip z = A · z + B and clip w =
+//! z for eye-space depth z > 0: d = A + B/z, so that scale = 1/B and bias = −A/B.
 
 use crate::ImageSpaceError;
 use crate::filter::depth::{BEND, DepthPlain, ink_depth_bend, ink_depth_plain, ink_depth_step, ink_depth_step_soft};
-use crate::filter::normal::{COS_OS, ink_normal};
+use crate::filter::normal::{NORMAL_COS_OUTLINING_SKETCH, ink_normal};
 use crate::filter::region::ink_region;
 use crate::picture::{Taps, checked_len, filter_picture};
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, UVec2, Vec3};
 
-/// What is looked for, and how the textures are read.
+/// Which tests are enabled, and how the textures are read.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SeparateFilter {
     /// Borders of normals.
@@ -37,14 +38,14 @@ pub struct SeparateFilter {
     pub depth: Option<SeparateDepth>,
     /// Borders of regions; 0 is a number like any other.
     pub regions: bool,
-    /// Where it looks.
+    /// The neighbours that are compared.
     pub taps: Taps,
     /// 0 for hard lines; else the width of the transition, in cosines for normals and as a share of its threshold for
     /// depth.
     pub softness: f32,
 }
 
-/// How normals are read and told apart.
+/// How normals are read and compared.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SeparateNormal {
     /// The cosine below which two normals differ, 0..=1.
@@ -53,14 +54,14 @@ pub struct SeparateNormal {
     pub biased: bool,
 }
 
-/// How depth is read and told apart.
+/// How depth is read and compared.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SeparateDepth {
     /// What the texture holds.
     pub source: DepthSource,
     /// Whether the view has no perspective.
     pub parallel: bool,
-    /// What is a line.
+    /// Which jump of depth is a line.
     pub test: SeparateDepthTest,
 }
 
@@ -70,13 +71,13 @@ pub enum DepthSource {
     /// Eye-space depth. What no surface can have ([`crate::format::ink_is_surface`]) is background.
     #[default]
     Linear,
-    /// The number d of a depth buffer.
+    /// The value d of a depth buffer.
     Buffer {
-        /// Of d, towards 1/z, or z in a parallel view.
+        /// The factor from d to 1/z, or to z in a parallel view.
         scale: f32,
-        /// At d = 0.
+        /// 1/z, or z in a parallel view, at d = 0.
         bias: f32,
-        /// What the buffer is cleared to: this is background.
+        /// The value that the buffer is cleared to, which is background.
         clear: f32,
     },
 }
@@ -84,19 +85,19 @@ pub enum DepthSource {
 /// Which jump of depth is a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SeparateDepthTest {
-    /// [`ink_depth_bend`]: slanted planes are none.
+    /// [`ink_depth_bend`], by second differences: slanted planes are no lines.
     Bend {
         /// A share of the nearer side's distance; in a parallel view, units of depth.
         step: f32,
     },
-    /// [`ink_depth_step`].
+    /// [`ink_depth_step`], by first differences relative to the distance.
     Step {
         /// A share of the nearer side's distance.
         step: f32,
     },
-    /// [`ink_depth_plain`], on what the texture holds, whatever that is.
+    /// [`ink_depth_plain`], on the texture's values as they are.
     Plain {
-        /// What the four differences are made into.
+        /// How the four differences are combined.
         form: DepthPlain,
         /// In the texture's units.
         threshold: f32,
@@ -118,7 +119,7 @@ impl Default for SeparateFilter {
 
 impl Default for SeparateNormal {
     fn default() -> Self {
-        Self { cos: COS_OS, biased: false }
+        Self { cos: NORMAL_COS_OUTLINING_SKETCH, biased: false }
     }
 }
 
@@ -185,7 +186,7 @@ fn inverses(near: f32, far: f32) -> Result<[f64; 2], ImageSpaceError> {
     Err(ImageSpaceError::DepthRange { near, far })
 }
 
-/// A [`SeparateFilter`] as `InkSeparate` of the WGSL, 48 bytes. Which of the tests are asked for is not in it.
+/// A [`SeparateFilter`] as `InkSeparate` of the WGSL, 48 bytes. Which tests are enabled is not in it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct SeparateUniform {
@@ -260,48 +261,48 @@ impl SeparateUniform {
     }
 }
 
-/// A normal of any length from a texel: of unit length, or zero for none, which is what is zero, shorter than
-/// 2^−126 or not finite.
+/// A normal of any length from a texel: of unit length, or zero for no normal: a vector that is zero, shorter
+/// than 2^−126 or not finite.
 pub fn ink_separate_normal(texel: Vec3, biased: bool) -> DVec3 {
     let normal = if biased { texel * 2.0 - 1.0 } else { texel };
     let longest = normal.to_array().map(|v| v.to_bits() & 0x7fff_ffff).into_iter().fold(0, u32::max);
-    // As bits, so that nothing that is no number is lost on the way.
+    // Compared as bits, so that NaN is not lost in the comparisons.
     if !is_normal_positive(longest) || (biased && texel == Vec3::ZERO) {
         return DVec3::ZERO;
     }
     normal.as_dvec3().normalize()
 }
 
-/// Whether the bits are those of a number of 2^−126 or more, the least that is not too small for its reciprocal.
+/// Whether the bits are those of a finite number of at least 2^−126, whose reciprocal is finite.
 fn is_normal_positive(bits: u32) -> bool {
     bits.wrapping_sub(0x0080_0000) < 0x7f00_0000
 }
 
-/// Eye-space depth from a texel; 0 for background, which is also what is below 2^−126.
-pub fn ink_separate_depth(texel: f32, filter: &SeparateUniform) -> f32 {
+/// Eye-space depth from a texel; 0 for background, which includes depths below 2^−126.
+pub fn ink_separate_depth(texel: f32, settings: &SeparateUniform) -> f32 {
     let mut depth = texel;
-    if filter.depth_is_buffer != 0 {
-        let v = texel * filter.depth_scale + filter.depth_bias;
-        depth = if filter.parallel != 0 { v } else { 1.0 / v };
-        if texel == filter.depth_clear {
+    if settings.depth_is_buffer != 0 {
+        let v = texel * settings.depth_scale + settings.depth_bias;
+        depth = if settings.parallel != 0 { v } else { 1.0 / v };
+        if texel == settings.depth_clear {
             depth = 0.0;
         }
     }
     if is_normal_positive(depth.to_bits()) { depth } else { 0.0 }
 }
 
-/// A pixel of the three textures. What is not asked for is not looked at.
+/// A pixel of the three textures. Only the values of enabled tests are read.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SeparateTexel {
-    /// As the texture has it.
+    /// The normal as stored.
     pub normal: Vec3,
-    /// As the texture has it.
+    /// The depth as stored.
     pub depth: f32,
-    /// As the texture has it.
+    /// The region number.
     pub region: u32,
 }
 
-/// Ink of a pixel, 0..=1. `uniform` is that of the filter.
+/// Ink of a pixel, 0..=1. `uniform` is that of `filter`.
 pub fn ink_separate(
     filter: &SeparateFilter,
     uniform: &SeparateUniform,

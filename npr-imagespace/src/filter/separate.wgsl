@@ -9,7 +9,7 @@ struct InkSeparate {
     // Ink of one tap across, where lines are soft.
     weight: f32,
     depth_threshold: f32,
-    // Of a depth buffer: 1/z, or z in a parallel view, is d * scale + bias, and background is what it is cleared to.
+    // For a depth buffer: 1/z, or z in a parallel view, is d * scale + bias; the clear value is background.
     depth_scale: f32,
     depth_bias: f32,
     depth_clear: f32,
@@ -25,21 +25,21 @@ fn ink_separate_normal(texel: vec3<f32>, biased: bool) -> vec3<f32> {
     let normal = select(texel, texel * 2.0 - 1.0, biased);
     let bits = bitcast<vec3<u32>>(normal) & vec3<u32>(0x7fffffffu);
     let longest = max(max(bits.x, bits.y), bits.z);
-    // As bits, since a compiler may take it that there is no NaN.
+    // Compared as bits, since a compiler may assume that there is no NaN.
     if longest - 0x00800000u >= 0x7f000000u || (biased && all(texel == vec3<f32>(0.0))) {
         return vec3<f32>(0.0);
     }
-    // Of a length whose square is a number.
+    // Scaled so that the squared length does not overflow.
     let scaled = normal / bitcast<f32>(longest);
     return scaled * inverseSqrt(dot(scaled, scaled));
 }
 
-// Eye-space depth from a texel; 0 for background, which is also what is below 2^-126 and has no reciprocal.
-fn ink_separate_depth(texel: f32, what: InkSeparate) -> f32 {
+// Eye-space depth from a texel; 0 for background, which includes depths below 2^-126, whose reciprocal overflows.
+fn ink_separate_depth(texel: f32, settings: InkSeparate) -> f32 {
     var depth = texel;
-    if what.depth_is_buffer != 0u {
-        let v = texel * what.depth_scale + what.depth_bias;
-        depth = select(select(1.0 / v, v, what.parallel != 0u), 0.0, texel == what.depth_clear);
+    if settings.depth_is_buffer != 0u {
+        let v = texel * settings.depth_scale + settings.depth_bias;
+        depth = select(select(1.0 / v, v, settings.parallel != 0u), 0.0, texel == settings.depth_clear);
     }
     return select(0.0, depth, bitcast<u32>(depth) - 0x00800000u < 0x7f000000u);
 }

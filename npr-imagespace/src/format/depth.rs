@@ -1,13 +1,13 @@
 //! Linear eye-space depth in six formats.
 //!
-//! The chapter keeps 8 bits and expects that close surfaces fuse in large scenes; it names what follows here as the way
-//! out: more channels, or wider ones. The fixed-point formats store u = (z − near) / (far − near), the floats z itself,
-//! so that infinity and NaN survive in them and [`crate::format::ink_is_surface`] can tell.
+//! The chapter (Card & Mitchell 2002) stores 8 bits and expects that close surfaces are not separated in large scenes;
+//! it proposes more or wider channels. The fixed-point formats store u = (z − near) / (far − near), the float formats z
+//! itself, so that infinity and NaN are preserved and [`crate::format::ink_is_surface`] recognises them.
 //!
-//! # The smallest gap told apart
+//! # The smallest difference resolved
 //!
-//! Two depths at least this far apart have different codes, wherever they lie ([`DepthFormat::gap`]); depths closer
-//! than half of it share one somewhere:
+//! Two depths that differ by at least this have different codes at any distance ([`DepthFormat::gap`]); somewhere two
+//! depths that differ by less than half of it have the same code:
 //!
 //! - n bits: (far − near) / (2ⁿ − 1), at any distance;
 //! - half float: 2^(⌊log₂ z⌋ − 10), full float: 2^(⌊log₂ z⌋ − 23), which grow with the distance;
@@ -37,9 +37,9 @@ pub enum DepthFormat {
 /// The eye-space depths that fixed-point formats span.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DepthRange {
-    /// Above 0.
+    /// The nearest depth, above 0.
     pub near: f32,
-    /// Above `near`.
+    /// The farthest depth, above `near`.
     pub far: f32,
 }
 
@@ -65,18 +65,18 @@ impl DepthRange {
 }
 
 /// 0..=1 as 8 bits, rounded to the nearest.
-pub fn ink_depth_encode8(fraction: f32) -> u32 {
+fn ink_depth_encode8(fraction: f32) -> u32 {
     (fraction * 255.0 + 0.5) as u32
 }
 
 /// 0..=1 as 16 bits, rounded to the nearest.
-pub fn ink_depth_encode16(fraction: f32) -> u32 {
+fn ink_depth_encode16(fraction: f32) -> u32 {
     (fraction * 65535.0 + 0.5) as u32
 }
 
-/// 0..=1 as 32 bits: all of an f32's own. Only 1 itself, 2^32, does not fit, and becomes the largest code.
-pub fn ink_depth_encode32(fraction: f32) -> u32 {
-    // In Rust this conversion saturates; WGSL's need not.
+/// 0..=1 as 32 bits, without loss of an f32's precision. 1 would be 2^32 and becomes the largest code.
+fn ink_depth_encode32(fraction: f32) -> u32 {
+    // In Rust this conversion saturates; in WGSL it need not.
     (fraction * 4294967296.0) as u32
 }
 
@@ -103,7 +103,7 @@ impl DepthFormat {
         }
     }
 
-    /// Eye-space depth as a code, in the lower [`DepthFormat::bytes`]. Fixed point puts what is no number at `far`.
+    /// Eye-space depth as a code, in the lower [`DepthFormat::bytes`]. Fixed-point formats store NaN as `far`.
     pub fn encode(self, depth: f32, range: &DepthRange) -> u32 {
         match self {
             Self::Unorm8 => ink_depth_encode8(range.fraction(depth)),
@@ -125,7 +125,7 @@ impl DepthFormat {
         }
     }
 
-    /// The smallest gap told apart wherever it lies, in eye-space depth around `depth`, by the formulas of this
+    /// The smallest difference of eye-space depths around `depth` that is always resolved, by the formulas of this
     /// module.
     pub fn gap(self, depth: f64, range: &DepthRange) -> f64 {
         let span = f64::from(range.far) - f64::from(range.near);

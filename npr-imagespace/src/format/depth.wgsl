@@ -13,7 +13,7 @@ fn ink_depth_encode16(fraction: f32) -> u32 {
     return u32(fraction * 65535.0 + 0.5);
 }
 
-// All of an f32's own bits. Only 1 itself, 2^32, does not fit, and becomes the largest code.
+// Without loss of an f32's precision. 1 would be 2^32 and becomes the largest code.
 fn ink_depth_encode32(fraction: f32) -> u32 {
     return select(u32(min(fraction, 0.99999994) * 4294967296.0), 0xffffffffu, fraction >= 1.0);
 }

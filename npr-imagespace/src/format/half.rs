@@ -8,12 +8,12 @@ pub fn ink_half_encode(value: f32) -> u16 {
     if magnitude > 0x7f80_0000 {
         return sign | 0x7e00;
     }
-    // 65520 and more: past the middle between the largest half and the next one.
+    // From 65520 on, halfway between the largest half float and 2^16, values round to infinity.
     if magnitude >= 0x477f_f000 {
         return sign | 0x7c00;
     }
     if magnitude < 0x3880_0000 {
-        // Below 2^-14 halves are evenly spaced by 2^-24: adding 1/2, whose own spacing that is, rounds to them.
+        // Below 2^-14 half floats are spaced by 2^-24, the spacing of f32 around 1/2: adding 1/2 rounds to them.
         let rounded = f32::from_bits(magnitude) + 0.5;
         return sign | (rounded.to_bits() - 0.5f32.to_bits()) as u16;
     }

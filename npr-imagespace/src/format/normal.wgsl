@@ -1,10 +1,10 @@
 // Octahedral normals. The twin of `normal.rs`. No bindings and no entry points.
-// Biased bytes are those of `ink_printed_encode`; for half floats a target's own conversion serves.
+// Biased bytes are those of `ink_printed_encode`; half floats are converted by the target.
 
-// What octahedral numbers of 5, 8 and 16 bits run to.
-const INK_OCT5_MOST: f32 = 15.0;
-const INK_OCT8_MOST: f32 = 127.0;
-const INK_OCT16_MOST: f32 = 32767.0;
+// The largest octahedral integers of 5, 8 and 16 bits.
+const INK_OCT5_MAX: f32 = 15.0;
+const INK_OCT8_MAX: f32 = 127.0;
+const INK_OCT16_MAX: f32 = 32767.0;
 
 // The octahedral numbers of a direction of any length as unsigned ones, 1 .. 2 most + 1; zeros for no normal.
 fn ink_oct_encode(normal: vec3<f32>, most: f32) -> vec2<u32> {
@@ -18,15 +18,15 @@ fn ink_oct_encode(normal: vec3<f32>, most: f32) -> vec2<u32> {
     return vec2<u32>(floor(unfolded * most + 0.5) + (most + 1.0));
 }
 
-// The direction of octahedral numbers: whole numbers, |x| + |y| + |z| = most. In f32, whose arithmetic on them is exact
-// and quicker than that on integers.
+// The direction of an octahedral code: integers with |x| + |y| + |z| = most. They are stored in f32, whose arithmetic
+// on them is exact and faster than that on integers.
 fn ink_oct_vector(code: vec2<f32>, most: f32) -> vec3<f32> {
     let z = most - abs(code.x) - abs(code.y);
     let folded = most - abs(code.yx);
     return vec3<f32>(select(code, select(folded, -folded, code < vec2<f32>(0.0)), z < 0.0), z);
 }
 
-// The reverse of `ink_oct_encode`, as a vector of whole numbers; zero for no normal.
+// The reverse of `ink_oct_encode`, as a vector of integers; zero for no normal.
 fn ink_oct_load(stored: vec2<u32>, most: f32) -> vec3<f32> {
     let vector = ink_oct_vector(vec2<f32>(stored) - (most + 1.0), most);
     return select(vector, vec3<f32>(0.0), stored.x == 0u);

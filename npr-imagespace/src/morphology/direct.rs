@@ -1,11 +1,12 @@
-//! A disc as the maximum of shifted rows: for small radii.
+//! Dilation by a small disc as the maximum of shifted rows.
 //!
-//! For each row of the disc, 2 w + 1 pixels wide, the maxima over so many pixels of a picture's row; of these, each
-//! from its own row, the maximum. All of it is bytes compared side by side.
+//! For each row of the disc, 2 w + 1 pixels wide, the maxima over that many pixels of a picture's row; the result is
+//! the maximum of these over the disc's rows. All steps are maxima of bytes, which vectorise.
 
 use super::disc::{LINE, root};
 
-/// `to` = the largest of three. A function of its own, since slices that are arguments are known not to overlap.
+/// `to` = the largest of three. A separate function, so that the compiler knows from the arguments that the slices do
+/// not overlap.
 #[inline(never)]
 fn largest(to: &mut [u8], a: &[u8], b: &[u8], c: &[u8]) {
     for (((to, &a), &b), &c) in to.iter_mut().zip(a).zip(b).zip(c) {

@@ -2,18 +2,18 @@
 //!
 //! Line pixels are those with ink 128 and more. d is the distance of a pixel's centre from the nearest line pixel's.
 //!
-//! - Hard: ink where d ≤ r, all of it.
+//! - Hard: full ink where d ≤ r.
 //! - Antialiased: clamp(r + 1 − d, 0, 1). A line pixel is itself a pixel wide, so that a line of one pixel becomes 2
-//!   r + 1 wide, a radius of 0 changes nothing, and the hard disc is what is ink in full.
+//!   r + 1 wide, a radius of 0 changes nothing, and full ink is that of the hard disc.
 //!
-//! # How
+//! # Algorithm
 //!
 //! With g the distance to the nearest line pixel of the same row, the disc's part in a column is an interval of
-//! ⌊√(r² − g²)⌋ to either side: how far the pixel *reaches* up and down. Along a row, the reaches between two
+//! ⌊√(r² − g²)⌋ to either side, the vertical *reach* of the pixel. Along a row, the reaches between two
 //! line pixels are the same numbers from a table forwards and backwards, so a row is made by copying. Two sweeps over
 //! the rows, down and up, then carry each reach on, less 1 per row: max-plus with the weight −|y|, which two
-//! sweeps compute exactly, as they do any L1 distance, with nothing but bytes compared side by side. A pixel is
-//! covered if a reach has got to it.
+//! sweeps compute exactly, as they do any L1 distance, with comparisons of bytes alone. A pixel is covered if the
+//! carried reach there is not used up.
 //!
 //! Antialiased, two such pairs of sweeps, for r and for r + 1, single out the pixels between the two, and for these
 //! alone the distance is searched for along their column, 2 r + 3 rows, 16 columns side by side. Since what discs of
@@ -22,7 +22,7 @@
 //!
 //! Rows full of borders, which noise has, are not made by copying but pixel by pixel.
 //!
-//! Up to a whole radius of [`DIRECT_MOST`] the hard disc is the maximum of shifted rows, which is cheaper still.
+//! Up to a whole radius of 5 px the hard disc is the maximum of shifted rows, which is cheaper still.
 //!
 //! Distances by two passes over the axes: Saito & Toriwaki 1994, "New algorithms for Euclidean distance transformation
 //! of an n-dimensional digitized picture with applications".
@@ -33,23 +33,23 @@ use crate::picture::checked_len;
 use glam::UVec2;
 
 /// The largest integer part of a radius for which shifted rows are used.
-pub const DIRECT_MOST: usize = 5;
+const DIRECT_MOST: usize = 5;
 /// The largest radius.
-pub const RADIUS_MOST_PX: f32 = 32766.0;
+pub const RADIUS_MAX_PX: f32 = 32766.0;
 /// The least ink of a line pixel.
 pub const LINE: u8 = 128;
 
-/// A round brush.
+/// A disc-shaped structuring element.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Disc {
-    /// 0..=[`RADIUS_MOST_PX`].
+    /// The radius, px, 0..=[`RADIUS_MAX_PX`].
     pub radius_px: f32,
-    /// Whether the border is soft, over a pixel.
+    /// Whether the border is antialiased, with a ramp one pixel wide.
     pub antialias: bool,
 }
 
-/// Buffers that a dilation needs, to be kept between calls: memory touched for the first time costs more than the
-/// work.
+/// Buffers of a dilation, to be kept between calls, since the first access to new memory costs more than the
+/// computation.
 #[derive(Clone, Debug, Default)]
 pub struct DiscBuffers {
     bytes: Planes<u8>,
@@ -68,7 +68,7 @@ struct Planes<T> {
     far: Vec<u32>,
 }
 
-/// The largest whole number whose square is not above `square`.
+/// The integer square root: the largest integer with a square of at most `square`.
 pub(crate) fn root(square: u32) -> usize {
     let mut root = f64::from(square).sqrt() as u32;
     while root * root > square {
@@ -82,7 +82,7 @@ fn square_within(radius_px: f32) -> u32 {
     f64::from(radius_px).powi(2).floor() as u32
 }
 
-/// Whole numbers that reaches and distances are kept in.
+/// The integers that reaches and distances are stored in.
 trait Lane: Copy + Ord + Default {
     const MOST: usize;
     fn from_index(value: usize) -> Self;
@@ -160,7 +160,7 @@ fn nearest_in_words<T: Copy + Into<i32>>(
     }
 }
 
-/// What each distance along a row is worth, from 0 on, and the same backwards without its first.
+/// A value for each distance along a row, from 0 on, and the same reversed without the first.
 struct Ramp<T> {
     up: Vec<T>,
     down: Vec<T>,
@@ -173,7 +173,7 @@ impl<T: Lane> Ramp<T> {
         Self { up, down, far }
     }
 
-    /// One more than the reach, and 0 for none.
+    /// One more than the reach; 0 where there is none.
     fn of_reaches(square: u32) -> Self {
         let most = root(square);
         let reach = |g: usize| T::from_index(root(square - (g * g) as u32) + 1);
@@ -184,7 +184,7 @@ impl<T: Lane> Ramp<T> {
         Self::new((0..=most).map(T::from_index).collect(), T::from_index(most + 1))
     }
 
-    /// Pixels `from..to` of a row: a line pixel stands before them if `after` and behind them if `before`.
+    /// Pixels `from..to` of a row: a line pixel precedes them if `after` and follows them if `before`.
     fn fill(&self, row: &mut [T], after: bool, before: bool) {
         let most = self.down.len();
         let left = match (after, before) {
@@ -203,14 +203,14 @@ impl<T: Lane> Ramp<T> {
     }
 }
 
-/// Whether line and paper meet more often than every 16 pixels: by a quarter of the row.
+/// Whether ink changes more often than every 16 pixels, estimated from a quarter of the row.
 #[inline(never)]
 fn is_busy(ink: &[u8]) -> bool {
-    // Counts of bytes, since wider ones cost what side by side gains.
-    let meet = |(a, b): (&[u8], &[u8])| a.iter().zip(b).map(|(a, b)| (a ^ b) >> 7).sum::<u8>();
+    // Counted in bytes: wider counters would lose the gain of vectorisation.
+    let changes = |(a, b): (&[u8], &[u8])| a.iter().zip(b).map(|(a, b)| (a ^ b) >> 7).sum::<u8>();
     let pairs = ink.chunks(128).zip(ink.get(1..).unwrap_or_default().chunks(128)).step_by(4);
     let (borders, looked_at) =
-        pairs.fold((0, 0), |(borders, len), pair| (borders + usize::from(meet(pair)), len + pair.0.len()));
+        pairs.fold((0, 0), |(borders, len), pair| (borders + usize::from(changes(pair)), len + pair.0.len()));
     16 * borders > looked_at
 }
 
@@ -229,7 +229,7 @@ fn distances(ink: &[u8], far: &mut Vec<u32>) {
     }
 }
 
-/// Rows of what a row's distances are worth, by several ramps.
+/// Fills rows with the values of several ramps at a row's distances.
 fn fill_rows<T: Lane, const N: usize>(ink: &[u8], mut rows: [(&Ramp<T>, &mut [T]); N], far: &mut Vec<u32>) {
     let is_line = |&ink: &u8| ink >= LINE;
     if is_busy(ink) {
@@ -363,7 +363,7 @@ fn soft<T: Lane>(
     }
 }
 
-/// What the inner disc covers, and what only the outer one does.
+/// Pixels that the inner disc covers, and those that only the outer one covers.
 #[inline(never)]
 fn between<T: Lane>(inside: &[T], around: &[T], covered: &mut [u8], fringe: &mut [u8]) {
     for (((covered, fringe), &inside), &around) in covered.iter_mut().zip(fringe).zip(inside).zip(around) {
@@ -380,7 +380,7 @@ fn square_beyond(radius_px: f32) -> u32 {
 /// Dilates the line pixels of `ink` by a disc.
 ///
 /// # Errors
-/// If `ink` does not have one element for each pixel, or the radius is not within 0..=[`RADIUS_MOST_PX`].
+/// If `ink` does not have one element for each pixel, or the radius is not within 0..=[`RADIUS_MAX_PX`].
 pub fn dilate_disc(
     ink: &[u8],
     size_px: UVec2,
@@ -389,7 +389,7 @@ pub fn dilate_disc(
     out: &mut Vec<u8>,
 ) -> Result<(), ImageSpaceError> {
     let len = checked_len(ink.len(), size_px)?;
-    if !(0.0..=RADIUS_MOST_PX).contains(&disc.radius_px) {
+    if !(0.0..=RADIUS_MAX_PX).contains(&disc.radius_px) {
         return Err(ImageSpaceError::Radius { radius_px: disc.radius_px });
     }
     out.resize(len, 0);
@@ -415,7 +415,7 @@ pub fn dilate_disc(
     Ok(())
 }
 
-/// Erodes the line pixels of `ink` by a disc: what is left is the complement of the paper dilated.
+/// Erodes the line pixels of `ink` by a disc: the result is the complement of the dilated paper.
 ///
 /// # Errors
 /// As [`dilate_disc`].

@@ -1,43 +1,45 @@
-//! The disc in passes that a GPU runs: every pixel learns which line pixel is nearest, by asking pixels ever closer,
-//! or ever farther, that have asked others.
+//! The disc in passes for a GPU, by jump flooding: in each pass every pixel takes the nearest of the line pixels that
+//! it and some texels at the pass's distance know of.
 //!
 //! A texel of `R32Uint` holds the step from the pixel to the nearest line pixel known so far, 0 for none
 //! ([`ink_flood_seed`]). A pass reads some texels at a distance, adds the way there, and keeps the shortest
-//! ([`ink_flood_take`]); the last turns the distance into ink ([`ink_flood_resolve`]). All but that is done on
+//! ([`ink_flood_take`]); the last turns the distance into ink. All but that is done on
 //! integers.
 //!
 //! Jump flooding in the plane (Rong & Tan 2006, "Jump flooding in GPU with applications to Voronoi diagram and
 //! distance transform") reads eight neighbours a pass ([`FloodPlan::square`]). Here the axes are done one after the
 //! other ([`FloodPlan::separable`]): along a row the nearest line pixel is found exactly, whatever the steps, since
-//! every pixel on the way to it has the same nearest one; along columns the sites compete with unequal heads, and one
-//! can lose on the way to a pixel that it would have won. Both may therefore miss: never in calling far what is near
-//! by less than it is, only the other way. [`flood`] runs the very same passes on the CPU.
+//! every pixel on the way to it has the same nearest one; along columns sites at different
+//! row distances compete, and a pixel on the way can discard the site that is nearest to a later pixel. Both variants
+//! may therefore find a distance that is too large, never one that is too small. [`flood`] runs the same passes on the
+//! CPU.
 
 use crate::ImageSpaceError;
-use crate::morphology::disc::{Disc, LINE, RADIUS_MOST_PX};
+use crate::morphology::disc::{Disc, LINE, RADIUS_MAX_PX};
 use crate::picture::{checked_len, ink_store};
 use glam::{IVec2, UVec2};
 
 /// A pixel that knows no line pixel.
 pub const FLOOD_NONE: u32 = 0;
 
-/// What one pass reads besides the pixel itself: texels at ± `step`, ± 2 `step` … ± `fan` · `step` along x, y or both.
+/// One pass, which reads besides the pixel itself the texels at ± `step`, ± 2 `step` … ± `fan` · `step` along x, y or
+/// both.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct FloodPass {
-    /// In px.
+    /// The distance between the texels, px.
     pub step: u32,
-    /// How many to each side.
+    /// The number of texels to each side.
     pub fan: u32,
-    /// Whether texels beside are read.
+    /// Whether texels to the left and right are read.
     pub along_x: bool,
-    /// Whether texels above and below are read; with `along_x` those on the diagonals, too.
+    /// Whether texels above and below are read; together with `along_x` also those on diagonals.
     pub along_y: bool,
 }
 
 /// The passes for a radius, in their order.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FloodPlan {
-    /// In order.
+    /// The passes, in order.
     pub passes: Vec<FloodPass>,
 }
 
@@ -94,45 +96,45 @@ impl FloodPlan {
     }
 }
 
-/// Taps to each side in [`disc_plan`]: 2 to 4 were measured alike, 1 and 6 slower.
+/// Taps to each side in [`disc_plan`]: 2 to 4 took the same time, 1 and 6 were slower.
 const FAN: u32 = 3;
 
-/// The passes that stand for a disc, on a device and here.
+/// The passes for a disc, the same on a device and in [`flood`].
 pub fn disc_plan(disc: &Disc) -> FloodPlan {
     FloodPlan::fitted(disc, FAN)
 }
 
-/// How far a line pixel can matter along one axis.
+/// The largest distance along one axis, px, at which a line pixel changes a pixel's ink.
 fn reach_px(disc: &Disc) -> u32 {
     let beyond = if disc.antialias { (disc.radius_px + 1.0).ceil() - 1.0 } else { disc.radius_px.floor() };
     (beyond as u32).max(1)
 }
 
-/// The texel to begin with.
+/// The texel of a pixel before the first pass.
 pub fn ink_flood_seed(is_line: bool) -> u32 {
     if is_line { 0x8000_8000 } else { FLOOD_NONE }
 }
 
-/// The step to the line pixel that a texel names.
+/// The step in px from a pixel to the line pixel stored in its texel.
 pub fn ink_flood_vector(site: u32) -> IVec2 {
     IVec2::new((site & 0xffff) as i32 - 0x8000, (site >> 16) as i32 - 0x8000)
 }
 
-/// Squared distance of the line pixel that a texel names; far for none.
-pub fn ink_flood_distance2(site: u32) -> u32 {
+/// The squared distance of the line pixel stored in a texel, px²; `u32::MAX` for none.
+fn ink_flood_distance2(site: u32) -> u32 {
     if site == FLOOD_NONE {
         return u32::MAX;
     }
     ink_flood_vector(site).length_squared() as u32
 }
 
-/// The nearer of what a pixel knows and of what the texel `offset` px away knows.
+/// The nearer of the line pixel of a texel, `best`, and that of the texel `offset` px away, `tap`.
 pub fn ink_flood_take(best: u32, tap: u32, offset: IVec2) -> u32 {
     if tap == FLOOD_NONE {
         return best;
     }
     let vector = ink_flood_vector(tap) + offset;
-    // A step that a texel cannot hold.
+    // Steps of more than 15 bits do not fit a texel.
     if vector.abs().max_element() > 0x7fff {
         return best;
     }
@@ -143,7 +145,7 @@ pub fn ink_flood_take(best: u32, tap: u32, offset: IVec2) -> u32 {
 }
 
 /// Ink 0..=1 of a pixel that knows its nearest line pixel, as [`crate::morphology::disc`] defines it.
-pub fn ink_flood_resolve(site: u32, radius_px: f32, antialias: bool) -> f32 {
+fn ink_flood_resolve(site: u32, radius_px: f32, antialias: bool) -> f32 {
     if site == FLOOD_NONE {
         return 0.0;
     }
@@ -182,7 +184,7 @@ fn run_pass(from: &[u32], size: IVec2, pass: &FloodPass, to: &mut Vec<u32>) {
 /// If `ink` does not have one element for each pixel, or the radius is out of range.
 pub fn flood(ink: &[u8], size_px: UVec2, disc: &Disc, plan: &FloodPlan) -> Result<Vec<u8>, ImageSpaceError> {
     checked_len(ink.len(), size_px)?;
-    if !(0.0..=RADIUS_MOST_PX).contains(&disc.radius_px) {
+    if !(0.0..=RADIUS_MAX_PX).contains(&disc.radius_px) {
         return Err(ImageSpaceError::Radius { radius_px: disc.radius_px });
     }
     let mut from: Vec<u32> = ink.iter().map(|&ink| ink_flood_seed(ink >= LINE)).collect();

@@ -1,4 +1,4 @@
-// The disc in passes: every pixel learns its nearest line pixel. The twin of `flood.rs`. No bindings and no entry
+// The disc in passes that find the nearest line pixel of each pixel. The twin of `flood.rs`. No bindings and no entry
 // points.
 //
 // A texel of r32uint holds the step to the nearest line pixel known so far. A pass reads texels at +-step, +-2 step ..
@@ -19,7 +19,7 @@ fn ink_flood_distance2(site: u32) -> u32 {
     return select(u32(vector.x * vector.x + vector.y * vector.y), 0xffffffffu, site == INK_FLOOD_NONE);
 }
 
-// The nearer of what a pixel knows and of what the texel `offset` px away knows.
+// The nearer of the line pixel of a texel, `best`, and that of the texel `offset` px away, `tap`.
 fn ink_flood_take(best: u32, tap: u32, offset: vec2<i32>) -> u32 {
     let vector = ink_flood_vector(tap) + offset;
     let away = abs(vector);

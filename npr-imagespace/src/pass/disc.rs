@@ -1,32 +1,32 @@
-//! The disc of any radius, by the passes of [`crate::morphology::flood`].
+//! Dilation and erosion by a disc of any radius, by the passes of [`crate::morphology::flood`].
 //!
-//! Every pixel learns its nearest line pixel, along the rows and then along the columns. What is nearest along the row
-//! is exact in any plan and found in the bits of its lines, at once; the columns take the passes of [`disc_plan`], whose
-//! number grows with the logarithm of the radius. A last pass makes it ink, at once over a picture if that is what the
-//! pass is made for. The result is that of [`crate::morphology::flood::flood`] with that plan.
+//! The nearest line pixel of each pixel is found along rows, then along columns. Along rows one pass finds it exactly
+//! from line pixels stored as bits; along columns there are the passes of [`disc_plan`], whose number grows with the
+//! logarithm of the radius. A last pass converts distances to ink, composited over a picture if the pass is made for
+//! one. The result is that of [`crate::morphology::flood::flood`] with that plan.
 //!
-//! Along a row 32 px are read at a time, up to the radius: some thousand px make that the largest part.
+//! The row pass reads 32 px a load up to the radius; from a radius of about a thousand px on it takes most of the time.
 //!
 //! Erosion is the complement of the dilated complement, as in [`crate::morphology::disc::erode_disc`]: the nearest
-//! paper is sought, and there is none outside the picture, so that its border eats nothing.
+//! paper is searched for, and there is none outside the picture, so that the picture's border removes no ink.
 
 use super::fullscreen::{Bound, Fullscreen, Output, size_px, uniform};
-use super::{INK_FORMAT, InkTarget, Onto};
+use super::{INK_FORMAT, InkTarget, PassTarget, check_ink, check_view};
 use crate::ImageSpaceError;
 use crate::composite::Composite;
 use crate::morphology::Operation;
-use crate::morphology::disc::{Disc, RADIUS_MOST_PX};
+use crate::morphology::disc::{Disc, RADIUS_MAX_PX};
 use crate::morphology::flood::{FloodPlan, disc_plan};
 use bytemuck::{Pod, Zeroable};
 
-const DISC_WGSL: &str = include_str!("disc.wgsl");
-/// Of lines as bits.
+pub(super) const DISC: (&str, &str) = ("pass/disc.wgsl", include_str!("disc.wgsl"));
+/// The format of line pixels as bits.
 const WORD_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
-/// Pixels in a texel of them.
+/// Pixels in a texel of bits.
 const WORD_PX: u32 = 32;
-/// Of steps to the nearest.
+/// The format of steps to the nearest line pixel.
 const SITE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
-/// Pixels in a texel of them.
+/// Pixels in a texel of steps.
 const SITE_PX: u32 = 4;
 /// `Pass` of the WGSL.
 #[repr(C)]
@@ -41,12 +41,12 @@ struct PassUniform {
     padding: [u32; 2],
 }
 
-/// Textures that a disc needs on the way, to be kept between frames: 9 bytes a pixel and an eighth.
+/// Intermediate textures of a disc, to be kept between frames: 9⅛ bytes a pixel.
 #[derive(Debug)]
 pub struct DiscScratch {
     words: wgpu::TextureView,
     sites: [wgpu::TextureView; 2],
-    /// Between the halves of an operation.
+    /// Ink between the two halves of an opening or closing.
     ink: wgpu::TextureView,
 }
 
@@ -81,11 +81,11 @@ pub struct DiscPass {
     row: Fullscreen,
     column: Fullscreen,
     resolve: Fullscreen,
-    /// The last of an operation's first half.
+    /// The last pass of the first half of an opening or closing.
     resolve_half: Fullscreen,
 }
 
-/// What is done to ink.
+/// One half of an operation.
 #[derive(Clone, Copy, Debug)]
 struct Half<'a> {
     disc: &'a Disc,
@@ -95,26 +95,27 @@ struct Half<'a> {
 
 impl DiscPass {
     /// Makes the pipelines.
-    pub fn new(device: &wgpu::Device, target: InkTarget) -> Self {
+    ///
+    /// # Errors
+    /// [`ImageSpaceError::SrgbPicture`], [`ImageSpaceError::PictureFormat`].
+    pub fn new(device: &wgpu::Device, target: InkTarget) -> Result<Self, ImageSpaceError> {
+        target.check(device)?;
         let pipeline =
-            |label, texture, output| Fullscreen::new(device, label, DISC_WGSL, &[Bound::Uniform, texture], &[], output);
-        Self {
+            |label, texture, output| Fullscreen::new(device, label, DISC, &[Bound::Uniform, texture], &[], output);
+        Ok(Self {
             bits: pipeline("bits", Bound::Float, Output::Whole(WORD_FORMAT)),
             row: pipeline("row", Bound::Whole, Output::Whole(SITE_FORMAT)),
             column: pipeline("column", Bound::Whole, Output::Whole(SITE_FORMAT)),
             resolve: pipeline("resolve", Bound::Whole, Output::Ink(target)),
             resolve_half: pipeline("resolve", Bound::Whole, Output::Ink(InkTarget::Ink)),
-        }
+        })
     }
 
-    /// Records an operation by a disc over `ink`, [`INK_FORMAT`], of the target's size; `scratch` is made for that
-    /// size. Line pixels are those with ink 128 and more.
+    /// Records an operation by a disc over `ink`, of format [`INK_FORMAT`] and the target's size; `scratch` is made for
+    /// that size. Line pixels are those with ink 128 and more.
     ///
     /// # Errors
-    /// If the radius is not within 0..=[`RADIUS_MOST_PX`].
-    ///
-    /// # Panics
-    /// If `scratch` is made for another size than that of `ink`.
+    /// If the radius is not within 0..=[`RADIUS_MAX_PX`]; if a texture is not as [`crate::pass`] says.
     #[expect(clippy::too_many_arguments, reason = "each is a thing of its own")]
     pub fn record(
         &self,
@@ -124,24 +125,25 @@ impl DiscPass {
         disc: &Disc,
         ink: &wgpu::TextureView,
         scratch: &DiscScratch,
-        onto: &Onto<'_>,
+        target: &PassTarget<'_>,
     ) -> Result<(), ImageSpaceError> {
-        if !(0.0..=RADIUS_MOST_PX).contains(&disc.radius_px) {
+        if !(0.0..=RADIUS_MAX_PX).contains(&disc.radius_px) {
             return Err(ImageSpaceError::Radius { radius_px: disc.radius_px });
         }
-        let size = size_px(ink);
-        assert_eq!(size, size_px(&scratch.ink), "textures for another size");
+        let size = self.resolve.check(target)?;
+        check_ink(ink, Some(size))?;
+        check_view("the scratch textures", &scratch.ink, INK_FORMAT, "R8Unorm", Some(size))?;
         let plan = disc_plan(disc);
         let halves: Vec<_> = operation.halves().map(|eroding| Half { disc, plan: &plan, eroding }).collect();
         if let [first, second] = halves[..] {
-            // As far as the second half will read.
+            // The first half must be correct as far as the second half reads.
             let reach = plan.row_reach_px();
-            let area = onto.area.map(|area| grown(area, [reach, reach], size));
-            let between = Onto { view: &scratch.ink, composite: &Composite::Multiply, area };
+            let area = target.area.map(|area| grown(area, [reach, reach], size));
+            let between = PassTarget { view: &scratch.ink, composite: &Composite::Multiply, area };
             self.record_half(device, encoder, &first, ink, &self.resolve_half, scratch, &between);
-            self.record_half(device, encoder, &second, &scratch.ink, &self.resolve, scratch, onto);
+            self.record_half(device, encoder, &second, &scratch.ink, &self.resolve, scratch, target);
         } else {
-            self.record_half(device, encoder, &halves[0], ink, &self.resolve, scratch, onto);
+            self.record_half(device, encoder, &halves[0], ink, &self.resolve, scratch, target);
         }
         Ok(())
     }
@@ -155,11 +157,11 @@ impl DiscPass {
         ink: &wgpu::TextureView,
         resolve: &Fullscreen,
         scratch: &DiscScratch,
-        onto: &Onto<'_>,
+        target: &PassTarget<'_>,
     ) {
         let size = size_px(ink);
         let reach = half.plan.row_reach_px();
-        // A longer row has no more.
+        // A row has no more words than its width takes.
         let words = reach.min(size[0]).div_ceil(WORD_PX);
         let mut record = |draw: &Fullscreen, from, step: u32, fan: u32, to, area| {
             let what = PassUniform {
@@ -173,11 +175,11 @@ impl DiscPass {
             };
             let what = uniform(device, bytemuck::bytes_of(&what));
             let resources = [what.as_entire_binding(), wgpu::BindingResource::TextureView(from)];
-            draw.draw(encoder, &draw.group(device, &resources, onto.composite), to, area);
+            draw.draw(encoder, &draw.group(device, &resources, target.composite), to, area);
         };
-        // Each pass is to be right wherever those after it read.
+        // Each pass must be correct wherever the passes after it read.
         let columns: Vec<_> = half.plan.passes.iter().filter(|pass| pass.along_y).collect();
-        let mut areas = vec![onto.area];
+        let mut areas = vec![target.area];
         for pass in columns.iter().rev() {
             areas.push(areas[areas.len() - 1].map(|area| grown(area, [0, pass.step * pass.fan], size)));
         }
@@ -192,11 +194,11 @@ impl DiscPass {
             record(&self.column, &scratch.sites[from], pass.step, pass.fan, &scratch.sites[to], texels(area, SITE_PX));
             [from, to] = [to, from];
         }
-        record(resolve, &scratch.sites[from], 0, 0, onto.view, onto.area);
+        record(resolve, &scratch.sites[from], 0, 0, target.view, target.area);
     }
 }
 
-/// An area and so many px around it, within the picture.
+/// An area grown by `reach` px to each side, within the picture.
 fn grown([x, y, width, height]: [u32; 4], reach: [u32; 2], size: [u32; 2]) -> [u32; 4] {
     let along = |from: u32, len: u32, reach: u32, size: u32| {
         let low = from.saturating_sub(reach);
@@ -207,7 +209,7 @@ fn grown([x, y, width, height]: [u32; 4], reach: [u32; 2], size: [u32; 2]) -> [u
     [left, top, width, height]
 }
 
-/// An area in texels of so many px side by side.
+/// An area in texels of `px` horizontally adjacent pixels.
 fn in_texels([x, y, width, height]: [u32; 4], px: u32) -> [u32; 4] {
     let left = x / px;
     [left, y, (x + width).div_ceil(px) - left, height]
@@ -216,12 +218,12 @@ fn in_texels([x, y, width, height]: [u32; 4], px: u32) -> [u32; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::pass::fullscreen::module_source;
     use std::mem::offset_of;
 
     #[test]
     fn the_uniform_has_the_layout_of_the_shader() {
-        let source = [crate::WGSL, include_str!("fullscreen.wgsl"), DISC_WGSL].concat();
-        let module = naga::front::wgsl::parse_str(&source).expect("it is valid");
+        let module = naga::front::wgsl::parse_str(&module_source(DISC)).expect("it is valid");
         let (_, found) = module.types.iter().find(|(_, t)| t.name.as_deref() == Some("Pass")).expect("it has it");
         let naga::TypeInner::Struct { members, span } = &found.inner else { panic!("it is no struct") };
         let offsets: Vec<_> = members[..6].iter().map(|m| (m.name.as_deref().unwrap(), m.offset as usize)).collect();

@@ -1,29 +1,35 @@
-//! What all passes share: a triangle over the target, bindings in a row, and how ink is put out.
+//! Common parts of the passes: a triangle over the target, consecutive bindings, and how ink is written.
 
-use super::{INK_FORMAT, InkTarget, Onto};
+use super::{INK_FORMAT, InkTarget, PassTarget, assemble};
+use crate::ImageSpaceError;
 use crate::composite::{Composite, CompositeUniform};
 use glam::Vec3;
 
-const FULLSCREEN_WGSL: &str = include_str!("fullscreen.wgsl");
+const FULLSCREEN: (&str, &str) = ("pass/fullscreen.wgsl", include_str!("fullscreen.wgsl"));
 
-/// What a pass binds after the uniform that says how ink is put out.
+/// The shader of a pass: the library, the triangle and the pass's own file.
+pub(super) fn module_source(file: (&str, &str)) -> String {
+    assemble(&[crate::LIBRARY, &[FULLSCREEN, file]].concat())
+}
+
+/// A binding of a pass, after that of the composite uniform.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Bound {
     Uniform,
-    /// A texture of whole numbers.
+    /// A texture of unsigned integers.
     Whole,
-    /// A texture of floats, read texel by texel.
+    /// A texture of floats, loaded without filtering.
     Float,
     /// A sampler that does not filter.
     Nearest,
 }
 
-/// What a pass writes.
+/// What a pass writes to its target.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Output {
-    /// Ink, in whichever form the target wants it.
+    /// Ink, as ink or composited over a picture.
     Ink(InkTarget),
-    /// Whole numbers of a format, on the way to ink. Outside the area they become 0.
+    /// Intermediate unsigned integers of a format. Outside the area they become 0.
     Whole(wgpu::TextureFormat),
 }
 
@@ -37,12 +43,12 @@ pub(super) struct Fullscreen {
 }
 
 impl Fullscreen {
-    /// - `source`: after the library and `fullscreen.wgsl`; its entry point is `label` with `fs_` before it.
-    /// - `bound`: what it binds, from binding 1 of group 0 on.
+    /// - `file`: the pass's own WGSL, name and text; its entry point is `label` with `fs_` before it.
+    /// - `bound`: the bindings, from binding 1 of group 0 on.
     pub(super) fn new(
         device: &wgpu::Device,
         label: &'static str,
-        source: &str,
+        file: (&str, &str),
         bound: &[Bound],
         constants: &[(&str, f64)],
         output: Output,
@@ -62,9 +68,9 @@ impl Fullscreen {
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries });
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(label),
-            source: wgpu::ShaderSource::Wgsl([crate::WGSL, FULLSCREEN_WGSL, source].concat().into()),
+            source: wgpu::ShaderSource::Wgsl(module_source(file).into()),
         });
-        // A picture's alpha stays.
+        // A picture's alpha is not written.
         let (format, blend, write_mask) = match output {
             Output::Ink(InkTarget::Ink) => (INK_FORMAT, None, wgpu::ColorWrites::ALL),
             Output::Ink(InkTarget::Picture(format)) => {
@@ -100,8 +106,16 @@ impl Fullscreen {
         Self { pipeline, layout, output, label }
     }
 
-    /// What it binds. `resources` are those of [`Fullscreen::new`]'s `bound`; `composite` is not looked at but for
-    /// pictures.
+    /// Refuses a target that the pipeline is not made for. Returns its size, px.
+    pub(super) fn check(&self, target: &PassTarget<'_>) -> Result<[u32; 2], ImageSpaceError> {
+        match self.output {
+            Output::Ink(kind) => target.check(kind),
+            Output::Whole(_) => Ok(size_px(target.view)),
+        }
+    }
+
+    /// The bind group of `resources`, which are those of `bound` in [`Fullscreen::new`]; `composite` is used for
+    /// pictures only.
     pub(super) fn group(
         &self,
         device: &wgpu::Device,
@@ -127,7 +141,7 @@ impl Fullscreen {
         })
     }
 
-    /// Runs it over `area` of `view`.
+    /// Draws over `area` of `view`.
     pub(super) fn draw(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -166,14 +180,14 @@ impl Fullscreen {
         device: &wgpu::Device,
         encoder: &mut wgpu::CommandEncoder,
         resources: &[wgpu::BindingResource<'_>],
-        onto: &Onto<'_>,
+        target: &PassTarget<'_>,
     ) {
-        let group = self.group(device, resources, onto.composite);
-        self.draw(encoder, &group, onto.view, onto.area);
+        let group = self.group(device, resources, target.composite);
+        self.draw(encoder, &group, target.view, target.area);
     }
 }
 
-/// A constant that says yes or no.
+/// A pipeline constant of type bool.
 pub(super) fn flag(name: &str, is: bool) -> (&str, f64) {
     (name, f64::from(u8::from(is)))
 }
@@ -204,12 +218,13 @@ fn binding_type(bound: Bound) -> wgpu::BindingType {
 pub(super) fn uniform(device: &wgpu::Device, contents: &[u8]) -> wgpu::Buffer {
     let buffer = device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("ink uniform"),
-        // WebGL2 binds uniforms of whole vectors.
+        // WebGL2 needs uniform sizes that are multiples of 16 bytes.
         size: (contents.len() as u64).next_multiple_of(16),
         usage: wgpu::BufferUsages::UNIFORM,
         mapped_at_creation: true,
     });
-    // wgpu's own way to do this panics where the device is lost. Here the buffer is invalid then, which it reports.
+    // `DeviceExt::create_buffer_init` panics where the device is lost. Here the buffer is invalid then, and the device
+    // reports the error.
     if let Ok(mut mapped) = buffer.get_mapped_range_mut(..) {
         mapped.slice(..contents.len()).copy_from_slice(contents);
         drop(mapped);

@@ -1,4 +1,4 @@
-// A triangle over the whole target, and how ink is put out. Appended to the library.
+// A triangle that covers the whole target, and how ink is written to it.
 
 @group(0) @binding(0) var<uniform> how: InkComposite;
 

@@ -1,20 +1,19 @@
 //! The fused filter over packed texels: see [`crate::filter::fused`] for what it decides.
 
 use super::fullscreen::{Bound, Fullscreen, Output, flag, uniform};
-use super::{InkTarget, Onto};
+use super::{InkTarget, PassTarget, check_view};
 use crate::ImageSpaceError;
 use crate::filter::fused::{FilterUniform, FusedFilter};
 use crate::format::texel::{DepthCode, TexelLayout};
 use crate::picture::Taps;
 
-pub(super) const TAPS_WGSL: &str = include_str!("fused_taps.wgsl");
-const FUSED_WGSL: &str = include_str!("fused.wgsl");
+pub(super) const FUSED: (&str, &str) = ("pass/fused.wgsl", include_str!("fused.wgsl"));
 
-/// The format of a texture of packed texels. It is to be cleared to 0, which is background.
+/// The format of a texture of packed texels. It must be cleared to 0, which is background.
 pub fn texel_format(layout: TexelLayout) -> wgpu::TextureFormat {
     match layout {
-        TexelLayout::Narrow => wgpu::TextureFormat::R32Uint,
-        TexelLayout::Wide => wgpu::TextureFormat::Rg32Uint,
+        TexelLayout::Bits32 => wgpu::TextureFormat::R32Uint,
+        TexelLayout::Bits64 => wgpu::TextureFormat::Rg32Uint,
     }
 }
 
@@ -29,36 +28,36 @@ pub struct FusedPass {
 
 impl FusedPass {
     /// Makes the pipeline for a filter's taps, hard if its softness is 0.
-    pub fn new(device: &wgpu::Device, filter: &FusedFilter, layout: TexelLayout, target: InkTarget) -> Self {
+    ///
+    /// # Errors
+    /// [`ImageSpaceError::SrgbPicture`], [`ImageSpaceError::PictureFormat`].
+    pub fn new(
+        device: &wgpu::Device,
+        filter: &FusedFilter,
+        layout: TexelLayout,
+        target: InkTarget,
+    ) -> Result<Self, ImageSpaceError> {
+        target.check(device)?;
         let soft = filter.softness > 0.0;
         let constants = [
-            flag("narrow", layout == TexelLayout::Narrow),
+            flag("narrow", layout == TexelLayout::Bits32),
             flag("cross_taps", filter.taps == Taps::Cross),
             flag("soft", soft),
         ];
         let bound = [Bound::Uniform, Bound::Whole];
-        Self {
-            draw: Fullscreen::new(
-                device,
-                "fused",
-                &[TAPS_WGSL, FUSED_WGSL].concat(),
-                &bound,
-                &constants,
-                Output::Ink(target),
-            ),
+        Ok(Self {
+            draw: Fullscreen::new(device, "fused", FUSED, &bound, &constants, Output::Ink(target)),
             layout,
             taps: filter.taps,
             soft,
-        }
+        })
     }
 
-    /// Records filtering `texels`, [`texel_format`], of the target's size.
+    /// Records filtering `texels`, of format [`texel_format`] and the target's size.
     ///
     /// # Errors
-    /// If a threshold is out of its range.
-    ///
-    /// # Panics
-    /// If the filter's taps are others than the pass was made for, or it is soft and the pass hard or the reverse.
+    /// If a threshold is out of its range; [`ImageSpaceError::OtherFilter`] if the filter's taps are others than the
+    /// pass was made for, or it is soft and the pass hard or the reverse; if a texture is not as [`crate::pass`] says.
     pub fn record(
         &self,
         device: &wgpu::Device,
@@ -66,13 +65,21 @@ impl FusedPass {
         filter: &FusedFilter,
         code: &DepthCode,
         texels: &wgpu::TextureView,
-        onto: &Onto<'_>,
+        target: &PassTarget<'_>,
     ) -> Result<(), ImageSpaceError> {
         let what = FilterUniform::new(filter, self.layout, code)?;
-        assert_eq!((filter.taps, filter.softness > 0.0), (self.taps, self.soft), "a pass for another filter");
+        if (filter.taps, filter.softness > 0.0) != (self.taps, self.soft) {
+            return Err(ImageSpaceError::OtherFilter);
+        }
+        let size = self.draw.check(target)?;
+        let needed = match self.layout {
+            TexelLayout::Bits32 => "R32Uint",
+            TexelLayout::Bits64 => "Rg32Uint",
+        };
+        check_view("packed texels", texels, texel_format(self.layout), needed, Some(size))?;
         let what = uniform(device, bytemuck::bytes_of(&what));
         let resources = [what.as_entire_binding(), wgpu::BindingResource::TextureView(texels)];
-        self.draw.record(device, encoder, &resources, onto);
+        self.draw.record(device, encoder, &resources, target);
         Ok(())
     }
 }

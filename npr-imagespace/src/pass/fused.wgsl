@@ -1,9 +1,27 @@
-// The fused filter over packed texels. Appended to `fullscreen.wgsl` and `fused_taps.wgsl`.
+// The fused filter over packed texels.
 
 @group(0) @binding(1) var<uniform> what: InkFilter;
+@group(0) @binding(2) var texels: texture_2d<u32>;
 
-// Known when the pipeline is made, as the others are.
+// Constants of the pipeline, since software rasterisers execute both sides of branches.
+override narrow: bool;
+override cross_taps: bool;
 override soft: bool;
+
+fn tap_at(pixel: vec2<i32>) -> InkTap {
+    let words = textureLoad(texels, pixel, 0).xy;
+    if narrow {
+        return ink_texel32_tap(words.x);
+    }
+    return ink_texel64_tap(words);
+}
+
+fn tap_beside(pixel: vec2<i32>, tap: u32, reach: vec2<i32>) -> InkTap {
+    if cross_taps {
+        return tap_at(pixel + ink_tap_cross(tap, reach));
+    }
+    return tap_at(pixel + ink_tap_diagonal(tap, reach));
+}
 
 @fragment
 fn fs_fused(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {

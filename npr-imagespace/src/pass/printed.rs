@@ -2,18 +2,18 @@
 //! [`crate::format::printed`] for what the target holds.
 
 use super::fullscreen::{Bound, Fullscreen, Output, flag, uniform};
-use super::{InkTarget, Onto};
+use super::{InkTarget, PassTarget, check_view};
 use crate::ImageSpaceError;
 use crate::filter::inker::InkerUniform;
 use crate::filter::printed::{PrintedFilter, PrintedUniform};
 use crate::picture::Taps;
 
-const PRINTED_WGSL: &str = include_str!("printed.wgsl");
+pub(super) const PRINTED: (&str, &str) = ("pass/printed.wgsl", include_str!("printed.wgsl"));
 
-/// What a pipeline is made for.
+/// The tests that a pipeline is made for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
-    /// Whether normals are asked for, and as printed, and whether depth is.
+    /// Whether normals are tested, with `true` for background as printed, and whether depth is tested.
     Edges {
         normal: Option<bool>,
         depth: bool,
@@ -35,7 +35,7 @@ impl From<&PrintedFilter> for Kind {
     }
 }
 
-/// The pipeline of a filter: for what it looks for and its taps.
+/// The pipeline of a filter, for its tests and taps.
 #[derive(Debug)]
 pub struct PrintedPass {
     draw: Fullscreen,
@@ -44,7 +44,11 @@ pub struct PrintedPass {
 
 impl PrintedPass {
     /// Makes the pipeline.
-    pub fn new(device: &wgpu::Device, filter: &PrintedFilter, target: InkTarget) -> Self {
+    ///
+    /// # Errors
+    /// [`ImageSpaceError::SrgbPicture`], [`ImageSpaceError::PictureFormat`].
+    pub fn new(device: &wgpu::Device, filter: &PrintedFilter, target: InkTarget) -> Result<Self, ImageSpaceError> {
+        target.check(device)?;
         let kind = Kind::from(filter);
         let (label, normal, depth, taps) = match kind {
             Kind::Edges { normal, depth, taps } => ("printed", normal, depth, taps),
@@ -57,25 +61,27 @@ impl PrintedPass {
             flag("cross_taps", taps == Taps::Cross),
         ];
         let bound = [Bound::Uniform, Bound::Float];
-        Self { draw: Fullscreen::new(device, label, PRINTED_WGSL, &bound, &constants, Output::Ink(target)), kind }
+        Ok(Self { draw: Fullscreen::new(device, label, PRINTED, &bound, &constants, Output::Ink(target)), kind })
     }
 
-    /// Records filtering `texels`, `Rgba8Unorm` of the target's size.
+    /// Records filtering `texels`, of format `Rgba8Unorm` and the target's size.
     ///
     /// # Errors
-    /// If a threshold, or the inker's softness, is out of its range.
-    ///
-    /// # Panics
-    /// If the filter looks for anything else than what the pass was made for.
+    /// If a threshold, or the inker's softness, is out of its range; [`ImageSpaceError::OtherFilter`] if the filter
+    /// looks for anything else than what the pass was made for; if a texture is not as [`crate::pass`] says.
     pub fn record(
         &self,
         device: &wgpu::Device,
         encoder: &mut wgpu::CommandEncoder,
         filter: &PrintedFilter,
         texels: &wgpu::TextureView,
-        onto: &Onto<'_>,
+        target: &PassTarget<'_>,
     ) -> Result<(), ImageSpaceError> {
-        assert_eq!(Kind::from(filter), self.kind, "a pass for another filter");
+        if Kind::from(filter) != self.kind {
+            return Err(ImageSpaceError::OtherFilter);
+        }
+        let size = self.draw.check(target)?;
+        check_view("texels", texels, wgpu::TextureFormat::Rgba8Unorm, "Rgba8Unorm", Some(size))?;
         let what = match filter {
             PrintedFilter::Edges(edges) => uniform(device, bytemuck::bytes_of(&PrintedUniform::new(edges)?)),
             PrintedFilter::Inker(inker) if !(inker.softness >= 0.0 && inker.softness.is_finite()) => {
@@ -84,7 +90,7 @@ impl PrintedPass {
             PrintedFilter::Inker(inker) => uniform(device, bytemuck::bytes_of(&InkerUniform::from(inker))),
         };
         let resources = [what.as_entire_binding(), wgpu::BindingResource::TextureView(texels)];
-        self.draw.record(device, encoder, &resources, onto);
+        self.draw.record(device, encoder, &resources, target);
         Ok(())
     }
 }

@@ -1,10 +1,10 @@
-// The filters and the inker of 2002 over an RGBA8 target. Appended to `fullscreen.wgsl`.
+// The filters and the inker of 2002 over an RGBA8 target.
 
 @group(0) @binding(1) var<uniform> what: InkPrinted;
 @group(0) @binding(1) var<uniform> inker: InkInker;
 @group(0) @binding(2) var texels: texture_2d<f32>;
 
-// Known when the pipeline is made: a software rasteriser runs through what it branches around.
+// Constants of the pipeline, since software rasterisers execute both sides of branches.
 override with_normal: bool;
 override printed_background: bool;
 override with_depth: bool;

@@ -1,18 +1,18 @@
-// The filters over textures of normals, depth and regions. Appended to `fullscreen.wgsl`.
+// The filters over textures of normals, depth and regions.
 
 @group(0) @binding(1) var<uniform> what: InkSeparate;
 @group(0) @binding(2) var normals: texture_2d<f32>;
 @group(0) @binding(3) var depths: texture_2d<f32>;
 @group(0) @binding(4) var regions: texture_2d<u32>;
-// For `depths`, which may be a depth buffer: GLSL cannot load its texels, and in GLSL ES 3.00 it is complete only with a
-// sampler that does not filter.
+// For `depths`, which may be a depth buffer: GLSL cannot load its texels, and in GLSL ES 3.00 it is complete only with
+// a sampler that does not filter.
 @group(0) @binding(5) var nearest: sampler;
 
-// Known when the pipeline is made: a software rasteriser runs through what it branches around. What is not asked for
-// has a texture of one texel, which is not read.
+// Constants of the pipeline, since software rasterisers execute both sides of branches. Tests that are not enabled have
+// a texture of one texel, which is not read.
 override with_normal: bool;
 override with_region: bool;
-// Which test of depth, if any.
+// The test of depth; 0 for none.
 override depth_test: u32;
 override cross_taps: bool;
 override soft: bool;

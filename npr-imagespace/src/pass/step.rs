@@ -1,16 +1,16 @@
 //! One step of dilation or erosion, and n of them by ping-pong: see [`crate::morphology`] for what they do.
 //!
-//! What lies outside the picture is paper for a dilation and ink for an erosion.
+//! Outside the picture there is paper for a dilation and ink for an erosion.
 
-use super::fullscreen::{Bound, Fullscreen, Output, flag};
-use super::{InkTarget, Onto};
+use super::fullscreen::{Bound, Fullscreen, Output, flag, size_px};
+use super::{InkTarget, PassTarget, check_ink};
 use crate::ImageSpaceError;
 use crate::composite::Composite;
 use crate::morphology::{Kernel, Operation};
 
-const STEP_WGSL: &str = include_str!("step.wgsl");
+pub(super) const STEP: (&str, &str) = ("pass/step.wgsl", include_str!("step.wgsl"));
 
-/// What one step does.
+/// One step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Step {
     /// The largest ink of the kernel's pixels: [`crate::morphology::dilate`].
@@ -54,8 +54,9 @@ impl StepPass {
     /// Makes the pipeline.
     ///
     /// # Errors
-    /// If a threshold is negative or not finite.
+    /// If a threshold is negative or not finite; [`ImageSpaceError::SrgbPicture`], [`ImageSpaceError::PictureFormat`].
     pub fn new(device: &wgpu::Device, step: Step, target: InkTarget) -> Result<Self, ImageSpaceError> {
+        target.check(device)?;
         let (form, eroding, kernel, threshold) = step.form();
         if !(threshold >= 0.0 && threshold.is_finite()) {
             return Err(ImageSpaceError::StepThreshold { threshold });
@@ -67,19 +68,26 @@ impl StepPass {
             flag("cross_taps", kernel != Kernel::Diagonal),
             ("threshold", f64::from(threshold)),
         ];
-        let draw = Fullscreen::new(device, "step", STEP_WGSL, &[Bound::Float], &constants, Output::Ink(target));
+        let draw = Fullscreen::new(device, "step", STEP, &[Bound::Float], &constants, Output::Ink(target));
         Ok(Self { draw })
     }
 
-    /// Records the step over `ink`, [`super::INK_FORMAT`], of the target's size and not the target.
+    /// Records the step over `ink`, of format [`super::INK_FORMAT`] and the target's size, and another texture than the
+    /// target.
+    ///
+    /// # Errors
+    /// If a texture is not as [`crate::pass`] says.
     pub fn record(
         &self,
         device: &wgpu::Device,
         encoder: &mut wgpu::CommandEncoder,
         ink: &wgpu::TextureView,
-        onto: &Onto<'_>,
-    ) {
-        self.draw.record(device, encoder, &[wgpu::BindingResource::TextureView(ink)], onto);
+        target: &PassTarget<'_>,
+    ) -> Result<(), ImageSpaceError> {
+        let size = self.draw.check(target)?;
+        check_ink(ink, Some(size))?;
+        self.draw.record(device, encoder, &[wgpu::BindingResource::TextureView(ink)], target);
+        Ok(())
     }
 }
 
@@ -97,9 +105,12 @@ impl PingPong {
         Self { dilate: hard(Step::Dilate(kernel)), erode: hard(Step::Erode(kernel)) }
     }
 
-    /// Records `steps` steps of an operation, [`crate::morphology::ping_pong`], to and fro between two ink pictures of
+    /// Records `steps` steps of an operation, [`crate::morphology::ping_pong`], alternating between two ink pictures of
     /// one size. The first of them holds the ink to begin with, and both are overwritten. Returns which of the two
     /// holds the result: 0 or 1.
+    ///
+    /// # Errors
+    /// If a texture is not as [`crate::pass`] says.
     pub fn record(
         &self,
         device: &wgpu::Device,
@@ -107,8 +118,10 @@ impl PingPong {
         operation: Operation,
         steps: u32,
         ink: [&wgpu::TextureView; 2],
-    ) -> usize {
-        // All that is needed, once for all steps.
+    ) -> Result<usize, ImageSpaceError> {
+        check_ink(ink[0], None)?;
+        check_ink(ink[1], Some(size_px(ink[0])))?;
+        // The bind groups for all steps.
         let groups = |draw: &Fullscreen| {
             ink.map(|from| draw.group(device, &[wgpu::BindingResource::TextureView(from)], &Composite::Multiply))
         };
@@ -121,6 +134,6 @@ impl PingPong {
                 from = 1 - from;
             }
         }
-        from
+        Ok(from)
     }
 }

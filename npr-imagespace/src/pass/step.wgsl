@@ -1,4 +1,4 @@
-// One step of dilation or erosion, from ink to ink. Appended to `fullscreen.wgsl`.
+// One step of dilation or erosion, from ink to ink.
 
 @group(0) @binding(1) var ink: texture_2d<f32>;
 
@@ -18,7 +18,7 @@ override threshold: f32;
 fn ink_at(pixel: vec2<i32>, size: vec2<i32>, offset: vec2<i32>) -> f32 {
     let at = clamp(pixel + offset, vec2<i32>(0), size - 1);
     let found = textureLoad(ink, at, 0).x;
-    // A hard cross or square need not ask what lies outside: clamped, a tap falls on another pixel of the kernel.
+    // A hard cross or square needs no border value: a clamped tap is another pixel of the kernel.
     if form == HARD && cross_taps {
         return found;
     }

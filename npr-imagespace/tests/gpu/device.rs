@@ -6,8 +6,8 @@ use std::sync::OnceLock;
 pub struct Gpu {
     pub device: wgpu::Device,
     pub queue: wgpu::Queue,
-    /// Whether it runs compute shaders.
-    pub compute: bool,
+    /// Whether a view can have another format than its texture, as far as sRGB goes.
+    pub view_formats: bool,
 }
 
 /// The device that the tests share, or `None`, having said so, where `NPR_GPU` is `off`, or there is no adapter and
@@ -39,20 +39,14 @@ fn open(required: bool) -> Option<Gpu> {
     };
     let descriptor = wgpu::DeviceDescriptor { required_limits, ..Default::default() };
     let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).expect("an adapter gives a device");
-    let compute = adapter.get_downlevel_capabilities().flags.contains(wgpu::DownlevelFlags::COMPUTE_SHADERS)
-        && device.limits().max_compute_invocations_per_workgroup >= 64;
-    Some(Gpu { device, queue, compute })
+    let view_formats = adapter.get_downlevel_capabilities().flags.contains(wgpu::DownlevelFlags::VIEW_FORMATS);
+    Some(Gpu { device, queue, view_formats })
 }
 
 impl Gpu {
     /// A texture, uninitialised, to render to, read and copy.
     pub fn texture(&self, format: wgpu::TextureFormat, size: [u32; 2]) -> wgpu::Texture {
         self.usable(format, size, wgpu::TextureUsages::RENDER_ATTACHMENT)
-    }
-
-    /// The same for compute shaders to write.
-    pub fn storable(&self, format: wgpu::TextureFormat, size: [u32; 2]) -> wgpu::Texture {
-        self.usable(format, size, wgpu::TextureUsages::STORAGE_BINDING)
     }
 
     fn usable(

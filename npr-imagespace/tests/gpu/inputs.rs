@@ -108,7 +108,7 @@ pub fn scene([width, height]: [u32; 2]) -> Vec<Option<Surface>> {
     pixels
 }
 
-/// A direction, all of them alike.
+/// A uniformly distributed direction.
 pub fn direction(random: &mut Random) -> Vec3 {
     let z = random.between(-1.0, 1.0);
     let (sin, cos) = (TAU * random.between(0.0, 1.0)).sin_cos();

@@ -2,7 +2,7 @@
 
 use crate::device::{gpu, view};
 use crate::inputs::{Random, SIZES, direction, px, scene};
-use crate::targets::{COMPOSITES, PICTURE, assert_areas, assert_laid, drawn, laid};
+use crate::targets::{COMPOSITES, PICTURE, assert_areas, assert_composited, composited, drawn};
 use npr_imagespace::ImageSpaceError;
 use npr_imagespace::composite::Composite;
 use npr_imagespace::filter::depth::DepthPlain;
@@ -65,8 +65,8 @@ fn edges_are_those_of_the_cpu() {
             let edges = PrintedEdges { taps, ..edges };
             let filter = PrintedFilter::Edges(edges);
             let uniform = PrintedUniform::new(&edges).unwrap();
-            let on_ink = PrintedPass::new(&gpu.device, &filter, InkTarget::Ink);
-            let on_picture = PrintedPass::new(&gpu.device, &filter, PICTURE);
+            let on_ink = PrintedPass::new(&gpu.device, &filter, InkTarget::Ink).unwrap();
+            let on_picture = PrintedPass::new(&gpu.device, &filter, PICTURE).unwrap();
             for size in SIZES {
                 for texels in pictures(size, &mut random) {
                     if size != SIZES[8] && random.below(4) > 0 {
@@ -74,8 +74,8 @@ fn edges_are_those_of_the_cpu() {
                     }
                     let from = view(&gpu.upload(wgpu::TextureFormat::Rgba8Unorm, size, texels.as_flattened()));
                     let draw = |pass: &PrintedPass, target, composite: &Composite| {
-                        drawn(gpu, size, target, composite, None, |encoder, onto| {
-                            pass.record(&gpu.device, encoder, &filter, &from, onto).unwrap();
+                        drawn(gpu, size, target, composite, None, |encoder, target| {
+                            pass.record(&gpu.device, encoder, &filter, &from, target).unwrap();
                         })
                     };
                     let expected = filter_picture(&texels, px(size), taps, |centre, taps| {
@@ -88,7 +88,7 @@ fn edges_are_those_of_the_cpu() {
                     pixels += expected.len();
                     let composite = &random.one_of(&COMPOSITES);
                     let over = draw(&on_picture, PICTURE, composite);
-                    assert_laid(&over, &laid(size, &expected, composite), &expected, composite, false);
+                    assert_composited(&over, &composited(size, &expected, composite), &expected, composite, false);
                 }
             }
         }
@@ -102,7 +102,7 @@ fn the_inker_is_that_of_the_cpu() {
     let Some(gpu) = gpu() else { return };
     let mut random = Random(32);
     let (mut inked, mut pixels, mut borderline) = (0, 0, 0);
-    for form in [InkerForm::Printed, InkerForm::Repaired, InkerForm::Explicit] {
+    for form in [InkerForm::Printed, InkerForm::Corrected, InkerForm::Explicit] {
         for softness in [0.0, 0.5] {
             let inker = Inker { form, softness, ..Default::default() };
             let off = u8::from(softness > 0.0);
@@ -113,12 +113,12 @@ fn the_inker_is_that_of_the_cpu() {
                 ..inker
             });
             let filter = PrintedFilter::Inker(inker);
-            let pass = PrintedPass::new(&gpu.device, &filter, InkTarget::Ink);
+            let pass = PrintedPass::new(&gpu.device, &filter, InkTarget::Ink).unwrap();
             for size in SIZES {
                 for texels in pictures(size, &mut random) {
                     let from = view(&gpu.upload(wgpu::TextureFormat::Rgba8Unorm, size, texels.as_flattened()));
-                    let got = drawn(gpu, size, InkTarget::Ink, &Composite::default(), None, |encoder, onto| {
-                        pass.record(&gpu.device, encoder, &filter, &from, onto).unwrap();
+                    let got = drawn(gpu, size, InkTarget::Ink, &Composite::default(), None, |encoder, target| {
+                        pass.record(&gpu.device, encoder, &filter, &from, target).unwrap();
                     });
                     let [less, more] = shaken.map(|inker| {
                         let ink = |_, taps: [[u8; 4]; 4]| ink_printed_inker(&inker, taps) as f32;
@@ -148,9 +148,9 @@ fn lines_are_drawn_within_their_area() {
     let from = view(&gpu.upload(wgpu::TextureFormat::Rgba8Unorm, size, texels.as_flattened()));
     for filter in [PrintedFilter::default(), PrintedFilter::Inker(Inker::default())] {
         for target in [InkTarget::Ink, PICTURE] {
-            let pass = PrintedPass::new(&gpu.device, &filter, target);
-            assert_areas(gpu, size, target, |encoder, onto| {
-                pass.record(&gpu.device, encoder, &filter, &from, onto).unwrap();
+            let pass = PrintedPass::new(&gpu.device, &filter, target).unwrap();
+            assert_areas(gpu, size, target, |encoder, target| {
+                pass.record(&gpu.device, encoder, &filter, &from, target).unwrap();
             });
         }
     }
@@ -171,10 +171,10 @@ fn thresholds_out_of_range_are_refused() {
     }
     let Some(gpu) = gpu() else { return };
     let filter = PrintedFilter::Inker(Inker { softness: f32::NAN, ..Default::default() });
-    let pass = PrintedPass::new(&gpu.device, &filter, InkTarget::Ink);
+    let pass = PrintedPass::new(&gpu.device, &filter, InkTarget::Ink).unwrap();
     let from = view(&gpu.texture(wgpu::TextureFormat::Rgba8Unorm, [2, 2]));
-    drawn(gpu, [2, 2], InkTarget::Ink, &Composite::default(), None, |encoder, onto| {
-        let refused = pass.record(&gpu.device, encoder, &filter, &from, onto).unwrap_err();
+    drawn(gpu, [2, 2], InkTarget::Ink, &Composite::default(), None, |encoder, target| {
+        let refused = pass.record(&gpu.device, encoder, &filter, &from, target).unwrap_err();
         assert!(matches!(refused, ImageSpaceError::Softness { .. }));
     });
 }

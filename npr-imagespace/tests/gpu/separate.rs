@@ -1,8 +1,8 @@
-//! The filters over textures of one's own.
+//! The filters over separate textures.
 
 use crate::device::{gpu, view};
 use crate::inputs::{Random, SIZES, direction, px, scene};
-use crate::targets::{COMPOSITES, PICTURE, assert_areas, assert_laid, drawn, laid};
+use crate::targets::{COMPOSITES, PICTURE, assert_areas, assert_composited, composited, drawn};
 use glam::Vec3;
 use npr_imagespace::ImageSpaceError;
 use npr_imagespace::composite::Composite;
@@ -152,8 +152,8 @@ fn ink_and_pictures_are_those_of_the_cpu() {
         for softness in [0.0, 0.3] {
             for filter in filters() {
                 let filter = SeparateFilter { taps, softness, ..filter };
-                let on_ink = SeparatePass::new(&gpu.device, &filter, InkTarget::Ink);
-                let on_picture = SeparatePass::new(&gpu.device, &filter, PICTURE);
+                let on_ink = SeparatePass::new(&gpu.device, &filter, InkTarget::Ink).unwrap();
+                let on_picture = SeparatePass::new(&gpu.device, &filter, PICTURE).unwrap();
                 for size in SIZES {
                     for texels in pictures(size, &mut random) {
                         if size != SIZES[8] && random.below(3) > 0 {
@@ -161,8 +161,8 @@ fn ink_and_pictures_are_those_of_the_cpu() {
                         }
                         let views = textures(gpu, size, &texels);
                         let draw = |pass: &SeparatePass, target, composite: &Composite| {
-                            drawn(gpu, size, target, composite, None, |encoder, onto| {
-                                pass.record(&gpu.device, encoder, &filter, &all(&views), onto).unwrap();
+                            drawn(gpu, size, target, composite, None, |encoder, target| {
+                                pass.record(&gpu.device, encoder, &filter, &all(&views), target).unwrap();
                             })
                         };
                         let got = draw(&on_ink, InkTarget::Ink, &Composite::default());
@@ -170,8 +170,13 @@ fn ink_and_pictures_are_those_of_the_cpu() {
                         // What comes over a picture is what the ink picture holds, whichever way rounding went.
                         let composite = &random.one_of(&COMPOSITES);
                         let over = draw(&on_picture, PICTURE, composite);
-                        at_reference +=
-                            assert_laid(&over, &laid(size, &got, composite), &got, composite, softness > 0.0);
+                        at_reference += assert_composited(
+                            &over,
+                            &composited(size, &got, composite),
+                            &got,
+                            composite,
+                            softness > 0.0,
+                        );
                     }
                 }
             }
@@ -190,7 +195,7 @@ fn plain_tests_of_depth_are_those_of_the_cpu() {
         for softness in [0.0, 0.5] {
             let test = SeparateDepthTest::Plain { form, threshold: 0.02 };
             let filter = SeparateFilter { softness, ..depth_test(test) };
-            let pass = SeparatePass::new(&gpu.device, &filter, InkTarget::Ink);
+            let pass = SeparatePass::new(&gpu.device, &filter, InkTarget::Ink).unwrap();
             for size in SIZES {
                 let near: Texels = seen(size)
                     .iter()
@@ -202,9 +207,9 @@ fn plain_tests_of_depth_are_those_of_the_cpu() {
                     .collect();
                 for texels in [near, random] {
                     let views = textures(gpu, size, &texels);
-                    let got = drawn(gpu, size, InkTarget::Ink, &Composite::default(), None, |encoder, onto| {
+                    let got = drawn(gpu, size, InkTarget::Ink, &Composite::default(), None, |encoder, target| {
                         let depth = SeparateTextures { depth: Some(&views[1]), ..Default::default() };
-                        pass.record(&gpu.device, encoder, &filter, &depth, onto).unwrap();
+                        pass.record(&gpu.device, encoder, &filter, &depth, target).unwrap();
                     });
                     count.compare(&got, &filter, &texels, size, "plain");
                 }
@@ -268,12 +273,12 @@ fn depth_buffers_and_small_formats_are_read() {
         for softness in [0.0, 0.4] {
             let normal = Some(SeparateNormal { biased: true, ..Default::default() });
             let filter = SeparateFilter { normal, depth: Some(depth), softness, ..Default::default() };
-            let pass = SeparatePass::new(&gpu.device, &filter, InkTarget::Ink);
+            let pass = SeparatePass::new(&gpu.device, &filter, InkTarget::Ink).unwrap();
             for (what, texture) in [("depth buffer", &buffer), ("float", &floats)] {
                 let textures =
                     SeparateTextures { normal: Some(&normals), depth: Some(texture), region: Some(&regions) };
-                let got = drawn(gpu, size, InkTarget::Ink, &Composite::default(), None, |encoder, onto| {
-                    pass.record(&gpu.device, encoder, &filter, &textures, onto).unwrap();
+                let got = drawn(gpu, size, InkTarget::Ink, &Composite::default(), None, |encoder, target| {
+                    pass.record(&gpu.device, encoder, &filter, &textures, target).unwrap();
                 });
                 count.compare(&got, &filter, &texels, size, what);
             }
@@ -299,14 +304,14 @@ fn a_plain_measure_equal_to_its_threshold_is_ink() {
     // In a row each neighbour is two of the four taps; the first and the last are on one side of the pixel.
     for (form, threshold) in [(DepthPlain::Any, 0.25), (DepthPlain::Sum, 0.5), (DepthPlain::SumPrinted, 0.5)] {
         let filter = depth_test(SeparateDepthTest::Plain { form, threshold });
-        let pass = SeparatePass::new(&gpu.device, &filter, InkTarget::Ink);
+        let pass = SeparatePass::new(&gpu.device, &filter, InkTarget::Ink).unwrap();
         for (far, is_reached) in [(0.75f32, true), (0.75f32.next_down(), false), (0.75f32.next_up(), true)] {
             let texels: Texels =
                 [0.5, 0.5, 0.5, far, far, far].map(|depth| SeparateTexel { depth, ..NOTHING }).to_vec();
             let views = textures(gpu, size, &texels);
-            let got = drawn(gpu, size, InkTarget::Ink, &Composite::default(), None, |encoder, onto| {
+            let got = drawn(gpu, size, InkTarget::Ink, &Composite::default(), None, |encoder, target| {
                 let depth = SeparateTextures { depth: Some(&views[1]), ..Default::default() };
-                pass.record(&gpu.device, encoder, &filter, &depth, onto).unwrap();
+                pass.record(&gpu.device, encoder, &filter, &depth, target).unwrap();
             });
             assert_eq!(got, filter_separate(&filter, &texels, px(size)).unwrap(), "{form:?} {far}");
             assert_eq!(got.contains(&255), is_reached, "{form:?} {far}");
@@ -314,7 +319,7 @@ fn a_plain_measure_equal_to_its_threshold_is_ink() {
     }
 }
 
-/// Beside the far end what was drawn is told from what was not by the number alone.
+/// Near the far plane surfaces differ from the background by the depth value alone.
 #[test]
 fn a_cleared_depth_buffer_is_background_even_beside_the_far_end() {
     let Some(gpu) = gpu() else { return };
@@ -326,11 +331,11 @@ fn a_cleared_depth_buffer_is_background_even_beside_the_far_end() {
     ] {
         let depth = SeparateDepth { source, ..Default::default() };
         let filter = SeparateFilter { depth: Some(depth), ..NONE };
-        let pass = SeparatePass::new(&gpu.device, &filter, InkTarget::Ink);
+        let pass = SeparatePass::new(&gpu.device, &filter, InkTarget::Ink).unwrap();
         let buffer = view(&gpu.depth_buffer(size, &d));
-        let got = drawn(gpu, size, InkTarget::Ink, &Composite::default(), None, |encoder, onto| {
+        let got = drawn(gpu, size, InkTarget::Ink, &Composite::default(), None, |encoder, target| {
             let textures = SeparateTextures { depth: Some(&buffer), ..Default::default() };
-            pass.record(&gpu.device, encoder, &filter, &textures, onto).unwrap();
+            pass.record(&gpu.device, encoder, &filter, &textures, target).unwrap();
         });
         assert_eq!(got, [0, 0, 255, 255, 0, 0], "{source:?}");
     }
@@ -341,7 +346,7 @@ fn halves_and_signed_bytes_are_normals_too() {
     let Some(gpu) = gpu() else { return };
     let size = [61, 37];
     let filter = SeparateFilter { normal: Some(SeparateNormal::default()), ..NONE };
-    let pass = SeparatePass::new(&gpu.device, &filter, InkTarget::Ink);
+    let pass = SeparatePass::new(&gpu.device, &filter, InkTarget::Ink).unwrap();
     let mut count = Count::default();
     let scene = seen(size);
     let halves: Vec<[u16; 4]> =
@@ -369,9 +374,9 @@ fn halves_and_signed_bytes_are_normals_too() {
         });
         gpu.write(&texture, uploaded);
         let normals = view(&texture);
-        let got = drawn(gpu, size, InkTarget::Ink, &Composite::default(), None, |encoder, onto| {
+        let got = drawn(gpu, size, InkTarget::Ink, &Composite::default(), None, |encoder, target| {
             let textures = SeparateTextures { normal: Some(&normals), ..Default::default() };
-            pass.record(&gpu.device, encoder, &filter, &textures, onto).unwrap();
+            pass.record(&gpu.device, encoder, &filter, &textures, target).unwrap();
         });
         count.compare(&got, &filter, &texels, size, "small normals");
     }
@@ -404,9 +409,9 @@ fn lines_are_drawn_within_their_area() {
     let (size, filter) = ([61, 37], SeparateFilter::default());
     let views = textures(gpu, size, &seen(size));
     for target in [InkTarget::Ink, PICTURE] {
-        let pass = SeparatePass::new(&gpu.device, &filter, target);
-        assert_areas(gpu, size, target, |encoder, onto| {
-            pass.record(&gpu.device, encoder, &filter, &all(&views), onto).unwrap();
+        let pass = SeparatePass::new(&gpu.device, &filter, target).unwrap();
+        assert_areas(gpu, size, target, |encoder, target| {
+            pass.record(&gpu.device, encoder, &filter, &all(&views), target).unwrap();
         });
     }
 }
@@ -439,15 +444,4 @@ fn what_makes_no_filter_is_refused() {
         filter_separate(&usual, &[SeparateTexel::default(); 3], px([2, 2])),
         Err(ImageSpaceError::Length { len: 3, size_px: px([2, 2]) })
     );
-}
-
-#[test]
-#[should_panic(expected = "is not given")]
-fn a_texture_that_is_missing_is_told() {
-    let Some(gpu) = gpu() else { panic!("is not given") };
-    let filter = SeparateFilter::default();
-    let pass = SeparatePass::new(&gpu.device, &filter, InkTarget::Ink);
-    drawn(gpu, [2, 2], InkTarget::Ink, &Composite::default(), None, |encoder, onto| {
-        pass.record(&gpu.device, encoder, &filter, &SeparateTextures::default(), onto).unwrap();
-    });
 }

@@ -2,7 +2,7 @@
 
 use crate::device::{gpu, view};
 use crate::inputs::{Random, SIZES, inks, px};
-use crate::targets::{PICTURE, assert_areas, difference, drawn, laid};
+use crate::targets::{PICTURE, assert_areas, composited, difference, drawn};
 use npr_imagespace::ImageSpaceError;
 use npr_imagespace::composite::Composite;
 use npr_imagespace::morphology::*;
@@ -37,8 +37,8 @@ fn hard_steps_are_those_of_the_cpu() {
                     let by_cpu = if eroding { erode } else { dilate };
                     by_cpu(&ink, px(size), kernel, &mut expected).unwrap();
                     let from = view(&gpu.upload(INK_FORMAT, size, &ink));
-                    let got = drawn(gpu, size, InkTarget::Ink, &Composite::default(), None, |encoder, onto| {
-                        pass.record(&gpu.device, encoder, &from, onto);
+                    let got = drawn(gpu, size, InkTarget::Ink, &Composite::default(), None, |encoder, target| {
+                        pass.record(&gpu.device, encoder, &from, target).unwrap();
                     });
                     assert_eq!(got, expected, "{step:?} {size:?}");
                 }
@@ -71,8 +71,8 @@ fn soft_steps_are_those_of_the_cpu() {
                     Step::Dilate(_) | Step::Erode(_) => unreachable!("soft ones"),
                 };
                 let from = view(&gpu.upload(INK_FORMAT, size, &ink));
-                let got = drawn(gpu, size, InkTarget::Ink, &Composite::default(), None, |encoder, onto| {
-                    pass.record(&gpu.device, encoder, &from, onto);
+                let got = drawn(gpu, size, InkTarget::Ink, &Composite::default(), None, |encoder, target| {
+                    pass.record(&gpu.device, encoder, &from, target).unwrap();
                 });
                 assert!(difference(&got, &expected) <= 1, "{step:?} {size:?}");
             }
@@ -95,7 +95,7 @@ fn steps_to_and_fro_are_those_of_the_cpu() {
                         let mut holds = 2;
                         gpu.run(|encoder| {
                             let views = [&views[0], &views[1]];
-                            holds = pass.record(&gpu.device, encoder, operation, steps, views);
+                            holds = pass.record(&gpu.device, encoder, operation, steps, views).unwrap();
                         });
                         let expected = ping_pong(&ink, px(size), kernel, operation, steps).unwrap();
                         assert_eq!(gpu.read(&both[holds]), expected, "{kernel:?} {operation:?} {steps} {size:?}");
@@ -114,14 +114,16 @@ fn a_step_goes_at_once_over_a_picture_and_within_its_area() {
     let from = view(&gpu.upload(INK_FORMAT, size, ink));
     for target in [InkTarget::Ink, PICTURE] {
         let pass = StepPass::new(&gpu.device, Step::Dilate(Kernel::Square), target).unwrap();
-        assert_areas(gpu, size, target, |encoder, onto| pass.record(&gpu.device, encoder, &from, onto));
+        assert_areas(gpu, size, target, |encoder, target| {
+            pass.record(&gpu.device, encoder, &from, target).unwrap();
+        });
         if target == PICTURE {
             let mut thick = Vec::new();
             dilate(ink, px(size), Kernel::Square, &mut thick).unwrap();
-            let got = drawn(gpu, size, target, &Composite::Multiply, None, |encoder, onto| {
-                pass.record(&gpu.device, encoder, &from, onto);
+            let got = drawn(gpu, size, target, &Composite::Multiply, None, |encoder, target| {
+                pass.record(&gpu.device, encoder, &from, target).unwrap();
             });
-            assert!(difference(&got, &laid(size, &thick, &Composite::Multiply)) <= 1);
+            assert!(difference(&got, &composited(size, &thick, &Composite::Multiply)) <= 1);
         }
     }
 }

@@ -1,10 +1,10 @@
-//! Running a pass onto its targets, whole and in part.
+//! Runs a pass over its target, the whole and areas of it.
 
 use crate::device::{Gpu, view};
 use crate::inputs::Random;
 use glam::Vec3;
 use npr_imagespace::composite::{AlphaTest, Composite, composite_picture};
-use npr_imagespace::pass::{INK_FORMAT, InkTarget, Onto};
+use npr_imagespace::pass::{INK_FORMAT, InkTarget, PassTarget};
 
 /// A picture that is written in display space.
 pub const PICTURE: InkTarget = InkTarget::Picture(wgpu::TextureFormat::Rgba8Unorm);
@@ -34,27 +34,28 @@ pub fn drawn(
     target: InkTarget,
     composite: &Composite,
     area: Option<[u32; 4]>,
-    record: impl FnOnce(&mut wgpu::CommandEncoder, &Onto<'_>),
+    record: impl FnOnce(&mut wgpu::CommandEncoder, &PassTarget<'_>),
 ) -> Vec<u8> {
     let format = match target {
         InkTarget::Ink => INK_FORMAT,
         InkTarget::Picture(format) => format,
     };
     let texture = gpu.upload(format, size, &before(size, target));
-    gpu.run(|encoder| record(encoder, &Onto { view: &view(&texture), composite, area }));
+    gpu.run(|encoder| record(encoder, &PassTarget { view: &view(&texture), composite, area }));
     gpu.read(&texture)
 }
 
 /// Ink over the picture that [`before`] makes.
-pub fn laid(size: [u32; 2], ink: &[u8], composite: &Composite) -> Vec<u8> {
+pub fn composited(size: [u32; 2], ink: &[u8], composite: &Composite) -> Vec<u8> {
     let mut pixels: Vec<[u8; 4]> = bytemuck::pod_collect_to_vec(&before(size, PICTURE));
     composite_picture(&mut pixels, ink, composite).unwrap();
     pixels.concat()
 }
 
-/// The pixels of a picture are within 1/255 of those with `ink` laid over it by the CPU. Returns how many are not and
-/// need not be, since they lie at the reference of an alpha test, which rounding decides where ink is `soft`.
-pub fn assert_laid(got: &[u8], expected: &[u8], ink: &[u8], composite: &Composite, soft: bool) -> usize {
+/// The pixels of a picture are within 1/255 of those with `ink` composited over it by the CPU. Returns the
+/// number of pixels that may differ: those at the reference of an alpha test, which rounding decides where ink is
+/// `soft`.
+pub fn assert_composited(got: &[u8], expected: &[u8], ink: &[u8], composite: &Composite, soft: bool) -> usize {
     let mut borderline = 0;
     for ((got, expected), &ink) in got.chunks(4).zip(expected.chunks(4)).zip(ink) {
         let may_differ = match composite {
@@ -75,12 +76,13 @@ pub fn difference(a: &[u8], b: &[u8]) -> u8 {
     a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0)
 }
 
-/// Within an area there is what a pass over all would leave there, and outside there is paper, or the picture as it was.
+/// Within an area there is what a pass over all would leave there, and outside there is paper, or the picture as it
+/// was.
 pub fn assert_areas(
     gpu: &Gpu,
     size: [u32; 2],
     target: InkTarget,
-    record: impl Fn(&mut wgpu::CommandEncoder, &Onto<'_>),
+    record: impl Fn(&mut wgpu::CommandEncoder, &PassTarget<'_>),
 ) {
     let [width, height] = size;
     let composite = Composite::default();

@@ -5,7 +5,7 @@ use npr_imagespace::format::FORMAT_WGSL;
 use npr_imagespace::format::texel::ink_fold_region;
 use wgpu::TextureFormat;
 
-/// Each region folded to one 32-bit word's numbers and to two words'.
+/// Each region folded to one 32-bit word's numbers and to 64 bits'.
 fn folded(gpu: &Gpu, regions: &[u32]) -> Vec<[u32; 2]> {
     let size = [regions.len() as u32, 1];
     let source = format!(
@@ -16,8 +16,8 @@ fn folded(gpu: &Gpu, regions: &[u32]) -> Vec<[u32; 2]> {
         }}
         @fragment fn fs(@builtin(position) p: vec4<f32>) -> @location(0) vec4<u32> {{
             let region = textureLoad(regions, vec2<i32>(p.xy), 0).x;
-            let narrow = ink_fold_region(region, INK_NARROW_REGION_MOST);
-            return vec4<u32>(narrow, ink_fold_region(region, INK_WIDE_REGION_MOST), 0u, 0u);
+            let narrow = ink_fold_region(region, INK_TEXEL32_REGION_MAX);
+            return vec4<u32>(narrow, ink_fold_region(region, INK_TEXEL64_REGION_MAX), 0u, 0u);
         }}"
     );
     let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {

@@ -18,7 +18,7 @@ fn smooth(crease_angle_rad: f32) -> ContourOptions {
     ContourOptions { crease_angle_rad, material_borders: false }
 }
 
-/// No crease at all: only silhouettes and boundaries are left.
+/// No creases: only silhouettes and boundaries are lines.
 const NO_CREASES: ContourOptions = ContourOptions { crease_angle_rad: std::f32::consts::PI, material_borders: false };
 
 fn point(eye: DVec3) -> DVec4 {
@@ -56,7 +56,7 @@ fn a_cube_seen_from_a_corner_has_six_silhouettes_and_six_creases() {
         // Three of them towards the eye, three away from it.
         assert_eq!(lines_of_kind(&contours, eye, LineKind::Crease).len(), 6);
     }
-    // Seen straight on, and from within, where nothing is turned away.
+    // Seen straight on, and from within, where no face is back-facing.
     assert_eq!(lines_of_kind(&contours, point(DVec3::Z * 9.0), LineKind::Silhouette).len(), 4);
     assert_eq!(lines_of_kind(&contours, point(DVec3::ZERO), LineKind::Silhouette).len(), 0);
 }
@@ -92,7 +92,7 @@ fn silhouettes_of_closed_surfaces_are_closed_loops() {
 #[test]
 fn an_eye_in_the_plane_of_a_face_loses_no_loop() {
     let contours = contours_of(&embedded::cube(), &NO_CREASES);
-    // In the top's plane, and in the planes of the top and the right side: both count as turned towards the eye.
+    // In the top's plane, and in the planes of the top and the right side: both count as front-facing.
     for (eye, silhouettes) in [(DVec3::new(0.3, 1.0, 7.0), 6), (DVec3::new(1.0, 1.0, 7.0), 6)] {
         let lines = lines_of_kind(&contours, point(eye), LineKind::Silhouette);
         assert_eq!(lines.len(), silhouettes, "{eye}");
@@ -149,15 +149,15 @@ fn boundaries_are_always_drawn() {
 #[test]
 fn faces_wound_the_other_way_change_nothing() {
     for model in [embedded::sphere(24), embedded::torus(1.0, 0.4, 32, 16)] {
-        let mut turned = model.clone();
-        turned.faces.iter_mut().step_by(10).for_each(|face| face.swap(1, 2));
-        let (contours, of_turned) = (contours_of(&model, &smooth(0.9)), contours_of(&turned, &smooth(0.9)));
-        assert_eq!(contours.always, of_turned.always);
+        let mut flipped = model.clone();
+        flipped.faces.iter_mut().step_by(10).for_each(|face| face.swap(1, 2));
+        let (contours, of_flipped) = (contours_of(&model, &smooth(0.9)), contours_of(&flipped, &smooth(0.9)));
+        assert_eq!(contours.always, of_flipped.always);
         for direction in crate::normal_format::fibonacci_sphere(300) {
             let eye = point(2.7 * direction);
             for kind in [LineKind::Silhouette, LineKind::Crease] {
                 let lines = lines_of_kind(&contours, eye, kind);
-                assert_eq!(lines, lines_of_kind(&of_turned, eye, kind));
+                assert_eq!(lines, lines_of_kind(&of_flipped, eye, kind));
             }
         }
     }
@@ -204,7 +204,7 @@ fn a_sliver_between_two_faces_passes_silhouette_and_crease_on() {
     assert!(along_ridge(lines_of_kind(&contours, point(DVec3::Y * 9.0), LineKind::Crease)));
 }
 
-/// A cube whose top is turned by 40° against its bottom, which warps its sides.
+/// A cube whose top is rotated by 40° against its bottom, which warps its sides.
 fn twisted_cube() -> Model {
     let mut model = embedded::cube();
     let turn = Mat4::from_rotation_y(40f32.to_radians());
@@ -252,9 +252,9 @@ fn a_fold_is_no_crease_however_sharp() {
 fn a_warped_quad_wound_the_other_way_changes_nothing() {
     let model = twisted_cube();
     for polygon in 0..6 {
-        let mut turned = model.clone();
-        turned.faces[2 * polygon..2 * polygon + 2].iter_mut().for_each(|face| face.swap(1, 2));
-        let (expected, found) = (contours_of(&model, &NO_CREASES), contours_of(&turned, &NO_CREASES));
+        let mut flipped = model.clone();
+        flipped.faces[2 * polygon..2 * polygon + 2].iter_mut().for_each(|face| face.swap(1, 2));
+        let (expected, found) = (contours_of(&model, &NO_CREASES), contours_of(&flipped, &NO_CREASES));
         for direction in crate::normal_format::fibonacci_sphere(100) {
             let eye = point(4.0 * direction);
             let of = |contours| lines_of_kind(contours, eye, LineKind::Silhouette);
@@ -395,7 +395,7 @@ fn an_edge_of_three_faces_is_a_line_for_every_eye() {
 }
 
 #[test]
-fn angles_and_widths_that_are_none_are_refused() {
+fn invalid_angles_and_widths_are_refused() {
     let model = embedded::cube();
     let edges = edges_of(&model);
     for angle_rad in [-0.1, 3.2, f32::NAN, f32::INFINITY] {
@@ -403,7 +403,7 @@ fn angles_and_widths_that_are_none_are_refused() {
         assert!(matches!(error, OutlineError::CreaseAngle { .. }));
     }
     assert!(contour_edges(&model, &edges, &smooth(0.0)).is_ok());
-    let look = |width| crate::line_look::LineLook { width_px: [1.0, 0.0, width, 2.0], ink: [0.0; 4] };
+    let look = |width| crate::line_style::LineStyle { width_px: [1.0, 0.0, width, 2.0], ink: [0.0; 4] };
     for width in [-1.0, f32::NAN, f32::INFINITY] {
         assert!(matches!(look(width).validate(), Err(OutlineError::Width { .. })));
     }
@@ -442,11 +442,11 @@ fn long_chains_and_large_polygons_end() {
         ..Default::default()
     };
     assert_eq!(contours_of(&polygon, &NO_CREASES).planes.len(), count as usize);
-    // Each took more than a minute once.
+    // Quadratic algorithms took more than a minute for each.
     assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
 }
 
-/// A coordinate of any size and sign, often one of a few, so that corners meet and lie in line.
+/// A coordinate of any size and sign, often one of a few, so that corners coincide and are collinear.
 fn coordinate() -> impl Strategy<Value = f32> {
     prop_oneof![
         (-2i8..3).prop_map(f32::from),
@@ -456,10 +456,10 @@ fn coordinate() -> impl Strategy<Value = f32> {
 }
 
 proptest! {
-    /// Of any soup, seen from anywhere: no number that is none, every index within its array, and a scan that tells what
-    /// each record tells.
+    /// For any set of triangles and any eye: no NaN, all indices within their arrays, and a scan that agrees with the
+    /// test of each record.
     #[test]
-    fn records_of_any_soup_are_finite_and_within_bounds(
+    fn records_of_any_triangles_are_finite_and_within_bounds(
         corners in prop::collection::vec([coordinate(), coordinate(), coordinate()], 3..12),
         faces in prop::collection::vec(([0usize..12, 0usize..12, 0usize..12], 0u32..2, any::<bool>()), 1..40),
         crease_angle_rad in 0.0..std::f32::consts::PI,
@@ -506,7 +506,7 @@ proptest! {
 
 proptest! {
     #[test]
-    fn the_records_tell_what_the_corners_tell(eye in prop::array::uniform3(-8.0..8.0f64)) {
+    fn records_agree_with_the_classification_from_corners(eye in prop::array::uniform3(-8.0..8.0f64)) {
         let model = embedded::torus(1.0, 0.4, 20, 10);
         let edges = edges_of(&model);
         let contours = contours_of(&model, &NO_CREASES);
@@ -550,7 +550,7 @@ fn a_face_wound_the_other_way_and_seen_edge_on_opens_no_loop() {
 }
 
 #[test]
-fn a_surface_with_one_side_keeps_its_lines() {
+fn a_non_orientable_surface_keeps_its_lines() {
     // A Möbius band: 24 quads, of which the last is joined to the first upside down.
     let steps = 24u32;
     let point_at = |i: u32, edge: f32| {

@@ -25,10 +25,10 @@ fn a_cube_has_four_vertices_and_two_triangles_an_edge() {
     let fins = printed_fins(&model, &edges_of(&model));
     assert_eq!((fins.vertices.len(), fins.indices.len()), (48, 72));
     for fin in fins.vertices.chunks_exact(4) {
-        assert_eq!([fin[0].smooth, fin[1].smooth], [Vec3::ZERO; 2]);
+        assert_eq!([fin[0].smooth_normal, fin[1].smooth_normal], [Vec3::ZERO; 2]);
         for (stuck, displaced) in [(fin[0], fin[3]), (fin[1], fin[2])] {
             assert_eq!(stuck.position, displaced.position);
-            assert!(displaced.smooth.distance(displaced.position.normalize()) < 1e-6);
+            assert!(displaced.smooth_normal.distance(displaced.position.normalize()) < 1e-6);
         }
     }
     assert!(fins.indices.iter().all(|&i| (i as usize) < fins.vertices.len()));
@@ -90,7 +90,7 @@ fn depth_as_printed_is_clip_z_of_a_direct3d_projection() {
 fn width_is_as_asked_with_w_and_too_small_as_printed() {
     let fin = |distance: f32| PrintedFin {
         position: Vec3::new(0.0, 0.0, -distance),
-        smooth: Vec3::X,
+        smooth_normal: Vec3::X,
         n_face0: Vec3::Z,
         n_face1: Vec3::NEG_Z,
     };
@@ -113,14 +113,14 @@ fn width_is_as_asked_with_w_and_too_small_as_printed() {
 #[test]
 fn a_face_wound_the_other_way_keeps_its_fins() {
     let model = embedded::sphere(16);
-    let mut turned = model.clone();
-    turned.faces.iter_mut().step_by(10).for_each(|face| face.swap(1, 2));
+    let mut flipped = model.clone();
+    flipped.faces.iter_mut().step_by(10).for_each(|face| face.swap(1, 2));
     let count = |model: &Model| {
         let fins = printed_fins(model, &edges_of(model));
         fin_printed_triangles(&fins, &view(DVec3::new(2.0, 1.5, 3.0), FinDepth::Eye)).len()
     };
     assert!(count(&model) > 20);
-    assert_eq!(count(&model), count(&turned));
+    assert_eq!(count(&model), count(&flipped));
 }
 
 fn pixels(triangles: &[[DVec4; 3]], size: u32) -> Vec<(u32, u32)> {

@@ -1,10 +1,8 @@
 use super::*;
-use crate::fin_pass::{FIN_PASS_WGSL, FinUniform};
-use crate::fin_printed::FIN_PRINTED_WGSL;
-use crate::normal_format::NORMAL_FORMAT_WGSL;
+use crate::fin_pass::FinUniform;
 use std::mem::offset_of;
 
-/// Name and offset of each member of a struct, and its size, as naga lays it out.
+/// Name and offset of each member of a struct, and its size, in the layout of naga.
 fn layout(source: &str, name: &str) -> (Vec<(String, usize)>, usize) {
     let module = naga::front::wgsl::parse_str(source).unwrap();
     let (_, found) = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name)).expect("the struct is there");
@@ -27,7 +25,7 @@ fn uniforms_are_laid_out_as_in_the_shaders() {
             always_count, row_stride, padding)
     );
     assert_eq!(
-        layout(&[NORMAL_FORMAT_WGSL, FIN_PRINTED_WGSL, FIN_PASS_WGSL].concat(), "FinPrintedView"),
+        layout(&crate::fin_pass::wgsl(), "FinPrintedView"),
         fields!(FinUniform: clip_from_world, eye, thickness, ink, near, far, as_printed, padding)
     );
 }
@@ -39,7 +37,7 @@ fn records_are_laid_out_as_the_vertex_attributes() {
     let of_layout: Vec<usize> = RECORD_LAYOUT.attributes.iter().map(|a| a.offset as usize).collect();
     assert_eq!(of_layout, offsets.iter().map(|(_, offset)| *offset).collect::<Vec<_>>());
     // The entry point's arguments, in the order of their locations, have the fields' names and types.
-    let module = naga::front::wgsl::parse_str(&[WGSL, INK_WGSL, PASS_WGSL].concat()).unwrap();
+    let module = naga::front::wgsl::parse_str(&record_wgsl()).unwrap();
     let entry = module.entry_points.iter().find(|entry| entry.name == "vs_record").unwrap();
     let located: Vec<_> = entry
         .function

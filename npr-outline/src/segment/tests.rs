@@ -138,12 +138,12 @@ fn a_segment_through_the_eyes_plane_is_cut_at_the_near_plane() {
     assert!(segment.ends_px.iter().all(|p| p.is_finite()) && (segment.depths[1] - 1.0).abs() < 1e-12);
     assert!(segment.slopes.iter().all(|s| s.is_finite()));
     // The other way round it is the same segment.
-    let turned = project([ends[1], ends[0]], [DVec3::X, DVec3::Y], &view);
-    assert!(turned.ends_px[0].distance(segment.ends_px[1]) < 1e-9);
+    let flipped = project([ends[1], ends[0]], [DVec3::X, DVec3::Y], &view);
+    assert!(flipped.ends_px[0].distance(segment.ends_px[1]) < 1e-9);
 }
 
 #[test]
-fn what_lies_outside_is_left_out() {
+fn segments_outside_the_view_are_left_out() {
     let view = perspective();
     let none = |ends| outline_project(ends, [DVec3::ZERO; 2], 2.0, &view).is_none();
     assert!(none([DVec3::new(0.0, 0.0, 1.0), DVec3::new(0.5, 0.0, 3.0)]), "behind the eye");
@@ -209,7 +209,7 @@ fn visible_share(segment: &ScreenSegment, view: &LineView, depth_at: impl Fn(i64
 }
 
 #[test]
-fn a_line_on_a_plane_is_seen_however_it_slants() {
+fn a_line_on_a_plane_is_visible_at_any_slant() {
     for view in [perspective(), parallel()] {
         // From head-on to 80°; beyond 83° the bound on slopes hides it by design.
         for degrees in [0.0, 20.0, 45.0, 60.0, 75.0, 80.0] {
@@ -231,10 +231,10 @@ fn a_line_on_a_plane_is_seen_however_it_slants() {
 }
 
 #[test]
-fn the_plane_through_four_pixels_is_before_a_point_by_its_depth_there_less_the_slack() {
+fn the_plane_through_four_pixels_is_in_front_by_its_depth_at_the_point_less_the_tolerance() {
     // Depths of the plane a + b x + c y at the centres of four pixels, x to the right and y down.
     let quad = |a: f64, b: f64, c: f64| DVec4::new(a, a + b, a + c, a + b + c);
-    let before = |quad, x: f64, y: f64, depth, per_px| outline_plane_before(quad, DVec2::new(x, y), depth, per_px);
+    let before = |quad, x: f64, y: f64, depth, per_px| outline_plane_in_front(quad, DVec2::new(x, y), depth, per_px);
     let cases = [
         // A plane at one depth, wherever the point is.
         (before(quad(0.5, 0.0, 0.0), 0.5, 0.5, 0.25, 0.0), 0.25),
@@ -337,7 +337,7 @@ fn a_line_behind_a_grazing_surface_is_hidden() {
     let per_px = 8.0 * view.depth_per_px.x;
     let nearest = normal.dot(ends[1]).max(normal.dot(ends[0]));
     assert_eq!(visible_share(&segment, &view, plane_depth(normal, nearest + 8.0 * per_px, &view)), 0.0);
-    // The bound on slopes: an own face seen at 89° may not pass for a hole in what lies before it.
+    // The bound on slopes: a face of the edge seen at 89° must not count as a hole in a surface in front of it.
     let grazing = DVec3::new(0.0, f64::to_radians(89.0).sin(), f64::to_radians(89.0).cos());
     let segment = project(ends, [grazing, grazing], &view);
     let allowed = DEPTH_SLACK_PX + MAX_SLOPE * std::f64::consts::SQRT_2;
@@ -345,12 +345,12 @@ fn a_line_behind_a_grazing_surface_is_hidden() {
 }
 
 #[test]
-fn a_hair_behind_a_grazing_surface_no_tap_lets_a_line_through() {
+fn a_line_just_behind_a_grazing_surface_is_hidden() {
     for view in [perspective(), parallel()] {
         for degrees in [0.0, 30.0, 60.0, 80.0, 85.0] {
             let tilt = f64::to_radians(degrees);
             let normal = DVec3::new(0.0, tilt.sin(), tilt.cos());
-            // A solid that stands on the other side: one face along the surface, one away from it.
+            // A solid on the other side: one face along the surface, one away from it.
             for spin in [0.0, 0.3, 1.1, 1.6] {
                 let along = glam::DQuat::from_axis_angle(normal, spin) * DVec3::X;
                 let middle = DVec3::new(0.1, 0.0, -6.0);
@@ -369,7 +369,7 @@ fn a_hair_behind_a_grazing_surface_no_tap_lets_a_line_through() {
 }
 
 #[test]
-fn a_fold_is_seen_whatever_its_angle() {
+fn a_fold_is_visible_at_any_angle() {
     let view = perspective();
     let ends = [DVec3::new(-2.0, 0.1, -6.0), DVec3::new(2.0, 0.13, -6.2)];
     let edge = (ends[1] - ends[0]).normalize();
@@ -420,7 +420,7 @@ fn a_cut_out_needs_a_surface_at_its_own_depth() {
 
 proptest! {
     #[test]
-    fn whatever_is_projected_is_finite_and_within_the_guard(
+    fn projected_segments_are_finite_and_within_the_guard(
         a in prop::array::uniform3(-30.0..30.0f64),
         b in prop::array::uniform3(-30.0..30.0f64),
         normal in prop::array::uniform3(-1.0..1.0f64),

@@ -3,6 +3,56 @@ use npr_mesh::edges::{EdgeOptions, find};
 use npr_mesh::{Material, embedded};
 use proptest::prelude::*;
 
+impl ShadowCasters {
+    /// In how many volumes a point lies: the sum of the signed crossings of the segment from it to `beyond`, a point
+    /// outside all volumes. Sides are taken as they are swept, caps as they are wound.
+    fn count_at(&self, point: DVec3, beyond: DVec3, light: DVec4) -> i32 {
+        let local = self.local_light(light);
+        let mut count = 0;
+        let mut crossed = |corners: [DVec4; 3], times: i32| count += times * crossing(corners, point, beyond);
+        for edge in &self.edges {
+            let sweeps = outline_sweeps(edge, local);
+            let ends = [edge.from, edge.to].map(|end| Vec3::from(end).as_dvec3());
+            let [from, to] = if sweeps > 0 { ends } else { [ends[1], ends[0]] };
+            let [near_from, near_to] = [from, to].map(|end| end.extend(1.0));
+            let [far_from, far_to] = [from, to].map(|end| outline_swept(end, light));
+            crossed([near_to, near_from, far_from], sweeps.abs());
+            if light.w != 0.0 {
+                crossed([near_to, far_from, far_to], sweeps.abs());
+            }
+        }
+        for face in &self.faces {
+            let casting = outline_casting(face.plane, face.flags & VOLUME_OPEN != 0, local);
+            let corners = [face.a, face.b, face.c].map(|corner| Vec3::from(corner).as_dvec3());
+            crossed(corners.map(|corner| corner.extend(1.0)), casting);
+            if light.w != 0.0 {
+                let [a, b, c] = corners.map(|corner| outline_swept(corner, light));
+                crossed([a, c, b], casting);
+            }
+        }
+        count
+    }
+}
+
+/// 1 where the segment from `inside` to `outside` leaves through a homogeneous triangle, counter-clockwise from outside, −1
+/// where it enters, 0 where it passes by.
+fn crossing(corners: [DVec4; 3], inside: DVec3, outside: DVec3) -> i32 {
+    // Signs of 4×4 determinants: the sides of planes through three homogeneous points.
+    let side = |a: DVec4, b: DVec4, c: DVec4, d: DVec4| glam::DMat4::from_cols(a, b, c, d).determinant();
+    let [a, b, c] = corners;
+    let (p, q) = (inside.extend(1.0), outside.extend(1.0));
+    let (at_p, at_q) = (side(a, b, c, p), side(a, b, c, q));
+    if at_p * at_q >= 0.0 {
+        return 0;
+    }
+    let [u, v, w] = [side(p, q, a, b), side(p, q, b, c), side(p, q, c, a)];
+    let within = (u > 0.0 && v > 0.0 && w > 0.0) || (u < 0.0 && v < 0.0 && w < 0.0);
+    if !within {
+        return 0;
+    }
+    if at_p > 0.0 { 1 } else { -1 }
+}
+
 fn casters_of(model: &Model) -> ShadowCasters {
     let edges = find(&model.positions, &model.faces, &[], &model.face_material, &EdgeOptions::default());
     shadow_casters(model, &edges)
@@ -27,7 +77,8 @@ fn near(place: DVec3) -> DVec4 {
     place.extend(1.0)
 }
 
-/// A point in no volume: far towards the light and aside, so that the way there crosses sides; or right beside the light.
+/// A point in no volume: far towards the light and aside, so that the way there crosses sides; or right beside the
+/// light.
 fn beyond(light: DVec4) -> DVec3 {
     let aside = DVec3::new(0.31, -0.17, 0.23);
     if light.w == 0.0 {
@@ -78,7 +129,8 @@ fn a_square_shadows_what_is_behind_it_whichever_way_it_is_wound() {
             assert_eq!(count(DVec3::new(0.3, -up, 0.55)), 1, "{light}");
             assert_eq!(count(DVec3::new(0.3, up, 0.55)), 0, "{light}");
             assert_eq!(count(DVec3::new(2.3, -up, 0.55)), 0, "{light}");
-            // The middle of the square is darkened once, whatever the winding: no crack and no double along the diagonal.
+            // The middle of the square is darkened once, whatever the winding: no crack and no double along the
+            // diagonal.
             let (mut edges, mut faces) = (Vec::new(), Vec::new());
             casters.scan(light, &mut edges, &mut faces);
             assert_eq!((edges.len(), faces.len()), (4, 2));
@@ -97,9 +149,9 @@ fn of_a_cube_half_casts_and_its_contour_sweeps_once() {
         let local = casters.local_light(light);
         assert!(edges.iter().all(|edge| outline_sweeps(edge, local).abs() == 1));
     }
-    // Straight above, and within, where every face is turned away and nothing casts.
+    // Straight above, and within, where every face faces away from the light and nothing casts.
     casters.scan(far(DVec3::Y), &mut edges, &mut faces);
-    assert_eq!(faces.len(), 2 + 8, "edge-on counts as turned towards the light");
+    assert_eq!(faces.len(), 2 + 8, "edge-on counts as facing the light");
     casters.scan(near(DVec3::ZERO), &mut edges, &mut faces);
     assert_eq!((edges.len(), faces.len()), (0, 0));
 }
@@ -214,7 +266,7 @@ fn a_way_without_end_through_a_closed_solid_ends_in_one_volume_and_from_within_i
     for light in [DVec3::new(2.5, 3.0, 3.5), DVec3::new(-4.0, 1.5, 0.2), DVec3::new(0.1, -3.0, 0.2)] {
         let light = middle + half * light;
         for aside in [DVec3::new(0.01, 0.02, 0.03), DVec3::new(0.3, -0.4, 0.2), DVec3::new(-0.45, 0.15, -0.4)] {
-            // In through one face that is turned to the light, out through one that is turned away and does not cast.
+            // In through one face towards the light, out through one that faces away from it and does not cast.
             let direction = middle + half * aside - light;
             assert_eq!(casters.endless(near(light), direction), 1, "{light} {aside}");
             assert_eq!(casters.endless(near(light), -direction), 0, "away: {light} {aside}");
@@ -223,7 +275,7 @@ fn a_way_without_end_through_a_closed_solid_ends_in_one_volume_and_from_within_i
             assert_eq!(casters.endless(near(light), beside), 0, "beside: {light} {aside}");
         }
     }
-    // Within, every face is turned away from the light.
+    // Within, every face faces away from the light.
     for direction in [DVec3::new(1.0, 0.2, 0.3), DVec3::new(-0.1, -1.0, 0.3), DVec3::new(0.2, 0.1, -1.0)] {
         assert_eq!(casters.endless(near(middle + half * 0.1), direction), 0, "{direction}");
     }
@@ -249,7 +301,7 @@ fn lattice() -> impl Strategy<Value = (Vec<Vec3>, Vec<[u32; 3]>)> {
 
 proptest! {
     #[test]
-    fn volumes_of_any_soup_count_the_faces_before_the_light(
+    fn volumes_of_any_triangles_count_the_faces_before_the_light(
         (corners, faces) in lattice(),
         at in prop::array::uniform3(-1.0..3.0f64),
         light in prop::array::uniform3(-4.0..6.0f64),

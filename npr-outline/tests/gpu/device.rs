@@ -1,6 +1,6 @@
 //! A device, pictures on it, and reading them back.
 
-use npr_outline::line_pass::{LineTargets, WINNER_FORMAT};
+use npr_outline::line_pass::{COVERAGE_FORMAT, LineTargets};
 use std::sync::OnceLock;
 
 /// Of the colour target.
@@ -55,15 +55,13 @@ pub struct Picture {
     pub depth: wgpu::Texture,
     /// Where lines are drawn; starts white.
     pub inked: wgpu::Texture,
-    /// Where lines are drawn as strokes; starts white.
-    pub stroked: wgpu::Texture,
     views: [wgpu::TextureView; 4],
 }
 
 impl Gpu {
     /// A white picture with a depth buffer cleared to 0, infinitely far.
     pub fn picture(&self, [width, height]: [u32; 2]) -> Picture {
-        let texture = |format, usage| {
+        let texture = |format| {
             self.device.create_texture(&wgpu::TextureDescriptor {
                 label: None,
                 size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
@@ -73,28 +71,25 @@ impl Gpu {
                 format,
                 usage: wgpu::TextureUsages::RENDER_ATTACHMENT
                     | wgpu::TextureUsages::TEXTURE_BINDING
-                    | usage
                     | wgpu::TextureUsages::COPY_SRC
                     | wgpu::TextureUsages::COPY_DST,
                 view_formats: &[],
             })
         };
-        let nothing = wgpu::TextureUsages::empty();
-        let [color, inked] = [(); 2].map(|()| texture(COLOR_FORMAT, nothing));
-        let stroked = texture(COLOR_FORMAT, wgpu::TextureUsages::STORAGE_BINDING);
-        let depth = texture(wgpu::TextureFormat::Depth32Float, nothing);
-        let winner = self.device.create_texture(&wgpu::TextureDescriptor {
+        let [color, inked] = [(); 2].map(|()| texture(COLOR_FORMAT));
+        let depth = texture(wgpu::TextureFormat::Depth32Float);
+        let coverage = self.device.create_texture(&wgpu::TextureDescriptor {
             label: None,
             size: color.size(),
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
-            format: WINNER_FORMAT,
+            format: COVERAGE_FORMAT,
             usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
             view_formats: &[],
         });
-        let views = [&color, &depth, &inked, &winner].map(|t| t.create_view(&Default::default()));
-        let picture = Picture { color, depth, inked, stroked, views };
+        let views = [&color, &depth, &inked, &coverage].map(|t| t.create_view(&Default::default()));
+        let picture = Picture { color, depth, inked, views };
         self.clear(&picture);
         picture
     }
@@ -327,7 +322,7 @@ fn clearing<'a>(encoder: &'a mut wgpu::CommandEncoder, picture: &Picture) -> wgp
 impl Picture {
     /// As the line pass takes them.
     pub fn targets(&self) -> LineTargets<'_> {
-        let [painted, depth, inked, winner] = &self.views;
-        LineTargets { painted, depth, inked, winner }
+        let [painted, depth, inked, coverage] = &self.views;
+        LineTargets { painted, depth, inked, coverage }
     }
 }

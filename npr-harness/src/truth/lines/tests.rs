@@ -11,7 +11,7 @@ use crate::view::View;
 use glam::{Mat4, Vec3};
 use npr_mesh::embedded::{cube, placed, scene as still_life, sphere};
 use npr_mesh::{LoadOptions, Material, Model, load};
-use npr_outline::line_look::LineLook;
+use npr_outline::line_style::LineStyle;
 use std::path::{Path, PathBuf};
 
 const CREASE_RAD: f64 = std::f64::consts::FRAC_PI_4;
@@ -263,7 +263,7 @@ fn what_runs_along_the_border_does_not_count_as_missed() {
 }
 
 fn one_px_style() -> Style {
-    let look = LineLook { width_px: [1.0; 4], ink: [0.0, 0.0, 0.0, 1.0] };
+    let look = LineStyle { width_px: [1.0; 4], ink: [0.0, 0.0, 0.0, 1.0] };
     Style { paper: Vec3::ONE, lines: Lines::edges(look), ..style("lines").expect("there is such a style") }
 }
 

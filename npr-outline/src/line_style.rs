@@ -1,18 +1,18 @@
-//! How lines look.
+//! Line styles: width, colour and opacity.
 
 use crate::{LineKind, OutlineError};
 
-/// How lines look.
+/// The style of lines.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LineLook {
+pub struct LineStyle {
     /// Width in px by [`LineKind`]; 0 draws none of that kind.
     pub width_px: [f32; 4],
     /// Display-referred colour and opacity, 0..=1.
     pub ink: [f32; 4],
 }
 
-impl LineLook {
-    /// Checks the widths.
+impl LineStyle {
+    /// Checks that widths are finite and not negative.
     ///
     /// # Errors
     /// [`OutlineError::Width`].
@@ -24,7 +24,7 @@ impl LineLook {
     }
 }
 
-/// The kinds' widths in the order of their numbers.
+/// Widths in px, in the order of the kinds' numbers.
 pub fn widths_px(silhouette: f32, boundary: f32, crease: f32, material_border: f32) -> [f32; 4] {
     let mut widths = [0.0; 4];
     widths[LineKind::Silhouette as usize] = silhouette;

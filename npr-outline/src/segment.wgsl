@@ -1,5 +1,5 @@
-// A line on the screen: an edge clipped, projected, widened, and hidden where its centreline is hidden.
-// The twin of `segment.rs`, with the same names. No bindings and no entry points.
+// Lines on the screen: edges clipped, projected, with a width in px, and hidden where their centreline is hidden. The
+// twin of `segment.rs`. No bindings and no entry points.
 
 struct OutlineView {
     clip_from_world: mat4x4<f32>,
@@ -31,34 +31,27 @@ const OUTLINE_EDGE_ON_SLOPE: f32 = 1024.0;
 const OUTLINE_DEPTH_SLACK_PX: f32 = 0.5;
 const OUTLINE_PLANE_SLACK_PX: f32 = 0.01;
 const OUTLINE_PLANE_SLACK_PER_SLOPE: f32 = 0.0078125;
-const OUTLINE_TRAIT_ALWAYS: u32 = 256u;
+// In an edge's traits: its faces are cut out by alpha.
 const OUTLINE_TRAIT_CUT_OUT: u32 = 512u;
-const OUTLINE_BOUNDARY: u32 = 1u;
 
-// On which side of a plane the eye is. The order of the sum is that of the Rust twin.
-fn outline_facing(plane: vec4<f32>, eye: vec4<f32>) -> f32 {
-    return plane.x * eye.x + plane.y * eye.y + plane.z * eye.z + plane.w * eye.w;
-}
-
-fn outline_is_silhouette(plane0: vec4<f32>, plane1: vec4<f32>, eye: vec4<f32>) -> bool {
-    return (outline_facing(plane0, eye) >= 0.0) != (outline_facing(plane1, eye) >= 0.0);
-}
-
-// The kind of line that an edge with these traits is for this eye.
-fn outline_kind(traits: u32, plane0: vec4<f32>, plane1: vec4<f32>, eye: vec4<f32>) -> u32 {
-    let own = traits & 3u;
-    if own != OUTLINE_BOUNDARY && outline_is_silhouette(plane0, plane1, eye) {
-        return 0u;
-    }
-    return own;
-}
-
-// The part of a segment before the near plane and within the widened viewport: fractions, the first above the second
-// where nothing is left.
-fn outline_clip(a: vec4<f32>, b: vec4<f32>, viewport_px: vec2<f32>, margin_px: f32) -> vec2<f32> {
+// The part of a segment in front of the near plane and within the widened viewport, as fractions; the first is above
+// the second where nothing is left.
+fn outline_clip(end0: vec4<f32>, end1: vec4<f32>, viewport_px: vec2<f32>, margin_px: f32) -> vec2<f32> {
     let guard = vec2<f32>(1.0) + 2.0 * margin_px / viewport_px;
-    var in_a = array<f32, 5>(a.w - a.z, guard.x * a.w - a.x, guard.x * a.w + a.x, guard.y * a.w - a.y, guard.y * a.w + a.y);
-    var in_b = array<f32, 5>(b.w - b.z, guard.x * b.w - b.x, guard.x * b.w + b.x, guard.y * b.w - b.y, guard.y * b.w + b.y);
+    var in_a = array<f32, 5>(
+        end0.w - end0.z,
+        guard.x * end0.w - end0.x,
+        guard.x * end0.w + end0.x,
+        guard.y * end0.w - end0.y,
+        guard.y * end0.w + end0.y,
+    );
+    var in_b = array<f32, 5>(
+        end1.w - end1.z,
+        guard.x * end1.w - end1.x,
+        guard.x * end1.w + end1.x,
+        guard.y * end1.w - end1.y,
+        guard.y * end1.w + end1.y,
+    );
     var part = vec2<f32>(0.0, 1.0);
     for (var i = 0; i < 5; i++) {
         if in_a[i] < 0.0 && in_b[i] < 0.0 {
@@ -136,7 +129,7 @@ fn outline_project(
     let second = outline_face_slope(cross(normal1, -edge), middle, segment, view);
     let edge_on = OUTLINE_EDGE_ON_SLOPE
         * (0.5 * (segment.depths.x + segment.depths.y) * view.depth_per_px.x + view.depth_per_px.y);
-    // What is edge-on, or no number, has no slope.
+    // Faces that are edge-on, and slopes that are NaN, count as 0.
     let slope0 = select(0.0, first.y, first.y < edge_on);
     let slope1 = select(0.0, second.y, second.y < edge_on);
     segment.slopes = vec2<f32>(
@@ -175,7 +168,7 @@ fn outline_band(distance: f32, normal: vec2<f32>, width_px: f32) -> f32 {
 }
 
 // Exact beside the line; past its ends never more than a longer line would cover.
-fn outline_coverage(on_line: vec2<f32>, direction: vec2<f32>, point_px: vec2<f32>, width_px: f32) -> f32 {
+fn outline_coverage_at(on_line: vec2<f32>, direction: vec2<f32>, point_px: vec2<f32>, width_px: f32) -> f32 {
     let to_point = point_px - on_line;
     let distance = length(to_point);
     let beside = outline_band(abs(outline_cross(direction, to_point)), vec2<f32>(-direction.y, direction.x), width_px);
@@ -185,7 +178,8 @@ fn outline_coverage(on_line: vec2<f32>, direction: vec2<f32>, point_px: vec2<f32
     return min(beside, clamp(0.5 * width_px + 0.5 - distance, 0.0, 1.0));
 }
 
-// (seen, surface) votes of one of the four pixels around a point of the centreline.
+// For one of the four pixels around a point of the centreline: whether its surface is not in front of the line, and
+// whether it may be one of the edge's own faces.
 fn outline_vote(scene_depth: f32, depth: f32, offset: f32, slopes: vec2<f32>, per_px: f32) -> vec2<bool> {
     let slope = min(select(slopes.x, slopes.y, offset < 0.0), OUTLINE_MAX_SLOPE * per_px);
     let allowed = OUTLINE_DEPTH_SLACK_PX * per_px + slope * abs(offset);
@@ -193,9 +187,9 @@ fn outline_vote(scene_depth: f32, depth: f32, offset: f32, slopes: vec2<f32>, pe
     return vec2<bool>(behind <= allowed, abs(behind) <= (OUTLINE_DEPTH_SLACK_PX + OUTLINE_MAX_SLOPE) * per_px);
 }
 
-// How far in front of a line's point, `within` px from the first one's centre, the plane through four pixels passes
-// there, less what rounding and their not lying in one plane explain.
-fn outline_plane_before(quad: vec4<f32>, within: vec2<f32>, depth: f32, per_px: f32) -> f32 {
+// How far in front of a point of a line, `within` px from the first pixel's centre, the plane through four pixels is,
+// less the tolerance for rounding and for the deviation of the four from a plane.
+fn outline_plane_in_front(quad: vec4<f32>, within: vec2<f32>, depth: f32, per_px: f32) -> f32 {
     let along_x = 0.5 * (quad.y - quad.x + quad.w - quad.z);
     let along_y = 0.5 * (quad.z - quad.x + quad.w - quad.y);
     let there = 0.25 * (quad.x + quad.y + quad.z + quad.w) + along_x * (within.x - 0.5) + along_y * (within.y - 0.5);
@@ -204,7 +198,7 @@ fn outline_plane_before(quad: vec4<f32>, within: vec2<f32>, depth: f32, per_px: 
         - OUTLINE_PLANE_SLACK_PER_SLOPE * (abs(along_x) + abs(along_y)) - twist;
 }
 
-// The greater of the second differences of four depths in a row.
-fn outline_bend(depths: vec4<f32>) -> f32 {
+// The greater of the two second differences of four consecutive depths.
+fn outline_second_difference(depths: vec4<f32>) -> f32 {
     return max(abs(depths.x - 2.0 * depths.y + depths.z), abs(depths.y - 2.0 * depths.z + depths.w));
 }

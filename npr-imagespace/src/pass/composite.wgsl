@@ -1,4 +1,4 @@
-// Ink over a picture, also of another size. Appended to `fullscreen.wgsl`.
+// Compositing ink of any size over a picture.
 
 @group(0) @binding(1) var<uniform> scale: vec4<f32>;
 @group(0) @binding(2) var ink: texture_2d<f32>;
@@ -7,7 +7,7 @@
 override same_size: bool;
 
 @fragment
-fn fs_lay(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+fn fs_composite(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     if same_size {
         return ink_premultiplied(textureLoad(ink, vec2<i32>(position.xy), 0).x, how);
     }
