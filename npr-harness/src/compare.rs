@@ -6,45 +6,12 @@
 
 use crate::error::HarnessError;
 use crate::picture::{Image, ImageError, byte_count};
+
+pub use crate::picture::CompareError;
 use base64::prelude::{BASE64_STANDARD, Engine};
 use npr_hatch::files::write_file;
 use std::fs;
 use std::path::{Path, PathBuf};
-
-/// Why two images cannot be compared.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum CompareError {
-    /// They have different sizes.
-    #[error(
-        "the expected image has {}×{} pixels, the actual one {}×{}",
-        expected.0, expected.1, actual.0, actual.1
-    )]
-    Size {
-        /// Width and height, pixels.
-        expected: (u32, u32),
-        /// Width and height, pixels.
-        actual: (u32, u32),
-    },
-    /// The mask of exempt pixels is for another image.
-    #[error("the mask has {mask} entries, the image {pixels} pixels")]
-    Mask {
-        /// Its length.
-        mask: usize,
-        /// What its length should be.
-        pixels: usize,
-    },
-    /// An image's bytes do not fit its size.
-    #[error("{bytes} bytes are no {width}×{height} image of four bytes a pixel")]
-    Bytes {
-        /// Pixels.
-        width: u32,
-        /// Pixels.
-        height: u32,
-        /// How many there were.
-        bytes: usize,
-    },
-}
 
 /// At most `count` pixels may differ by more than `magnitude` in any channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -7,8 +7,11 @@ use std::sync::{Arc, Mutex};
 /// picture of a scene that did not change costs no more than looking it up.
 #[derive(Default)]
 pub struct Derived {
-    kept: Mutex<Vec<(Box<dyn Any + Send + Sync>, Arc<dyn Any + Send + Sync>)>>,
+    kept: Mutex<Vec<Entry>>,
 }
+
+/// A key and its value.
+type Entry = (Box<dyn Any + Send + Sync>, Arc<dyn Any + Send + Sync>);
 
 /// At most so many values of one type of key are kept: a key that changes from picture to picture, such as an angle that
 /// somebody turns, must not fill the memory.
@@ -34,7 +37,7 @@ impl Derived {
             return Ok(found);
         }
         let mut kept = self.kept.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        let same_type = |entry: &(Box<dyn Any + Send + Sync>, _)| entry.0.is::<K>();
+        let same_type = |entry: &Entry| entry.0.is::<K>();
         if kept.iter().filter(|entry| same_type(entry)).count() >= MOST
             && let Some(oldest) = kept.iter().position(same_type)
         {

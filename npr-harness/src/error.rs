@@ -189,7 +189,7 @@ pub enum HarnessError {
     Image(#[from] crate::picture::ImageError),
     /// Pictures that cannot be compared.
     #[error(transparent)]
-    Compare(#[from] crate::compare::CompareError),
+    Compare(#[from] crate::picture::CompareError),
     /// No adapter that can do what every picture needs.
     #[error("no usable graphics adapter (seen: {})", if seen.is_empty() { "none".to_owned() } else { seen.join("; ") })]
     NoAdapter {
@@ -456,6 +456,7 @@ impl HarnessError {
             | Self::TooManyDraws { .. }
             | Self::ParallelVolumes => true,
             Self::Outline(error) => matches!(error, OutlineError::TooManyEdges { .. }),
+            #[cfg(feature = "gpu")]
             Self::Hatch(error) => matches!(error, npr_hatch::HatchError::TooLarge { .. }),
             _ => false,
         }

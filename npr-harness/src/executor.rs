@@ -244,11 +244,11 @@ impl Executor {
             Ok(Rendered { image, plan, why_cpu: None })
         });
         let error = match rendered {
-            Ok(mut rendered) => {
+            Ok(rendered) => {
                 #[cfg(feature = "gpu")]
                 if rendered.plan.computes() && !self.capabilities().compute {
                     // The driver refused just now.
-                    rendered.plan = rendered.plan.without_compute(REFUSED);
+                    return Ok(Rendered { plan: rendered.plan.without_compute(REFUSED), ..rendered });
                 }
                 return Ok(rendered);
             }

@@ -93,6 +93,41 @@ pub enum ImageError {
     },
 }
 
+/// Why two images cannot be compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CompareError {
+    /// They have different sizes.
+    #[error(
+        "the expected image has {}×{} pixels, the actual one {}×{}",
+        expected.0, expected.1, actual.0, actual.1
+    )]
+    Size {
+        /// Width and height, pixels.
+        expected: (u32, u32),
+        /// Width and height, pixels.
+        actual: (u32, u32),
+    },
+    /// The mask of exempt pixels is for another image.
+    #[error("the mask has {mask} entries, the image {pixels} pixels")]
+    Mask {
+        /// Its length.
+        mask: usize,
+        /// What its length should be.
+        pixels: usize,
+    },
+    /// An image's bytes do not fit its size.
+    #[error("{bytes} bytes are no {width}×{height} image of four bytes a pixel")]
+    Bytes {
+        /// Pixels.
+        width: u32,
+        /// Pixels.
+        height: u32,
+        /// How many there were.
+        bytes: usize,
+    },
+}
+
 impl Image {
     /// # Errors
     /// [`ImageError::Length`] where `rgba8` has not four bytes a pixel.

@@ -9,16 +9,21 @@
 
 mod boxes;
 mod cells;
+mod clusters;
 mod duplicates;
+mod hash;
 mod hierarchy;
 mod threads;
+mod triangle;
 
 use boxes::Boxes;
-use cells::{CELL, Cell, Content, References, Tree, Whole};
+use cells::{Cell, Content, References, Tree, Whole};
+use clusters::CELL;
 use glam::{DVec3, Vec3};
 use obvhs::{fast_stack, ray::Ray, ray::RayHit};
 use std::collections::HashMap;
 use std::ops::ControlFlow;
+use triangle::{DUPLICATES, Duplicate, PADDING, Triangle};
 
 /// Finds the faces that a ray hits. Several threads can share it: what rays add to the hierarchy changes no answer.
 ///
@@ -29,26 +34,7 @@ pub struct RayCaster {
     /// The hierarchy works on (position − centre) / half_size, which is within −1..1.
     whole: Whole,
     /// Faces that lie on one another and are wound alike, by number: one triangle stands for them.
-    alike: Vec<Vec<Alike>>,
-}
-
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(C)]
-struct Triangle {
-    corners: [Vec3; 3],
-    /// The face's number; or, with the bit [`ALIKE`], which of [`RayCaster::alike`].
-    face: u32,
-}
-
-/// Faces have fewer numbers.
-const ALIKE: u32 = 1 << 31;
-
-/// One of several faces with the same corners.
-#[derive(Clone, Copy)]
-struct Alike {
-    face: u32,
-    /// Which of the triangle's corners is the face's first.
-    first: usize,
+    alike: Vec<Vec<Duplicate>>,
 }
 
 /// What a visited hit leads to.
@@ -72,11 +58,6 @@ pub struct Hit {
     pub front: bool,
 }
 
-/// The boxes' padding, where the scene's larger half size is 1. A ray's start and direction are rounded to f32
-/// (2⁻²⁴ of at most 2.7), so is a box, its slab test rounds three times on distances of at most 5, and obvhs takes
-/// a direction's component under 1.2e-7 for 1.2e-7: together under 2e-6.
-const PADDING: f64 = 4e-6;
-
 /// The scene in the hierarchy's units lies within √3 of the origin; the rest is for rounding.
 const REACH: f64 = 1.75;
 
@@ -90,13 +71,13 @@ impl RayCaster {
     /// # Panics
     /// If a face names a vertex that is not there, or there are 2³¹ faces.
     pub fn new(positions: &[Vec3], faces: &[[u32; 3]]) -> Self {
-        assert!(faces.len() <= ALIKE as usize, "more faces than numbers");
+        assert!(faces.len() <= DUPLICATES as usize, "more faces than numbers");
         let mut found = Boxes::new(positions, faces);
         let alike = duplicates::join(positions, faces, &mut found);
         let stands_for: HashMap<u32, u32> = (0..).zip(&alike).map(|(group, faces)| (faces[0].face, group)).collect();
         let triangle = |face: u32| Triangle {
             corners: faces[face as usize].map(|vertex| positions[vertex as usize]),
-            face: stands_for.get(&face).map_or(face, |group| ALIKE | group),
+            face: stands_for.get(&face).map_or(face, |group| DUPLICATES | group),
         };
         let Boxes { boxes, faces: numbers, center, half_size, .. } = found;
         let mut whole = Whole::new(boxes.len(), center, half_size);
@@ -271,12 +252,12 @@ impl<V: FnMut(Hit) -> ControlFlow<(), Seen>> Walk<'_, V> {
             if !(self.t_min <= hit.t && hit.t <= self.t_max) {
                 continue;
             }
-            let one = [Alike { face: triangle.face, first: 0 }];
-            let faces = match triangle.face & ALIKE {
+            let one = [Duplicate { face: triangle.face, first: 0 }];
+            let faces = match triangle.face & DUPLICATES {
                 0 => &one[..],
-                _ => &self.caster.alike[(triangle.face & !ALIKE) as usize],
+                _ => &self.caster.alike[(triangle.face & !DUPLICATES) as usize],
             };
-            for &Alike { face, first } in faces {
+            for &Duplicate { face, first } in faces {
                 let [u, v, w] = hit.barycentric;
                 let barycentric = [[u, v, w], [v, w, u], [w, u, v]][first];
                 let ControlFlow::Continue(seen) = (self.visitor)(Hit { face, barycentric, ..hit }) else {

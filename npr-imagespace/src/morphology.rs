@@ -25,6 +25,7 @@
 mod direct;
 pub mod disc;
 pub mod flood;
+mod ink;
 
 use crate::ImageSpaceError;
 use crate::picture::checked_len;

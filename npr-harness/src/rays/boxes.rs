@@ -1,7 +1,8 @@
 //! The boxes of the faces that a ray can hit.
 
-use super::duplicates::{hash, mixed};
-use super::{PADDING, threads};
+use super::hash::{hash, mixed};
+use super::threads;
+use super::triangle::PADDING;
 use glam::{DVec3, Vec3, Vec3A};
 use npr_mesh::edges::has_zero_area;
 use obvhs::aabb::Aabb;

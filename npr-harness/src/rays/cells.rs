@@ -1,6 +1,6 @@
 //! Spatial splits, where faces are large and pass through one another: there no order of whole faces has small boxes.
 //!
-//! A node of the hierarchy whose boxes lie [`CROWD`]fold over one another becomes a cell. When the first ray comes to a
+//! A node of the hierarchy whose boxes are an overlapping cluster becomes a cell. When the first ray comes to a
 //! cell it is halved by a plane across its longest side, and the boxes of what lies on both sides are clipped to either
 //! (Stich, Friedrich & Dietrich 2009, "Spatial Splits in Bounding Volume Hierarchies", section 4). Halves are cells
 //! again, or a hierarchy of their own. On demand, because of such faces a ray sees the first few: a tree that is built
@@ -15,22 +15,14 @@
 //! without cells; two million random faces as large as the scene stay slow, 0.2 ms a ray. Models (bunny, teapot, beetle,
 //! fandisk, rocker arm, suzanne) have no cells.
 
-use super::hierarchy::{Hierarchy, SAMPLE, hierarchy};
-use super::{PADDING, Triangle, threads};
+use super::clusters::is_overlapping;
+use super::hierarchy::{Hierarchy, hierarchy};
+use super::threads;
+use super::triangle::{PADDING, Triangle};
 use glam::{DVec3, Vec3A};
 use obvhs::{aabb::Aabb, bvh2::Bvh2};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, OnceLock, PoisonError};
-
-/// More boxes than this lie over one another in a cell: their surface over that of the box around them, which is how
-/// many of them a line through it meets in the mean.
-const CROWD: f32 = 32.0;
-
-/// Nor are a cell's boxes smaller than this in the mean, as a share of its surface: small ones are told apart whole.
-const SHARE: f32 = 1.0 / 16.0;
-
-/// A cell's `prim_count`; its `first_index` is which of [`Tree::cells`].
-pub const CELL: u32 = u32::MAX;
 
 /// Halving in the middle takes at most this part of the references that are left.
 const AT_ONCE: usize = 32;
@@ -183,24 +175,13 @@ impl Half {
     fn new(references: References, cells: Option<(u8, u8)>, whole: &Whole) -> Self {
         let bounds = references.boxes.iter().fold(Aabb::INVALID, |all, one| all.union(one));
         let content = match cells {
-            Some((level, stalled)) if is_crowd(&bounds, &references.boxes) => {
+            Some((level, stalled)) if is_overlapping(&bounds, &references.boxes) => {
                 Content::Cell(Cell::new(references, level, stalled))
             }
             _ => Content::Tree(Tree::new(references, cells, |face| whole.triangles[face as usize])),
         };
         Self { bounds, content }
     }
-}
-
-/// Whether boxes in `bounds` lie so much over one another that they are a cell; of many, by a sample of them.
-pub fn is_crowd(bounds: &Aabb, boxes: &[Aabb]) -> bool {
-    // Boxes of the padding's size lie over one another whatever is in them.
-    if boxes.len() as f32 <= CROWD || bounds.diagonal().max_element() < 64.0 * PADDING as f32 {
-        return false;
-    }
-    let least = CROWD.max(SHARE * boxes.len() as f32);
-    let step = boxes.len().div_ceil(SAMPLE);
-    step as f32 * boxes.iter().step_by(step).map(Aabb::half_area).sum::<f32>() > least * bounds.half_area()
 }
 
 #[cfg(test)]

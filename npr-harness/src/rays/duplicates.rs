@@ -4,40 +4,18 @@
 //! Most faces of most models are alone, and a bit for each hash value tells so: only faces that share a bit, and those of
 //! them that share another bit by another hash, go into a table.
 
-use super::Alike;
 use super::boxes::Boxes;
+use super::hash::{hash, mixed};
+use super::triangle::Duplicate;
 use glam::Vec3;
 use std::collections::HashMap;
 
 /// Bits for each face.
 const BITS: usize = 16;
 
-/// Of a face's corners, the same whichever is the first, with all of its bits used.
-pub fn hash(corners: &[Vec3; 3]) -> u64 {
-    const ODD: u64 = 0x9e37_79b9_7f4a_7c15;
-    let of_corner = |corner: &Vec3| {
-        let [x, y, z] = corner.to_array().map(|at| u64::from(at.to_bits()));
-        let first = (x | y << 32).wrapping_mul(ODD);
-        (first ^ (first >> 32) ^ z).wrapping_mul(ODD)
-    };
-    corners.iter().map(of_corner).fold(0, u64::wrapping_add)
-}
-
-/// The upper half of the hash, or another half that does not depend on it.
-pub fn mixed(hash: u64, round: u32) -> u32 {
-    match round {
-        0 => (hash >> 32) as u32,
-        // The mixing of SplitMix64 (Steele, Lea & Flood 2014).
-        _ => {
-            let z = (hash ^ (hash >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-            ((z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb) >> 32) as u32
-        }
-    }
-}
-
 /// Joins the boxes of faces with the same corners in the same order, wherever it begins: the first stays. Returns the
 /// groups, each by ascending face. The hashes are gone then.
-pub fn join(positions: &[Vec3], faces: &[[u32; 3]], boxes: &mut Boxes) -> Vec<Vec<Alike>> {
+pub fn join(positions: &[Vec3], faces: &[[u32; 3]], boxes: &mut Boxes) -> Vec<Vec<Duplicate>> {
     let mut places = sharing(&std::mem::take(&mut boxes.hashes));
     if places.is_empty() {
         return Vec::new();
@@ -47,7 +25,7 @@ pub fn join(positions: &[Vec3], faces: &[[u32; 3]], boxes: &mut Boxes) -> Vec<Ve
     places = sharing(&second).into_iter().map(|at| places[at as usize]).collect();
     // Per set of corners the place of the first face, and its group if there is one.
     let mut known: HashMap<[[u32; 3]; 3], (u32, Option<usize>)> = HashMap::new();
-    let mut groups: Vec<Vec<Alike>> = Vec::new();
+    let mut groups: Vec<Vec<Duplicate>> = Vec::new();
     let mut joined = Vec::new();
     for place in places {
         let own = corners(place);
@@ -59,12 +37,12 @@ pub fn join(positions: &[Vec3], faces: &[[u32; 3]], boxes: &mut Boxes) -> Vec<Ve
             continue;
         }
         let group = *group.get_or_insert_with(|| {
-            groups.push(vec![Alike { face: boxes.faces[*first as usize], first: 0 }]);
+            groups.push(vec![Duplicate { face: boxes.faces[*first as usize], first: 0 }]);
             groups.len() - 1
         });
         let of_first = corners(*first);
         let turned = (0..3).find(|&corner| of_first[corner].to_array() == own[0].to_array()).unwrap_or(0);
-        groups[group].push(Alike { face: boxes.faces[place as usize], first: turned });
+        groups[group].push(Duplicate { face: boxes.faces[place as usize], first: turned });
         joined.push(place);
     }
     let mut joined = joined.into_iter().peekable();

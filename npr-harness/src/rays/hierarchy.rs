@@ -14,9 +14,9 @@
 //!
 //! Here a face is in one leaf. Where faces are so large that this does not do, [`super::cells`] takes over.
 
-use super::PADDING;
-use super::cells::{CELL, is_crowd};
+use super::clusters::{CELL, SAMPLE, is_overlapping};
 use super::threads;
+use super::triangle::PADDING;
 use glam::Vec3A;
 use obvhs::{aabb::Aabb, bvh2::Bvh2, bvh2::node::Bvh2Node};
 use std::ops::Range;
@@ -30,9 +30,6 @@ const LEAF: usize = 8;
 
 /// What one step down costs, in intersections with a triangle.
 const STEP: f32 = 1.5;
-
-/// Where a part is divided is decided by about so many of its boxes, at equal steps.
-pub const SAMPLE: usize = 1024;
 
 /// The halves of parts of more boxes, at most [`FORKS`] steps down, have room for nodes of their own.
 const FORK: usize = 1 << 13;
@@ -208,7 +205,7 @@ impl Part<'_> {
     fn node(&mut self, child: usize, rules: &Rules) -> (Bvh2Node, Shape) {
         let extent = Extent::of(self.boxes);
         let count = self.boxes.len();
-        if rules.cells && is_crowd(&extent.bounds, self.boxes) {
+        if rules.cells && is_overlapping(&extent.bounds, self.boxes) {
             return (Bvh2Node::new(extent.bounds, CELL, self.first as u32), Shape::Cell);
         }
         match self.divide(&extent, self.depth >= rules.deep) {

@@ -1,6 +1,6 @@
 //! From cool to warm.
 
-use super::{LitPoint, ShadeModel, ShadeOnDevice, ShadeView, Shading};
+use super::model::{LitPoint, ShadeModel, ShadeOnDevice, ShadeView, Shading};
 use crate::error::HarnessError;
 use crate::schema::{Color, one, white};
 use glam::DVec3;

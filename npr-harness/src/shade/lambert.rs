@@ -1,6 +1,6 @@
 //! Ambient and diffuse light.
 
-use super::{ShadeModel, ShadeOnDevice, ShadeView, Shading};
+use super::model::{ShadeModel, ShadeOnDevice, ShadeView, Shading};
 use crate::error::HarnessError;
 use crate::schema::within;
 use glam::DVec3;

@@ -1,6 +1,6 @@
 //! World-space normals as colours, negated in shadow.
 
-use super::{ShadeModel, ShadeOnDevice, ShadeView, Shading};
+use super::model::{ShadeModel, ShadeOnDevice, ShadeView, Shading};
 use crate::error::HarnessError;
 use glam::DVec3;
 

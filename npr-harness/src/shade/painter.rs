@@ -1,7 +1,7 @@
 //! Two lights, each an axis of a 2D ramp: the cartoon renderer's painter (*The Evolution of a Cartoon Renderer*).
 
+use super::model::{LitPoint, ShadeModel, ShadeOnDevice, ShadeView, Shading};
 use super::ramp_table::{FilterName, StopsTable, image_filter, texels_of};
-use super::{LitPoint, ShadeModel, ShadeOnDevice, ShadeView, Shading};
 use crate::error::HarnessError;
 use crate::schema::{Color, StyleFile, Texel};
 use glam::{DVec2, DVec3, UVec2};

@@ -1,7 +1,7 @@
 //! Any colours by light, from a 1D ramp.
 
+use super::model::{ShadeModel, ShadeOnDevice, ShadeView, Shading, flag};
 use super::ramp_table::{FilterName, StopsTable, image_filter, texels_of};
-use super::{ShadeModel, ShadeOnDevice, ShadeView, Shading, flag};
 use crate::error::HarnessError;
 use crate::schema::{StyleFile, Texel};
 use glam::{DVec2, DVec3};

@@ -1,6 +1,6 @@
 //! Bands of light, with a highlight where N·H is above a threshold.
 
-use super::{LitPoint, ShadeModel, ShadeOnDevice, ShadeView, Shading, flag};
+use super::model::{LitPoint, ShadeModel, ShadeOnDevice, ShadeView, Shading, flag};
 use crate::error::HarnessError;
 use crate::schema::{Color, one, white, yes};
 use glam::{DVec2, DVec3};

@@ -1,6 +1,6 @@
 //! Surfaces that no shade colours: paper, and hatched ones, which take the diffuse term.
 
-use super::{ShadeModel, ShadeOnDevice, ShadeView, Shading};
+use super::model::{ShadeModel, ShadeOnDevice, ShadeView, Shading};
 use crate::error::HarnessError;
 use glam::DVec3;
 

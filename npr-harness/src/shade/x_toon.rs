@@ -1,7 +1,7 @@
 //! Bands that fade with depth or near the silhouette: X-Toon (Barla, Thollot, Markosian 2006).
 
+use super::model::{LitPoint, ShadeModel, ShadeOnDevice, ShadeView, Shading, flag};
 use super::ramp_table::StopsTable;
-use super::{LitPoint, ShadeModel, ShadeOnDevice, ShadeView, Shading, flag};
 use crate::error::HarnessError;
 use crate::schema::{StyleFile, within};
 use glam::DVec3;

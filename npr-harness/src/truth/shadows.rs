@@ -15,7 +15,9 @@ use crate::scene::Scene;
 use crate::shade::Shade;
 use crate::shadow::cpu::ShadowAt;
 use crate::shadow::plan::casts;
-use crate::shadow::{ShadowLines, ShadowMethod, ShadowStyle, ShadowTechnique, VolumeMethod};
+use crate::shadow::{ShadowLines, ShadowMethod, ShadowStyle};
+#[cfg(feature = "gpu")]
+use crate::shadow::{ShadowTechnique, VolumeMethod};
 use crate::style::{Lines, Style, style};
 use crate::view::View;
 use glam::{DVec2, DVec3, UVec2, Vec3};

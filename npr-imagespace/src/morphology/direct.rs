@@ -3,7 +3,7 @@
 //! For each row of the disc, 2 w + 1 pixels wide, the maxima over that many pixels of a picture's row; the result is
 //! the maximum of these over the disc's rows. All steps are maxima of bytes, which vectorise.
 
-use super::disc::{LINE, root};
+use super::ink::{LINE, root};
 
 /// `to` = the largest of three. A separate function, so that the compiler knows from the arguments that the slices do
 /// not overlap.

@@ -27,6 +27,9 @@
 //! Distances by two passes over the axes: Saito & Toriwaki 1994, "New algorithms for Euclidean distance transformation
 //! of an n-dimensional digitized picture with applications".
 
+use super::ink::root;
+
+pub use super::ink::LINE;
 use crate::ImageSpaceError;
 use crate::morphology::direct;
 use crate::picture::checked_len;
@@ -36,8 +39,6 @@ use glam::UVec2;
 const DIRECT_MOST: usize = 5;
 /// The largest radius.
 pub const RADIUS_MAX_PX: f32 = 32766.0;
-/// The least ink of a line pixel.
-pub const LINE: u8 = 128;
 
 /// A disc-shaped structuring element.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,15 +67,6 @@ struct Planes<T> {
     along: Vec<T>,
     /// Distances of one row.
     far: Vec<u32>,
-}
-
-/// The integer square root: the largest integer with a square of at most `square`.
-pub(crate) fn root(square: u32) -> usize {
-    let mut root = f64::from(square).sqrt() as u32;
-    while root * root > square {
-        root -= 1;
-    }
-    root as usize
 }
 
 /// The squared radius, rounded down: d² ≤ r² of whole d² is d² ≤ this.

@@ -1,7 +1,7 @@
 //! Compositing ink of any size over a picture: see [`crate::resample`].
 
-use super::fullscreen::{Bound, Fullscreen, Output, flag, size_px, uniform};
-use super::{InkTarget, PassTarget, check_ink};
+use super::fullscreen::{Bound, Fullscreen, Output, flag, uniform};
+use super::target::{InkTarget, PassTarget, check_ink, texture_size_px};
 use crate::ImageSpaceError;
 
 pub(super) const COMPOSITE: (&str, &str) = ("pass/composite.wgsl", include_str!("composite.wgsl"));
@@ -40,7 +40,7 @@ impl CompositePass {
     ) -> Result<(), ImageSpaceError> {
         let to = self.same.check(target)?;
         check_ink(ink, None)?;
-        let from = size_px(ink);
+        let from = texture_size_px(ink);
         let scale = [from[0] as f32 / to[0] as f32, from[1] as f32 / to[1] as f32, 0.0, 0.0];
         let scale = uniform(device, bytemuck::bytes_of(&scale));
         let resources = [scale.as_entire_binding(), wgpu::BindingResource::TextureView(ink)];

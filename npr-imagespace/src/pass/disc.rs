@@ -10,8 +10,8 @@
 //! Erosion is the complement of the dilated complement, as in [`crate::morphology::disc::erode_disc`]: the nearest
 //! paper is searched for, and there is none outside the picture, so that the picture's border removes no ink.
 
-use super::fullscreen::{Bound, Fullscreen, Output, size_px, uniform};
-use super::{INK_FORMAT, InkTarget, PassTarget, check_ink, check_view};
+use super::fullscreen::{Bound, Fullscreen, Output, uniform};
+use super::target::{INK_FORMAT, InkTarget, PassTarget, check_ink, check_view, texture_size_px};
 use crate::ImageSpaceError;
 use crate::composite::Composite;
 use crate::morphology::Operation;
@@ -159,7 +159,7 @@ impl DiscPass {
         scratch: &DiscScratch,
         target: &PassTarget<'_>,
     ) {
-        let size = size_px(ink);
+        let size = texture_size_px(ink);
         let reach = half.plan.row_reach_px();
         // A row has no more words than its width takes.
         let words = reach.min(size[0]).div_ceil(WORD_PX);

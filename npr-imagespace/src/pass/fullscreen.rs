@@ -1,6 +1,6 @@
 //! Common parts of the passes: a triangle over the target, consecutive bindings, and how ink is written.
 
-use super::{INK_FORMAT, InkTarget, PassTarget, assemble};
+use super::target::{INK_FORMAT, InkTarget, PassTarget, assemble, texture_size_px};
 use crate::ImageSpaceError;
 use crate::composite::{Composite, CompositeUniform};
 use glam::Vec3;
@@ -110,7 +110,7 @@ impl Fullscreen {
     pub(super) fn check(&self, target: &PassTarget<'_>) -> Result<[u32; 2], ImageSpaceError> {
         match self.output {
             Output::Ink(kind) => target.check(kind),
-            Output::Whole(_) => Ok(size_px(target.view)),
+            Output::Whole(_) => Ok(texture_size_px(target.view)),
         }
     }
 
@@ -190,11 +190,6 @@ impl Fullscreen {
 /// A pipeline constant of type bool.
 pub(super) fn flag(name: &str, is: bool) -> (&str, f64) {
     (name, f64::from(u8::from(is)))
-}
-
-/// Width and height of the texture of a view.
-pub(super) fn size_px(view: &wgpu::TextureView) -> [u32; 2] {
-    [view.texture().width(), view.texture().height()]
 }
 
 fn binding_type(bound: Bound) -> wgpu::BindingType {

@@ -1,7 +1,7 @@
 //! The fused filter over packed texels: see [`crate::filter::fused`] for what it decides.
 
 use super::fullscreen::{Bound, Fullscreen, Output, flag, uniform};
-use super::{InkTarget, PassTarget, check_view};
+use super::target::{InkTarget, PassTarget, check_view};
 use crate::ImageSpaceError;
 use crate::filter::fused::{FilterUniform, FusedFilter};
 use crate::format::texel::{DepthCode, TexelLayout};

@@ -2,7 +2,7 @@
 //! [`crate::format::printed`] for what the target holds.
 
 use super::fullscreen::{Bound, Fullscreen, Output, flag, uniform};
-use super::{InkTarget, PassTarget, check_view};
+use super::target::{InkTarget, PassTarget, check_view};
 use crate::ImageSpaceError;
 use crate::filter::inker::InkerUniform;
 use crate::filter::printed::{PrintedFilter, PrintedUniform};

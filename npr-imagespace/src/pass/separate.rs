@@ -2,7 +2,7 @@
 //! of a depth buffer are read.
 
 use super::fullscreen::{Bound, Fullscreen, Output, flag, uniform};
-use super::{InkTarget, PassTarget, check_samples_and_size};
+use super::target::{InkTarget, PassTarget, check_samples_and_size};
 use crate::ImageSpaceError;
 use crate::filter::separate::{SeparateDepthTest, SeparateFilter, SeparateUniform};
 use crate::picture::Taps;

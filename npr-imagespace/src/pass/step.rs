@@ -2,8 +2,8 @@
 //!
 //! Outside the picture there is paper for a dilation and ink for an erosion.
 
-use super::fullscreen::{Bound, Fullscreen, Output, flag, size_px};
-use super::{InkTarget, PassTarget, check_ink};
+use super::fullscreen::{Bound, Fullscreen, Output, flag};
+use super::target::{InkTarget, PassTarget, check_ink, texture_size_px};
 use crate::ImageSpaceError;
 use crate::composite::Composite;
 use crate::morphology::{Kernel, Operation};
@@ -120,7 +120,7 @@ impl PingPong {
         ink: [&wgpu::TextureView; 2],
     ) -> Result<usize, ImageSpaceError> {
         check_ink(ink[0], None)?;
-        check_ink(ink[1], Some(size_px(ink[0])))?;
+        check_ink(ink[1], Some(texture_size_px(ink[0])))?;
         // The bind groups for all steps.
         let groups = |draw: &Fullscreen| {
             ink.map(|from| draw.group(device, &[wgpu::BindingResource::TextureView(from)], &Composite::Multiply))

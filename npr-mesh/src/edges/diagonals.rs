@@ -1,7 +1,7 @@
 //! Removes the diagonals that triangulation added.
 
+use super::edge::{Edge, EdgeKind, NO_FACE};
 use super::unique::edge_of;
-use super::{Edge, EdgeKind, NO_FACE};
 
 /// Removes pairs of faces of one polygon from each edge; between these the edge is a diagonal. Two adjacent polygons
 /// can share a diagonal, which then has four faces and is still not an edge.

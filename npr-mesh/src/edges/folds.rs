@@ -1,6 +1,6 @@
 //! Folded polygons.
 
-use super::Edge;
+use super::edge::Edge;
 use super::triangle_normal;
 use glam::Vec3;
 use std::f32::consts::PI;

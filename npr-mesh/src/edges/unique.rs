@@ -10,7 +10,7 @@
 
 mod networks;
 
-use super::{Edge, FACE, NON_MANIFOLD, WOUND_OPPOSITELY};
+use super::edge::{Edge, FACE, NON_MANIFOLD, WOUND_OPPOSITELY};
 use bytemuck::Zeroable;
 use networks::sort_few;
 

@@ -3,7 +3,7 @@
 //! Their names come from untrusted files, so they may only be in the model's own folder or in a folder that the
 //! caller allows. Otherwise a model could expose other files on the disk.
 
-use super::read_file;
+use super::file::read_file;
 use crate::{Limits, LoadError, LoadOptions};
 use std::cell::{Cell, OnceCell};
 use std::ffi::OsStr;

@@ -11,6 +11,7 @@
 //! texture), `KHR_mesh_quantization`, and `KHR_materials_unlit`, which has no effect here.
 
 mod accessor;
+mod document;
 mod files;
 mod materials;
 mod meshes;
@@ -19,42 +20,13 @@ mod pose;
 mod scene;
 
 use super::external::{External, shortened};
-use super::{Parsed, read_file};
-use crate::{Limits, LoadError};
-use files::Bytes;
+use super::file::{Parsed, read_file};
+use crate::LoadError;
+use document::{Bytes, Document, QUANTIZATION, malformed};
 use gltf::json::Root;
 use std::path::Path;
 
-const QUANTIZATION: &str = "KHR_mesh_quantization";
 const EXTENSIONS: [&str; 3] = ["KHR_materials_unlit", QUANTIZATION, "KHR_texture_transform"];
-
-/// A parsed file and the data that it refers to.
-struct Document<'a> {
-    path: &'a Path,
-    limits: &'a Limits,
-    external: &'a External<'a>,
-    root: Root,
-    /// The buffers, with the lengths that the file states.
-    buffers: Vec<Bytes<'a>>,
-    /// The total size of the file and its buffers in bytes.
-    bytes: u64,
-    /// Whether attributes may have the types of `KHR_mesh_quantization`.
-    quantized: bool,
-}
-
-impl Document<'_> {
-    fn malformed(&self, fault: impl Into<String>) -> LoadError {
-        malformed(self.path, fault)
-    }
-
-    fn too_large(&self, what: &'static str, count: u64, limit: u64) -> LoadError {
-        LoadError::TooLarge { path: self.path.to_owned(), what, count, limit }
-    }
-}
-
-fn malformed(path: &Path, fault: impl Into<String>) -> LoadError {
-    LoadError::Malformed { path: path.to_owned(), fault: fault.into() }
-}
 
 /// Loads a file. Missing normals are zero, and the model may be empty.
 ///

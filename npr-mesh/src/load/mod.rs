@@ -4,41 +4,24 @@
 //! finite numbers, [`Limits`]), and then converts it.
 
 mod external;
+mod file;
 #[cfg(feature = "gltf")]
 mod gltf;
 mod image_file;
 #[cfg(feature = "obj")]
 mod obj;
+mod options;
 mod warning;
 
+pub use options::LoadOptions;
 pub use warning::Warning;
 
-use crate::{Limits, LoadError, Model, edges, normals};
+use crate::{LoadError, Model, edges, normals};
 use external::External;
+use file::Parsed;
 use glam::Vec3;
-use std::fs;
-use std::io::{self, Read};
-use std::path::{Path, PathBuf};
-
-/// Options of [`load`].
-#[derive(Clone, Debug, PartialEq)]
-pub struct LoadOptions {
-    /// Limits on what is accepted.
-    pub limits: Limits,
-    /// An additional folder for files that the model refers to (textures, materials, buffers). A relative name that
-    /// is not found beside the model is searched for in this folder. Without it, nothing outside the model's folder
-    /// is read.
-    pub asset_root: Option<PathBuf>,
-    /// The crease angle in radians, 0..=π, for missing normals: they are split between faces that meet at more than
-    /// this angle.
-    pub normal_crease_angle_rad: f32,
-}
-
-impl Default for LoadOptions {
-    fn default() -> Self {
-        Self { limits: Limits::default(), asset_root: None, normal_crease_angle_rad: 45f32.to_radians() }
-    }
-}
+use std::path::Path;
+use std::{fs, io};
 
 /// A model, and the warnings of its loading.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -47,13 +30,6 @@ pub struct Loaded {
     pub model: Model,
     /// Distinct warnings in the order of their first occurrence.
     pub warnings: Vec<Warning>,
-}
-
-/// The result of a format's loader: normals may be missing, and there may be no faces.
-struct Parsed {
-    model: Model,
-    /// In the order of occurrence, with repetitions.
-    warnings: Vec<String>,
 }
 
 /// Loads a model file. The format is determined by the file extension (`.obj`, `.gltf`, `.glb`, in any case).
@@ -105,31 +81,4 @@ fn report(model: &Model, warnings: &mut Vec<String>) {
     if flat > 0 {
         warnings.push(format!("{flat} of {} faces have no area", model.faces.len()));
     }
-}
-
-/// Reads a regular file within [`Limits::file_bytes`].
-fn read_file(path: &Path, limits: &Limits) -> Result<Vec<u8>, LoadError> {
-    let failed = |source: io::Error| LoadError::Read { path: path.to_owned(), source };
-    let too_large = |count| LoadError::TooLarge {
-        path: path.to_owned(),
-        what: "bytes in the file",
-        count,
-        limit: limits.file_bytes,
-    };
-    // Checked before opening, since opening a pipe may block.
-    let metadata = fs::metadata(path).map_err(failed)?;
-    if !metadata.is_file() {
-        return Err(failed(io::Error::other("not a regular file")));
-    }
-    if metadata.len() > limits.file_bytes {
-        return Err(too_large(metadata.len()));
-    }
-    let mut bytes = Vec::with_capacity(usize::try_from(metadata.len()).unwrap_or(0));
-    let file = fs::File::open(path).map_err(failed)?;
-    // The file may grow after its length was read.
-    file.take(limits.file_bytes.saturating_add(1)).read_to_end(&mut bytes).map_err(failed)?;
-    if bytes.len() as u64 > limits.file_bytes {
-        return Err(too_large(bytes.len() as u64));
-    }
-    Ok(bytes)
 }

@@ -13,7 +13,7 @@ mod mtl;
 mod prepare;
 
 use super::external::{External, shortened};
-use super::{Parsed, read_file};
+use super::file::{Parsed, read_file};
 use crate::triangulate::EAR_TESTS_OF_A_FILE;
 use crate::{LoadError, Material, Model};
 use builder::Builder;

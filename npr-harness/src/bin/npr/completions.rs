@@ -1,6 +1,6 @@
 //! `npr completions`.
 
-use crate::Cli;
+use crate::cli::Cli;
 use crate::terminal::say;
 use clap::CommandFactory;
 use clap_complete::{Shell, generate};

@@ -1,3 +1,4 @@
+use super::super::clusters::OVERLAP;
 use super::super::tests::{EVERYWHERE, Random, any_hit, closest_of_all, edges, icosphere};
 use super::super::{Hit, RayCaster};
 use super::*;
@@ -194,7 +195,7 @@ fn small_faces_are_told_apart_whole() {
     let boxes: Vec<Aabb> = boxes.collect();
     let all = boxes.iter().fold(Aabb::INVALID, |all, one| all.union(one));
     let over = boxes.iter().map(Aabb::half_area).sum::<f32>() / all.half_area();
-    assert!(over > 2.0 * CROWD && !caster.tree.bvh.nodes[0].is_leaf(), "{over}");
+    assert!(over > 2.0 * OVERLAP && !caster.tree.bvh.nodes[0].is_leaf(), "{over}");
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Reads numbers from buffers with bounds checks (glTF 2.0, 3.6.2 "Accessors").
 
-use super::{Document, QUANTIZATION, files};
+use super::document::{Document, QUANTIZATION};
+use super::files;
 use gltf::json::accessor::{ComponentType, Type, sparse};
 use gltf::json::validation::Checked;
 use gltf::json::{self, Index};

@@ -1,6 +1,6 @@
 //! Raw data: the binary container, buffers, and URIs.
 
-use super::Document;
+use super::document::{Bytes, Document};
 use crate::LoadError;
 use crate::load::external::{External, meanings, shortened};
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
@@ -10,26 +10,6 @@ use std::borrow::Cow;
 use std::collections::HashMap;
 use std::path::PathBuf;
 use std::rc::Rc;
-
-/// The content of a buffer.
-pub(super) enum Bytes<'a> {
-    /// The binary chunk of the file.
-    Chunk(&'a [u8]),
-    /// The content of a URI and the length of the buffer; buffers may share a file.
-    Resource(Rc<Vec<u8>>, usize),
-    /// Unavailable, with the reason. It is an error only if a shown mesh needs the buffer.
-    Missing(String),
-}
-
-impl Bytes<'_> {
-    fn as_slice(&self) -> Result<&[u8], &str> {
-        match self {
-            Bytes::Chunk(bytes) => Ok(bytes),
-            Bytes::Resource(bytes, length) => Ok(&bytes[..*length]),
-            Bytes::Missing(fault) => Err(fault),
-        }
-    }
-}
 
 /// Splits a file into the JSON text and, for a GLB file, the binary chunk (glTF 2.0, 4.4 "Binary glTF Layout").
 ///

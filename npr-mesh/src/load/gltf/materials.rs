@@ -1,6 +1,7 @@
 //! Materials, their textures, and the texture coordinates that they use.
 
-use super::{Document, files};
+use super::document::Document;
+use super::files;
 use crate::load::external::shortened;
 use crate::load::image_file;
 use crate::{AlphaMode, LoadError, Material, Model, Texture, Wrap};

@@ -1,7 +1,7 @@
 //! Flattens mesh instances into one model.
 
-use super::Document;
 use super::accessor::{Accessor, Integers, Purpose};
+use super::document::Document;
 use super::materials::{Materials, UvSource};
 use super::pose::{self, Influences, Mirrored, Placement};
 use super::scene::Nodes;

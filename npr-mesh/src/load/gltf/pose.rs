@@ -1,7 +1,7 @@
 //! Transforms vertices: morph targets, then the skin or the node (glTF 2.0, 3.7).
 
-use super::Document;
 use super::accessor::{Accessor, Integers, Purpose};
+use super::document::Document;
 use super::scene::Nodes;
 use glam::{DMat3, DMat4, DVec3, Vec3};
 use gltf::json::mesh::{Primitive, Semantic};

@@ -1,6 +1,6 @@
 //! The node hierarchy (glTF 2.0, 3.5 "Scenes").
 
-use super::Document;
+use super::document::Document;
 use crate::LoadError;
 use glam::{DMat4, DQuat, DVec3};
 use gltf::json::Node;

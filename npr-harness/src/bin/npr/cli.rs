@@ -1,0 +1,39 @@
+//! The command's arguments.
+
+use crate::{check, inspect, render, tam};
+use clap::{Parser, Subcommand};
+use clap_complete::Shell;
+
+/// Non-photorealistic pictures: outlines and cartoon light, on wgpu and on the CPU.
+///
+/// Without a command: the gallery of all styles on the built-in scene, into npr-out/.
+#[derive(Parser)]
+#[command(name = "npr", version)]
+pub struct Cli {
+    #[command(subcommand)]
+    pub command: Option<Command>,
+}
+
+#[derive(Subcommand)]
+pub enum Command {
+    /// A picture of a model (.obj, .gltf, .glb).
+    Render(render::Options),
+    /// What a model is made of.
+    Inspect(inspect::Options),
+    /// GPU against CPU reference, lines against exact contours; exit status 1 when a limit is exceeded.
+    Check(check::Options),
+    /// Draws a tonal art map for hatching into a folder, or unpacks one: its images, one file with all, and sheets.
+    Tam(tam::Options),
+    /// The styles there are.
+    Styles,
+    /// Prints a style as TOML, to start one's own from.
+    Style {
+        /// See `npr styles`.
+        name: String,
+    },
+    /// Prints a script that completes the command's arguments in a shell.
+    Completions {
+        /// Which shell.
+        shell: Shell,
+    },
+}

@@ -1,0 +1,40 @@
+//! What the loaders of all formats read and return.
+
+use crate::{Limits, LoadError, Model};
+use std::fs;
+use std::io::{self, Read};
+use std::path::Path;
+
+/// The result of a format's loader: normals may be missing, and there may be no faces.
+pub struct Parsed {
+    pub model: Model,
+    /// In the order of occurrence, with repetitions.
+    pub warnings: Vec<String>,
+}
+
+/// Reads a regular file within [`Limits::file_bytes`].
+pub fn read_file(path: &Path, limits: &Limits) -> Result<Vec<u8>, LoadError> {
+    let failed = |source: io::Error| LoadError::Read { path: path.to_owned(), source };
+    let too_large = |count| LoadError::TooLarge {
+        path: path.to_owned(),
+        what: "bytes in the file",
+        count,
+        limit: limits.file_bytes,
+    };
+    // Checked before opening, since opening a pipe may block.
+    let metadata = fs::metadata(path).map_err(failed)?;
+    if !metadata.is_file() {
+        return Err(failed(io::Error::other("not a regular file")));
+    }
+    if metadata.len() > limits.file_bytes {
+        return Err(too_large(metadata.len()));
+    }
+    let mut bytes = Vec::with_capacity(usize::try_from(metadata.len()).unwrap_or(0));
+    let file = fs::File::open(path).map_err(failed)?;
+    // The file may grow after its length was read.
+    file.take(limits.file_bytes.saturating_add(1)).read_to_end(&mut bytes).map_err(failed)?;
+    if bytes.len() as u64 > limits.file_bytes {
+        return Err(too_large(bytes.len() as u64));
+    }
+    Ok(bytes)
+}
