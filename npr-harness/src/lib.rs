@@ -11,7 +11,7 @@
 //! clock, no files and nothing that can block:
 //!
 //! - The CPU executor renders on the calling thread. A number of threads above 1 ([`cpu::CpuOptions`]) panics.
-//! - What reads or writes files, such as [`style::Style::read`] or [`compare::Image::save_png`], returns an error.
+//! - What reads or writes files, such as [`style::Style::read`] or [`picture::Image::save_png`], returns an error.
 //!   [`style::Style::from_toml`] takes text.
 //! - [`gallery::render`] and [`check::run`] panic, for the clock and for files.
 //! - [`executor::Executor::choose`] with [`executor::Backend::Auto`] or [`executor::Backend::Gpu`], and whatever reads a
@@ -42,6 +42,7 @@ pub mod printed_fins;
 pub mod rays;
 pub mod scene;
 mod schema;
+#[cfg_attr(not(feature = "gpu"), allow(dead_code, unused_imports, reason = "what shades give to a device"))]
 pub mod shade;
 pub mod shadow;
 pub mod style;

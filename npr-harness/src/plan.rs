@@ -6,7 +6,9 @@
 
 use crate::camera::Camera;
 use crate::capabilities::Capabilities;
-use crate::edge_lines::{EdgeLineMethod, EdgeLinePlan};
+#[cfg(feature = "gpu")]
+use crate::edge_lines::EdgeLineMethod;
+use crate::edge_lines::EdgeLinePlan;
 use crate::error::HarnessError;
 use crate::hatch::{HatchMapping, HatchPlan};
 use crate::image_lines::{ImagePlan, InkScale};
@@ -219,6 +221,7 @@ impl Plan {
     }
 
     /// The same plan for an adapter whose driver refuses compute shaders after all.
+    #[cfg(feature = "gpu")]
     pub(crate) fn without_compute(&self, no_compute: &'static str) -> Self {
         let mut plan = self.clone();
         if let Some(edge_lines) = &mut plan.edge_lines {
@@ -231,6 +234,7 @@ impl Plan {
     }
 
     /// Whether a pass runs as a compute shader.
+    #[cfg(feature = "gpu")]
     pub(crate) fn computes(&self) -> bool {
         self.edge_lines.as_ref().is_some_and(|lines| lines.method == EdgeLineMethod::OnDevice)
     }

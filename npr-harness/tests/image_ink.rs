@@ -3,7 +3,9 @@
 
 mod common;
 
-use common::{device, planned, rendered, shared_models};
+#[cfg(feature = "gpu")]
+use common::planned;
+use common::{device, rendered, shared_models};
 use glam::{DVec2, DVec3, DVec4, Mat4, Vec2, Vec3, Vec4};
 use npr_harness::camera::{Camera, Framing, Projection};
 use npr_harness::capabilities::Capabilities;

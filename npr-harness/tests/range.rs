@@ -12,6 +12,7 @@ use npr_harness::lights::{LightFrame, StyleLight};
 use npr_harness::picture::Image;
 use npr_harness::scene::Scene;
 use npr_harness::style::{Style, style, styles};
+#[cfg(feature = "gpu")]
 use npr_harness::view::View;
 use npr_mesh::{AlphaMode, Model, embedded};
 use npr_toon::source::Light;

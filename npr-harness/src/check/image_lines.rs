@@ -1,11 +1,12 @@
 //! Lines in the image against the exact contours, filter by filter.
 //!
-//! Numbers without limits: how good a filter can be depends on the model. What they miss, most of it, is creases with
+//! The default filter has a limit on the models that are measured in docs/accuracy.md, and one as recorded on some others;
+//! the rest are numbers without limits: how good a filter can be depends on the model. What they miss, most of it, is creases with
 //! one patch on both sides (their share is told), unless the shading normals are split there; what they draw too much
 //! is what lies nearer behind than is asked for, borders of coplanar patches, and the third pixel of a line where a
 //! surface turns away steeply.
 
-use super::{Checker, SIZE, WITHIN_PX, darkness, one_px_style};
+use super::{Checker, Limit, SIZE, WITHIN_PX, darkness, one_px_style};
 use crate::camera::Camera;
 use crate::capabilities::Capabilities;
 use crate::cpu::{self, CpuOptions};
@@ -37,13 +38,32 @@ use npr_outline::LineKind;
 /// diagonal of its box, are not asked of a filter.
 pub const LEAST_STEP: f64 = 0.01;
 
+/// The least F1 of the default filter, by the name of the model's file: 0.95 on the models of docs/accuracy.md, elsewhere
+/// what was recorded, rounded down.
+pub const LEAST_F1: [(&str, f64); 11] = [
+    ("stanford-bunny.obj", 0.95),
+    ("fandisk.obj", 0.95),
+    ("rocker-arm.obj", 0.95),
+    ("teapot.obj", 0.95),
+    ("2CylinderEngine.glb", 0.95),
+    ("CesiumMilkTruck.glb", 0.95),
+    ("suzanne.obj", 0.88),
+    ("spot.obj", 0.96),
+    ("Duck.glb", 0.92),
+    ("Fox.glb", 0.92),
+    ("beetle-alt.obj", 0.98),
+];
+
+/// The name of the default filter, the first of [`filters`].
+const DEFAULT: &str = "image lines";
+
 /// The filters that are compared, the default first.
 fn filters() -> [(&'static str, ImageInk); 6] {
     let none = FusedFilter { normal_cos: None, depth: None, regions: false, ..FusedFilter::default() };
     let with = |filter: FusedFilter| ImageInk { filter, ..ImageInk::default() };
     let plain = DepthTest { step: DEPTH_ANY_OUTLINING_SKETCH, plain: true };
     [
-        ("image lines", ImageInk::default()),
+        (DEFAULT, ImageInk::default()),
         ("image, normals", with(FusedFilter { normal_cos: FusedFilter::default().normal_cos, ..none })),
         ("image, bends", with(FusedFilter { depth: Some(DepthTest::default()), ..none })),
         ("image, steps", with(FusedFilter { depth: Some(plain), ..none })),
@@ -80,10 +100,12 @@ impl Checker<'_> {
         let uncarried =
             uncarried_share(scene, &of_edges, &Plan::new(scene, &style, &view_of, &Capabilities::RAY_CASTER)?);
         self.add(model, view, "image lines", "share of creases within one patch", uncarried, None);
-        let judge = |checker: &mut Self, technique, darkness: &[f64]| {
+        let judge = |checker: &mut Self, technique: &'static str, darkness: &[f64]| {
             let drawn = drawn_centreline(darkness, SIZE.0, SIZE.1);
             let found = accuracy(&asked, &drawn, WITHIN_PX);
-            checker.add(model, view, technique, "F1 within 1.5 px", found.f1, None);
+            let least = LEAST_F1.iter().find(|(name, _)| technique == DEFAULT && *name == model);
+            let limit = least.map(|&(_, least)| Limit::AtLeast(least));
+            checker.add(model, view, technique, "F1 within 1.5 px", found.f1, limit);
             checker.add(model, view, technique, "precision within 1.5 px", found.precision, None);
             checker.add(model, view, technique, "recall within 1.5 px", found.recall, None);
             let near_any = accuracy(&all, &drawn, WITHIN_PX).precision;

@@ -59,7 +59,7 @@ pub struct ImageInk {
     pub layout: TexelLayout,
     /// What a region is.
     pub regions: Regions,
-    /// Whether materials say where their inner lines come from ([`Scene::line_kinds`]); else all from their normals.
+    /// Whether materials say where their inner lines come from ([`Scene::line_kinds`](crate::scene::Scene::line_kinds)); else all from their normals.
     pub artist: bool,
     /// How the borders of shadows are drawn.
     pub shadows: ShadowLines,

@@ -28,7 +28,7 @@ pub fn style_file(name: &str) -> Option<&Path> {
 pub fn known_style(name: &str) -> Result<Style, HarnessError> {
     if let Some(path) = style_file(name) {
         paths::check_file(PathRole::Style, path)?;
-        return Ok(Style::read(path)?);
+        return Style::read(path);
     }
     style(name).ok_or_else(|| {
         let known: Vec<String> = styles().into_iter().map(|style| style.name).collect();
