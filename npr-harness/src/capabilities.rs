@@ -5,7 +5,7 @@ use crate::error::HarnessError;
 use crate::picture_limits::MEMORY_BYTES;
 use crate::shadow::VolumeMethod;
 
-/// What executes plans.
+/// The kind of an executor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExecutorKind {
     /// Ray casting on the CPU.
@@ -20,12 +20,12 @@ pub enum ExecutorKind {
 /// without it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Capabilities {
-    /// What it is. The fields that follow are those of adapters, and a ray caster has no such limits.
+    /// The kind of the executor. The following fields are about adapters; a ray caster has no such limits.
     pub kind: ExecutorKind,
     /// Whether the adapter runs compute shaders, in groups of 64 invocations, over the four storage buffers that they need
     /// here.
     pub compute: bool,
-    /// Why not, where it does not or they are not used.
+    /// The reason, if it does not, or if they are not used.
     pub no_compute: &'static str,
     /// Whether vertex shaders read the three storage buffers that edges lie in.
     pub vertex_storage: bool,
@@ -73,8 +73,8 @@ impl Capabilities {
         self.kind == ExecutorKind::SoftwareAdapter
     }
 
-    /// What is left without compute shaders and what goes with them, and why they are not used: all passes are triangles
-    /// then.
+    /// The same capabilities without compute shaders and the methods that need them, with the reason: all passes are
+    /// triangles then.
     pub fn without_compute(self, no_compute: &'static str) -> Self {
         Self { compute: false, no_compute, vertex_storage: false, indirect_draws: false, ..self }
     }

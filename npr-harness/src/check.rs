@@ -76,7 +76,7 @@ pub struct Metric {
     pub metric: &'static str,
     /// What was measured.
     pub value: f64,
-    /// What is allowed, or `None` where the number is only told.
+    /// What is allowed, or `None` where the number is only reported.
     pub limit: Option<Limit>,
     /// Whether it is.
     pub pass: bool,

@@ -1,4 +1,4 @@
-//! What is derived from a scene once, however many pictures need it.
+//! Data derived from a scene, computed once for any number of pictures.
 
 use std::any::Any;
 use std::sync::{Arc, Mutex};

@@ -101,11 +101,11 @@ pub enum Executor {
 /// What a picture is made of.
 #[derive(Clone, Copy)]
 pub struct Picture<'a> {
-    /// What is shown.
+    /// The scene.
     pub scene: &'a Scene,
-    /// How.
+    /// The style.
     pub style: &'a Style,
-    /// From where, and how finely.
+    /// The camera, the size and the samples.
     pub view: View,
     /// How much memory it may take besides the scene, bytes.
     pub memory_bytes: u64,
@@ -132,9 +132,9 @@ impl<'a> Picture<'a> {
 pub struct Rendered {
     /// The picture.
     pub image: Image,
-    /// What was executed.
+    /// The plan that was executed.
     pub plan: Plan,
-    /// Why the CPU made it, where a device could not.
+    /// The reason for which the CPU made it, if a device could not.
     pub why_cpu: Option<CpuReason>,
 }
 
@@ -188,7 +188,7 @@ impl Executor {
         }
     }
 
-    /// What it can do.
+    /// The capabilities that plans for this executor are made with.
     pub fn capabilities(&self) -> Capabilities {
         match self {
             #[cfg(feature = "gpu")]

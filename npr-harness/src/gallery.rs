@@ -31,7 +31,7 @@ pub struct Row {
     pub passes: Vec<&'static str>,
     /// From the plan to the picture in memory.
     pub time_ms: f64,
-    /// Why the CPU made it, where a device could not.
+    /// The reason for which the CPU made it, if a device could not.
     pub why_cpu: Option<CpuReason>,
 }
 

@@ -48,7 +48,7 @@ pub struct PaintPlan {
     pub lights: Vec<Light>,
     /// The colour of all of them.
     pub light_color: DVec3,
-    /// What the shade knows of scene and view.
+    /// The data of scene and view that the shade reads.
     pub view: ShadeView,
     /// Whether light takes more than normals at pixels and directions that are the same everywhere: positions, or light
     /// that is computed at vertices.

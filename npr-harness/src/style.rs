@@ -1,4 +1,4 @@
-//! What a picture looks like, whatever it shows.
+//! Styles: the appearance of a picture, independent of the scene.
 
 mod file;
 mod presets;
@@ -32,7 +32,7 @@ pub struct Style {
     /// How the three normals of a triangle are used.
     pub normals: NormalUse,
     /// One or two. A shade that knows one light takes the two together, see [`crate::lights::lights_in_world`]. A light's
-    /// brightness multiplies its N·L, and its colour the surface's; Gooch's tones take notice of neither.
+    /// brightness multiplies its N·L, and its colour the surface's; Gooch shading ignores both.
     pub lights: Vec<StyleLight>,
     /// Whether the first light casts shadows, and how.
     pub shadow: Option<ShadowStyle>,

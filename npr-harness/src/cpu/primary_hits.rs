@@ -10,9 +10,9 @@ use std::sync::{Arc, Mutex};
 
 /// Primary hits of a scene in a view, kept for the pictures that follow.
 pub struct PrimaryHits<'a> {
-    /// What is shown.
+    /// The scene.
     pub scene: &'a Scene,
-    /// From where, and at which size.
+    /// The camera, the size and the samples.
     pub view: View,
     most: usize,
     found: Mutex<Vec<Found>>,

@@ -1,4 +1,4 @@
-//! What a ray's hit looks like.
+//! The appearance of a hit: interpolated attributes, textures, colour.
 
 use super::FrameContext;
 use crate::color::encode_rgb;

@@ -1,4 +1,4 @@
-//! What is decided about lines along edges before a picture is drawn.
+//! The part of a plan that is about lines along edges.
 
 use crate::error::HarnessError;
 use crate::scene::Scene;

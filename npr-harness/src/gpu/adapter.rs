@@ -10,7 +10,7 @@ pub struct GpuAdapter {
     adapter: wgpu::Adapter,
 }
 
-/// What is asked of a device.
+/// The limits that a device is opened with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum DeviceLimits {
     /// All that the adapter has.

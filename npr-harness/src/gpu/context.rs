@@ -134,7 +134,7 @@ pub(super) fn describe(info: &wgpu::AdapterInfo) -> String {
     format!("{} ({:?}, {})", info.name, info.backend, info.driver_info)
 }
 
-/// wgpu tells causes on lines of their own.
+/// wgpu prints each cause of an error on a line of its own.
 fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }

@@ -20,7 +20,7 @@ use std::ops::Range;
 /// On a software adapter, see [`HarnessError::TooManyDraws`].
 const SOFTWARE_DRAWS: usize = 2048;
 
-/// Faces of one material, or of several that look alike, drawn by one call.
+/// Faces of one material, or of several materials with the same appearance, drawn by one call.
 pub(super) struct Batch {
     /// The first of them.
     pub(super) material: usize,
@@ -49,7 +49,7 @@ pub struct GpuScene {
     pub(super) fins: Option<FinsOnDevice>,
     /// What casts shadows, where volumes are drawn.
     pub(super) casting: Option<ShadowCasting>,
-    /// What tells where strokes lie, per vertex, and their map, where surfaces are hatched.
+    /// Per vertex the data that positions strokes, and their tonal art map, where surfaces are hatched.
     pub(super) hatch: Option<(wgpu::Buffer, HatchTextures)>,
 }
 

@@ -51,7 +51,7 @@ pub(super) fn assemble(parts: &Parts) -> String {
 /// The whole shader of surfaces with a shade.
 ///
 /// # Errors
-/// What is wrong with the shade's numbers.
+/// A rule that the shade's numbers break.
 pub fn surface_wgsl(shade: &Shade) -> Result<String, HarnessError> {
     let hatched = matches!(shade, Shade::Hatch(_));
     Ok(assemble(&parts(&shade.model().on_device(&ShadeView::default())?, hatched)))

@@ -54,11 +54,11 @@ pub(crate) struct InkTargets {
     pub(crate) depth: Option<wgpu::TextureView>,
     /// Where shadow volumes are counted for these.
     pub(crate) stencil: StencilTarget,
-    /// Ink as it is found, where it is not laid at once.
+    /// Ink as it is found, where it is not composited at once.
     pub(crate) found: Option<wgpu::TextureView>,
     /// Where there is a dilation.
     pub(crate) dilation: Option<DiscScratch>,
-    /// Ink from the dilation, where it is not laid at once.
+    /// Dilated ink, where it is not composited at once.
     pub(crate) thick: Option<wgpu::TextureView>,
 }
 

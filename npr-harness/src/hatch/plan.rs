@@ -1,4 +1,4 @@
-//! What strokes need of a scene.
+//! The part of a plan that is about strokes.
 
 use super::style::{HatchEncoding, HatchMapping, HatchShade};
 use crate::error::HarnessError;
@@ -8,7 +8,7 @@ use npr_hatch::{HatchError, Tam, Thresholds, density};
 use npr_mesh::Model;
 use std::sync::Arc;
 
-/// What of a vertex tells where strokes lie.
+/// The data of a vertex that positions strokes.
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub struct HatchVertex {
@@ -20,7 +20,7 @@ pub struct HatchVertex {
     pub octave: f32,
 }
 
-/// What is decided about strokes before a picture is drawn.
+/// The part of a plan that is about strokes.
 #[derive(Clone, Debug)]
 pub struct HatchPlan {
     /// The style's, with the mapping that the model allows.

@@ -1,4 +1,4 @@
-//! What lines in the image need of a scene seen by a camera.
+//! The part of a plan that is about lines found in the image.
 
 use super::style::{ImageInk, InkScale, Regions};
 use crate::camera::{Camera, Projection};
@@ -19,10 +19,10 @@ use npr_imagespace::region::{region_of_index, region_of_pairs, region_of_patches
 use npr_mesh::edges::{Edge, EdgeKind};
 use std::sync::Arc;
 
-/// What image-space lines need of a scene seen by a camera.
+/// The part of a plan that is about lines found in the image.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImagePlan {
-    /// What the style asks for; jumps of depth in a parallel view in units of depth.
+    /// The settings of the style; in a parallel view the depth step is in units of depth.
     pub ink: ImageInk,
     /// How eye depth is packed: the scene's own range, as far as the near plane leaves it.
     pub code: DepthCode,
@@ -32,7 +32,7 @@ pub struct ImagePlan {
     pub line_kinds: Vec<LineKind>,
     /// The objects' lines, and those of shadows where they are drawn by the same pass.
     pub lines: ImageLines,
-    /// The lines of shadows where they are drawn apart, under the others.
+    /// The lines of shadows where they are drawn separately, below the others.
     pub shadow_lines: Option<ImageLines>,
     /// Width and height of the target in which they are found, px.
     pub size: (u32, u32),
@@ -49,16 +49,16 @@ struct FaceRegionKey {
     most: u32,
 }
 
-/// What one pass of lines does.
+/// One pass of lines.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImageLines {
     /// What is a line.
     pub filter: FusedFilter,
-    /// Thickens them.
+    /// The disc by which they are dilated, if they are.
     pub dilation: Option<Disc>,
-    /// The passes that thicken, where they are asked for.
+    /// The passes of the dilation, where there is one.
     flood: Option<FloodPlan>,
-    /// How they come over the picture.
+    /// How they are composited over the picture.
     pub composite: Composite,
 }
 
@@ -74,7 +74,7 @@ impl ImageLines {
 
 impl ImagePlan {
     /// # Errors
-    /// What is wrong with the thresholds or the dilation.
+    /// A rule that the thresholds or the dilation break.
     pub(crate) fn new(scene: &Scene, ink: &ImageInk, crease_angle_rad: f32, view: &View) -> Result<Self, HarnessError> {
         ink.validate()?;
         let camera = &view.camera;
@@ -133,12 +133,12 @@ impl ImagePlan {
         }
     }
 
-    /// The passes of lines, in the order in which they are laid.
+    /// The passes of lines, in the order in which they are composited.
     pub fn passes(&self) -> impl Iterator<Item = &ImageLines> {
         self.shadow_lines.iter().chain(std::iter::once(&self.lines))
     }
 
-    /// Whether any lines are thickened.
+    /// Whether any lines are dilated.
     pub fn has_dilation(&self) -> bool {
         self.passes().any(|lines| lines.dilation.is_some())
     }

@@ -1,4 +1,4 @@
-//! What a style says of lines that are found in the image.
+//! The settings of lines found in the image in a style.
 
 use crate::error::HarnessError;
 use crate::schema::within_colors;
@@ -49,7 +49,7 @@ impl InkScale {
     }
 }
 
-/// How lines are found in the image and laid over it.
+/// How lines are found in the image and composited over it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ImageInk {
     /// What is a line. In a parallel view the smallest jump of depth is a share of the diagonal of the model's box: so a
@@ -67,7 +67,7 @@ pub struct ImageInk {
     pub dilation: Option<Disc>,
     /// Of the target in which they are found.
     pub scale: InkScale,
-    /// How they come over the picture.
+    /// How they are composited over the picture.
     pub composite: Composite,
 }
 
@@ -80,7 +80,7 @@ impl ImageInk {
     /// Whether thresholds, dilations and colours are within their ranges.
     ///
     /// # Errors
-    /// Which is not.
+    /// The first that is not.
     pub fn validate(&self) -> Result<(), HarnessError> {
         if let Composite::Over { color, opacity } = self.composite {
             within_colors("a component of the lines' ink", &color.extend(opacity).to_array())?;

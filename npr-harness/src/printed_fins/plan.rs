@@ -1,4 +1,4 @@
-//! What is decided about printed fins before a picture is drawn.
+//! The part of a plan that is about printed fins.
 
 use crate::error::HarnessError;
 use crate::scene::Scene;
@@ -8,7 +8,7 @@ use npr_outline::fin_printed::{PrintedFins, printed_fins};
 use std::convert::Infallible;
 use std::sync::Arc;
 
-/// What a style says of printed fins.
+/// The settings of printed fins in a style.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrintedLines {
     /// Width far away, px.

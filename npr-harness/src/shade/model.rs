@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3, DVec4};
 use npr_toon::painter::{Painter, toon_diffuse};
 use npr_toon::source::Light;
 
-/// What shades know of a scene in a view besides its lights.
+/// The data of a scene and a view that shades read besides the lights.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ShadeView {
     /// The plane (n, d) of which n · p + d is the eye depth of a point p.

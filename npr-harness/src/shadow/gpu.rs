@@ -1,4 +1,4 @@
-//! Shadows on the device: volumes in a stencil, or a map of depths, and what the geometry pass knows of them.
+//! Shadows on the device: volumes in a stencil or a map of depths, and the uniform and textures that surfaces read them from.
 
 use super::plan::{ShadowPlan, ShadowTechnique, VolumeMethod};
 use crate::camera::{Camera, Projection};
@@ -116,7 +116,7 @@ pub(crate) struct ShadowFrame<'a> {
     pub(crate) camera: &'a Camera,
     /// Of the targets, px.
     pub(crate) size: (u32, u32),
-    /// What casts, where volumes are drawn.
+    /// The shadow casters, where volumes are drawn.
     pub(crate) casting: Option<&'a ShadowCasting>,
     /// Positions of vertices, 24 bytes apart, and the faces that cast into a map.
     pub(crate) vertices: &'a wgpu::Buffer,

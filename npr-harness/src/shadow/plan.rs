@@ -1,4 +1,4 @@
-//! What is decided about shadows before a picture is drawn.
+//! The part of a plan that is about shadows.
 
 use super::style::{ShadowMethod, ShadowStyle};
 use crate::error::HarnessError;
@@ -30,7 +30,7 @@ pub struct ShadowPlan {
 pub enum ShadowTechnique {
     /// Shadow volumes, counted in a stencil buffer.
     Volumes {
-        /// What casts.
+        /// The faces and edges that cast.
         casters: Arc<ShadowCasters>,
         /// Who decides which faces and edges bound the volumes.
         method: VolumeMethod,
@@ -57,7 +57,7 @@ pub enum VolumeMethod {
 #[derive(PartialEq)]
 struct CastersKey;
 
-/// What casts shadows in a scene.
+/// The faces and edges of a scene that cast shadows.
 pub fn casters(scene: &Scene) -> Arc<ShadowCasters> {
     let found = scene.derived.get(CastersKey, || {
         let model = &scene.model;

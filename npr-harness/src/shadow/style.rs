@@ -1,4 +1,4 @@
-//! What a style says of shadows.
+//! The settings of shadows in a style.
 
 use crate::error::HarnessError;
 use npr_imagespace::composite::Composite;
@@ -18,7 +18,7 @@ pub enum ShadowMethod {
     },
 }
 
-/// What a style says of shadows.
+/// The settings of shadows in a style.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShadowStyle {
     /// How a device finds them; the CPU follows rays.
@@ -51,18 +51,18 @@ impl ShadowStyle {
 /// How the borders of shadows are drawn, by styles whose lines are found in the image.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum ShadowLines {
-    /// Not at all.
+    /// Shadows have no lines.
     #[default]
     None,
-    /// As Card & Mitchell 2002 have it: normals are negated in shadow, what is turned away included.
+    /// As in Card & Mitchell 2002: normals are negated in shadow, also on surfaces that face away from the light.
     Negated,
     /// Like the objects' lines, by the same pass.
     Lines,
-    /// By a pass of their own, under the objects' lines.
+    /// By a separate pass, below the objects' lines.
     Separate {
-        /// How they come over the picture.
+        /// How they are composited over the picture.
         composite: Composite,
-        /// Thickens them.
+        /// The disc by which they are dilated, if they are.
         dilation: Option<Disc>,
     },
 }

@@ -95,7 +95,7 @@ impl BandAccuracy {
 /// Takes 10 KB a pixel.
 ///
 /// # Errors
-/// What is wrong with the bands.
+/// A rule that the bands break.
 pub fn band_accuracy(
     scene: &Scene,
     camera: &Camera,

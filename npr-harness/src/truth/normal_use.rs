@@ -24,7 +24,7 @@ pub const SEGMENTS: [u32; 5] = [2, 4, 8, 16, 32];
 /// The ways to use normals, from the cheapest.
 pub const USES: [NormalUse; 3] = [NormalUse::PerVertex, NormalUse::Interpolated, NormalUse::PerPixel];
 
-/// So fine that more makes no difference to the numbers told.
+/// So fine that more segments do not change the printed numbers.
 const TRUE_SEGMENTS: u32 = 96;
 const TRUE_SAMPLES: u32 = 8;
 /// Surfaces whose distances from the eye differ by more than this share are not the same.

@@ -30,7 +30,7 @@ use npr_toon::source::{Light, LightKind};
 /// A light, and a view under it.
 #[derive(Clone, Debug)]
 pub struct ShadowShot {
-    /// What is told of it.
+    /// The name of the light and view, as printed.
     pub name: &'static str,
     /// The light.
     pub light: StyleLight,

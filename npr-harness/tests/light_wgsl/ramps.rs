@@ -6,6 +6,7 @@ use glam::{DVec2, DVec3, DVec4, Vec2, Vec4};
 use npr_toon::ramp::{MAX_STOPS, Ramp, RampBlend, RampStop, RampUniform, TOON_STOPS_OVERRIDE, toon_ramp};
 use npr_toon::row::{toon_row_nearest, toon_row_taps};
 use npr_toon::table::{Corner, Ramp2d, Ramp2dUniform, toon_corner, toon_ramp_2d, toon_table_mix};
+use npr_toon::x_toon::{toon_depth_detail, toon_silhouette_detail, toon_x_toon};
 
 /// Stops from `first` on, the others no lower than `low`, some of them next to each other in f32.
 fn any_ramp(random: &Random, blend: RampBlend, stops: u32, first: f32, low: f32) -> Ramp {
@@ -131,6 +132,46 @@ const RAMP_2D: &[Check<Ramp2d>] = &[
     },
 ];
 
+/// Detail, which needs no model, and the mean of two ramps by it.
+const X_TOON: &[Check<Ramp2d>] = &[
+    Check {
+        name: "toon_depth_detail",
+        wgsl: "vec4(toon_depth_detail(a.x, a.y, a.z))",
+        given: |random, _| {
+            let near = random.log_range(1e-3, 1e6);
+            let far = near * random.range(1.2, 100.0);
+            let depth =
+                random.pick(&[near, far, random.range(0.5 * near, 1.2 * far), near * random.log_range(1.0, 100.0)]);
+            [Vec4::new(depth, near, far, 0.0); 4]
+        },
+        rust: |_, g| DVec4::splat(toon_depth_detail(number(g[0].x), number(g[0].y), number(g[0].z))),
+        // WGSL's logarithm is exact to 2^-21 around 1, and the smallest that is divided by is ln 1.2.
+        allowed: |_, _| Allowed::Within(SMALL),
+    },
+    Check {
+        name: "toon_silhouette_detail",
+        wgsl: "vec4(toon_silhouette_detail(a.x, a.y))",
+        given: |random, _| {
+            let n_dot_v = random.pick(&[0.0, 1.0, -1.0, random.range(-1.0, 1.0), random.range(-1.1, 1.1)]);
+            [Vec4::new(n_dot_v, random.log_range(0.25, 16.0), 0.0, 0.0); 4]
+        },
+        rust: |_, g| DVec4::splat(toon_silhouette_detail(number(g[0].x), number(g[0].y))),
+        // The same of log2, times the exponent.
+        allowed: |_, g| Allowed::Within(SMALL + number(g[0].y) * 2f64.powi(-21)),
+    },
+    Check {
+        name: "toon_x_toon",
+        wgsl: "vec4(toon_x_toon(u.a, u.b, a.x, a.y, a.z), 0.0)",
+        given: |random, ramps| {
+            let (width, detail) = (random.width(), random.pick(&[0.0, 1.0, random.unit()]));
+            let places = [places(&ramps.a), places(&ramps.b)].concat();
+            [Vec4::new(random.near(&places, width), width, detail, 0.0); 4]
+        },
+        rust: |ramps, g| color(toon_x_toon(&ramps.a, &ramps.b, number(g[0].x), number(g[0].y), number(g[0].z))),
+        allowed: |_, _| Allowed::Within(SMALL),
+    },
+];
+
 /// Where in a row of some texels over some range; the range, and how many.
 fn place(random: &Random, _: &Ramp) -> Given {
     let (start, length) =
@@ -203,7 +244,8 @@ const ROWS: &[Check<Ramp>] = &[
 
 pub fn calls() -> Vec<&'static str> {
     let expressions = |checks: &[Check<Ramp>]| checks.iter().map(|check| check.wgsl).collect::<Vec<_>>();
-    [expressions(RAMP), expressions(ROWS), RAMP_2D.iter().map(|check| check.wgsl).collect()].concat()
+    let of_two = RAMP_2D.iter().chain(X_TOON).map(|check| check.wgsl).collect();
+    [expressions(RAMP), expressions(ROWS), of_two].concat()
 }
 
 fn pack(ramp: &Ramp) -> RampUniform {
@@ -227,6 +269,7 @@ fn ramps_of_two_lights_are_their_reference() {
     let Some(gpu) = crate::device() else { return };
     let pack = |ramps: &Ramp2d| Ramp2dUniform::new(ramps).expect("they are valid");
     compare(&gpu, npr_toon::WGSL, "ToonRamp2d", &[], &models_2d(), pack, RAMP_2D);
+    compare(&gpu, npr_toon::WGSL, "ToonRamp2d", &[], &models_2d(), pack, X_TOON);
 }
 
 #[test]

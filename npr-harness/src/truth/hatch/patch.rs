@@ -100,7 +100,7 @@ fn square(right: DVec3, up: DVec3) -> Model {
 /// up to 256, for about `least` pixels.
 ///
 /// # Errors
-/// What is wrong with the shade.
+/// A rule that the shade breaks.
 pub fn patch_tones(
     shade: &HatchShade,
     view: PatchView,

@@ -59,7 +59,7 @@ fn normal(camera: &Camera, point_px: DVec2, size_px: DVec2) -> Option<DVec3> {
 /// The error of a sphere of so many segments, hatched with several maps in turn, which differ in their seed alone.
 ///
 /// # Errors
-/// What is wrong with a shade.
+/// A rule that a shade breaks.
 pub fn sphere_error(
     shades: &[HatchShade],
     segments: u32,

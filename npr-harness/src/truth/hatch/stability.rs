@@ -46,7 +46,7 @@ pub struct Stability {
 pub struct Picture<'a> {
     /// What.
     pub scene: &'a Scene,
-    /// How.
+    /// The style.
     pub style: &'a Style,
     /// From where.
     pub camera: &'a Camera,
@@ -83,7 +83,7 @@ fn projected(camera: &Camera, at: DVec3, size_px: DVec2) -> DVec2 {
 /// left out.
 ///
 /// # Errors
-/// What is wrong with a style.
+/// A rule that a style breaks.
 pub fn stability(before: Picture<'_>, after: Picture<'_>, size: (u32, u32)) -> Result<Stability, HarnessError> {
     let size_px = DVec2::new(f64::from(size.0), f64::from(size.1));
     let plan = |of: Picture<'_>| Plan::new(of.scene, of.style, &View::new(*of.camera, size), &Capabilities::RAY_CASTER);
@@ -119,7 +119,7 @@ pub const TO_LIGHT: DVec3 = DVec3::new(0.1, 0.7, 0.7);
 /// How well a hatching stays where it is on a scene, while a camera moves.
 ///
 /// # Errors
-/// What is wrong with the shade.
+/// A rule that the shade breaks.
 pub fn hatch_stability(
     scene: &Scene,
     shade: &HatchShade,
