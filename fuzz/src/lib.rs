@@ -39,8 +39,13 @@ fn model(bytes: &[u8], ending: &str) {
     std::fs::remove_file(&path).expect("it was there");
     let _ = std::fs::remove_dir(&folder);
     let Ok(loaded) = loaded else { return };
-    sound(&loaded.model);
-    if loaded.model.faces.len() > MOST_FACES {
+    loaded.meshes.iter().for_each(sound);
+    assert!(
+        !loaded.objects.is_empty() && loaded.objects.iter().all(|object| object.mesh < loaded.meshes.len()),
+        "objects"
+    );
+    let faces: usize = loaded.objects.iter().map(|object| loaded.meshes[object.mesh].faces.len()).sum();
+    if faces > MOST_FACES {
         return;
     }
     let all = styles();
@@ -50,7 +55,7 @@ fn model(bytes: &[u8], ending: &str) {
     if !is_quick(style) {
         return;
     }
-    draw(&Scene::new(loaded.model), style, sum);
+    draw(&Scene::from(loaded), style, sum);
 }
 
 /// What everything after a loader relies on.

@@ -26,12 +26,12 @@ fn main() {
     };
     println!("on {}", context.describe());
     let model = match arguments.first() {
-        Some(path) => npr_mesh::load(path.as_ref(), &Default::default()).expect("a model").model,
+        Some(path) => npr_mesh::load(path.as_ref(), &Default::default()).expect("a model").into_model(),
         None => npr_mesh::embedded::scene(),
     };
     let scene = Scene::new(model);
-    scene.rays();
-    println!("{} faces, {} × {} px, {FRAMES} frames", scene.model.faces.len(), SIZE.0, SIZE.1);
+    scene.build_rays();
+    println!("{} faces, {} × {} px, {FRAMES} frames", scene.face_count(), SIZE.0, SIZE.1);
     let names: Vec<&str> = arguments.iter().skip(1).map(String::as_str).collect();
     for name in if names.is_empty() { vec!["cartoon"] } else { names } {
         let style = style(name).expect("a style");

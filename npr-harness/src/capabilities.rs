@@ -5,6 +5,9 @@ use crate::error::HarnessError;
 use crate::picture_limits::MEMORY_BYTES;
 use crate::shadow::VolumeMethod;
 
+/// With more objects lines are not found by a pass for each, nor kept for each what bounds its shadow volumes.
+pub const MANY_OBJECTS: usize = 64;
+
 /// The kind of an executor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExecutorKind {
@@ -87,7 +90,7 @@ impl Capabilities {
     /// How lines along edges are found, and why so. On the device edges take [`ContourEdges::device_bytes`] in one buffer.
     ///
     /// [`ContourEdges::device_bytes`]: npr_outline::ContourEdges::device_bytes
-    pub fn edge_lines(&self, edge_bytes: u64) -> (EdgeLineMethod, String) {
+    pub fn edge_lines(&self, edge_bytes: u64, objects: usize) -> (EdgeLineMethod, String) {
         let on_cpu = |why: &str| (EdgeLineMethod::OnCpu, format!("found on the CPU, drawn as rectangles: {why}"));
         match self.kind {
             ExecutorKind::RayCaster => (EdgeLineMethod::OnCpu, "found and drawn on the CPU".into()),
@@ -96,13 +99,14 @@ impl Capabilities {
             _ if !self.vertex_storage => on_cpu("the adapter has no storage buffers in vertex shaders"),
             _ if !self.indirect_draws => on_cpu("the adapter has no draws with arguments in a buffer"),
             _ if edge_bytes > self.storage_bytes => on_cpu("so many edges do not fit the adapter's storage buffers"),
+            _ if objects > MANY_OBJECTS => on_cpu("each of so many objects would be a pass of its own"),
             _ => (EdgeLineMethod::OnDevice, "found and drawn on the device".into()),
         }
     }
 
     /// Who decides what bounds shadow volumes, and why so.
-    pub fn volumes(&self) -> (VolumeMethod, &'static str) {
-        if self.is_software() {
+    pub fn volumes(&self, objects: usize) -> (VolumeMethod, &'static str) {
+        if self.is_software() && objects <= MANY_OBJECTS {
             (VolumeMethod::OnCpu, "bounds found on the CPU: a software rasteriser is slow at many small instances")
         } else {
             (VolumeMethod::OnDevice, "bounds found on the device")

@@ -207,7 +207,7 @@ pub fn run(
         checker.model("painted", &painted_scene(), &painted, &|s| progress(0.5 + s / 2.0))?;
     }
     for (number, input) in inputs.iter().enumerate() {
-        let scene = Scene::new(npr_mesh::load(input, loading)?.model);
+        let scene = Scene::from(npr_mesh::load(input, loading)?);
         let name = input.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
         let aspect = f64::from(SIZE.0) / f64::from(SIZE.1);
         let views = VIEWS.map(|(yaw, pitch)| {
@@ -267,6 +267,7 @@ impl Checker<'_> {
         views: &[(String, Camera)],
         progress: &dyn Fn(f64),
     ) -> Result<(), HarnessError> {
+        let flat = scene.flattened();
         for (number, (view, camera)) in views.iter().enumerate() {
             let hits = PrimaryHits::kept(scene, View::new(*camera, SIZE), PLACES);
             if !self.styles.is_empty() {
@@ -292,8 +293,8 @@ impl Checker<'_> {
                 self.picture(name, view, &hits, &style)?;
             }
             if of_edges {
-                self.lines(name, view, scene, camera)?;
-                self.image_lines(name, view, scene, camera)?;
+                self.lines(name, view, (scene, &flat), camera)?;
+                self.image_lines(name, view, (scene, &flat), camera)?;
             }
             #[cfg(feature = "gpu")]
             if of_edges {
@@ -301,7 +302,7 @@ impl Checker<'_> {
             }
             progress((number + 1) as f64 / views.len() as f64);
         }
-        if self.styles.is_empty() { self.formats(name, scene) } else { Ok(()) }
+        if self.styles.is_empty() { self.formats(name, &flat) } else { Ok(()) }
     }
 
     fn add(
@@ -420,14 +421,20 @@ impl Checker<'_> {
     }
 
     /// Lines 1 px wide against the exact visible contours.
-    fn lines(&mut self, model: &str, view: &str, scene: &Scene, camera: &Camera) -> Result<(), HarnessError> {
+    fn lines(
+        &mut self,
+        model: &str,
+        view: &str,
+        (scene, flat): (&Scene, &Scene),
+        camera: &Camera,
+    ) -> Result<(), HarnessError> {
         let look = LineStyle { width_px: [1.0; 4], ink: [0.0, 0.0, 0.0, 1.0] };
         let corrected = one_px_style(Lines::edges(look));
         let printed = one_px_style(Lines::printed(PrintedLines { width_px: 1.0, ink: Vec3::ZERO }));
-        let truth = true_lines(scene, camera, SIZE, f64::from(corrected.crease_angle_rad));
+        let truth = true_lines(flat, camera, SIZE, f64::from(corrected.crease_angle_rad));
         // Where alpha cuts a face out, its edges are drawn only where something of it is left, and a file's edges say
         // nothing of the new border: the truth does not know of either.
-        let exact = !scene.model.materials.iter().any(|m| matches!(m.alpha_mode, AlphaMode::Mask { .. }));
+        let exact = !scene.materials().iter().any(|m| matches!(m.alpha_mode, AlphaMode::Mask { .. }));
         if !exact {
             self.skipped
                 .push(format!("limits on the lines of {model} ({view}): faces cut out by alpha have no exact lines"));

@@ -207,7 +207,7 @@ impl FrameContext<'_> {
     /// what is in it. With one thread that is the caller's: some platforms have no other.
     fn by_rows<Row>(&self, rows: impl Iterator<Item = Row> + Send, threads: usize, work: impl Fn(Row) + Sync) {
         // Built before the threads ask for it, so that they do not wait for each other.
-        self.scene.rays();
+        self.scene.build_rays();
         let available = std::thread::available_parallelism().map_or(1, usize::from);
         let threads = if threads == 0 { available } else { threads };
         if threads == 1 {
@@ -263,7 +263,7 @@ impl FrameContext<'_> {
                 && !self.is_cut_out(hit, x, y)
                 && !self.is_inset(hit, x, y)
         };
-        self.scene.rays().closest(origin, direction, self.plan.view.camera.depth_range(), is_solid)
+        self.scene.closest(origin, direction, self.plan.view.camera.depth_range(), is_solid)
     }
 
     fn trace_pixel(&self, solid: Option<&Hit>, x: u32, y: u32) -> DVec4 {
@@ -278,7 +278,7 @@ impl FrameContext<'_> {
             let nearer = (range.0, solid.map_or(range.1, |hit| hit.t));
             let is_blended =
                 |hit: &Hit| self.is_shown(hit) && self.is_blended(hit) && self.scene.keeps(origin + direction * hit.t);
-            for hit in self.scene.rays().all(origin, direction, nearer, is_blended).iter().rev() {
+            for hit in self.scene.all(origin, direction, nearer, is_blended).iter().rev() {
                 let over = self.paint(hit, x, y);
                 color = color.lerp(over.truncate(), over.w);
             }

@@ -289,6 +289,23 @@ pub enum HarnessError {
         /// Those there are.
         known: String,
     },
+    /// An object that a transform would make flat.
+    #[error("the transform of object {object} has no inverse")]
+    SingularTransform {
+        /// The number of the object.
+        object: usize,
+    },
+    /// A material of an object's own that cannot replace those of its mesh.
+    #[error(
+        "material {material:?} cannot replace those of object {object}: it has a texture that the scene does not have, or \
+         another alpha mode"
+    )]
+    ObjectMaterial {
+        /// The number of the object.
+        object: usize,
+        /// The name of the material.
+        material: String,
+    },
     /// A cut scene, and lines that do not know of the cut.
     #[error("style {style} draws a model's edges, which a clip plane does not cut; lines in the image are cut with it")]
     ClippedEdges {

@@ -5,6 +5,7 @@
 
 mod adapter;
 pub(crate) mod context;
+pub(crate) mod instances;
 mod materials;
 mod resolve;
 mod scene;
@@ -24,17 +25,22 @@ use crate::error::HarnessError;
 use crate::image_lines::gpu::{InkFrame, InkPasses};
 use crate::picture::Image;
 use crate::plan::Plan;
-use crate::scene::Scene;
+use crate::scene::{Mesh, Object, ObjectLines, Scene};
 use crate::shadow::gpu::{ShadowFrame, ShadowOnDevice, ShadowPasses, StencilTarget};
 use crate::style::Style;
 use crate::view::{View, size_px};
+use glam::{DAffine3, DMat4};
+use npr_outline::ContourEdges;
 use npr_outline::fin_pass::FinPass;
-use npr_outline::line_pass::{LinePass, LineRecord, LineSource, LineTargets, line_records};
+use npr_outline::fin_printed::PrintedFins;
+use npr_outline::line_pass::{LineGroup, LinePass, LineRecord, LineSource, LineTargets, line_records};
 use npr_outline::line_style::LineStyle;
 use npr_outline::normal_format::NormalFormat;
+use npr_outline::segment::LineView;
 use resolve::ResolvePass;
 use shader::LightOnDevice;
 use std::cell::{OnceCell, RefCell};
+use std::sync::Arc;
 use surface::{SurfaceFrame, SurfacePass, SurfaceTargets};
 
 /// Why a pass takes the format of this crate's pictures.
@@ -85,13 +91,17 @@ impl<'a> GpuRenderer<'a> {
         let mut uploaded = GpuScene::new(self.context, self.surface.material_layout(), scene, plan)?;
         if let Some(EdgeLinePlan { contours, method: EdgeLineMethod::OnDevice, .. }) = &plan.edge_lines {
             let pass = self.lines(EdgeLineMethod::OnDevice);
-            uploaded.edges = Some(pass.upload_edges(device, contours, &scene.model.positions)?);
+            let upload = |((_, mesh), contours): ((&Object, &Mesh), &Arc<ContourEdges>)| {
+                pass.upload_edges(device, contours, &mesh.model().positions)
+            };
+            uploaded.edges = Some(scene.placed_objects().zip(contours).map(upload).collect::<Result<_, _>>()?);
         }
         if let Some(shadow) = &plan.shadow {
             uploaded.casting = self.shadows.upload(self.context, &shadow.technique)?;
         }
         if let Some(printed) = &plan.printed_fins {
-            uploaded.fins = Some(self.printed().upload(device, &printed.fins)?);
+            let upload = |fins: &Arc<PrintedFins>| self.printed().upload(device, fins);
+            uploaded.fins = Some(printed.fins.iter().map(upload).collect::<Result<_, _>>()?);
         }
         Ok(uploaded)
     }
@@ -127,6 +137,8 @@ impl<'a> GpuRenderer<'a> {
         let canvas = targets.canvas();
         let view = &plan.view;
         let light = LightOnDevice::new(self.context, plan)?;
+        let regions = plan.image.as_ref().map(|image| &image.regions);
+        uploaded.instances.borrow_mut().update(self.context, scene, regions);
         let frame = SurfaceFrame { device, scene, uploaded, plan, light: &light };
         targets.begin();
         let mut encoder = device.create_command_encoder(&Default::default());
@@ -146,12 +158,15 @@ impl<'a> GpuRenderer<'a> {
             samples: view.samples,
         };
         self.surface.record(&mut encoder, &frame, shadow.as_ref(), &drawn)?;
-        let scale = view.samples as f32;
-        if let (Some(printed), Some(fins), Some(bounds)) = (&plan.printed_fins, &uploaded.fins, scene.bounds()) {
-            let fin_view = view.camera.fin_view(size_px(size), f64::from(printed.style.width_px * scale), bounds);
-            let ink = printed.style.ink.extend(1.0).to_array();
-            let (color, depth) = (&canvas.color_view, &canvas.depth_view);
-            self.printed().record(device, &mut encoder, fins, &fin_view, ink, color, depth)?;
+        let scale = f64::from(view.samples);
+        if let (Some(printed), Some(fins)) = (&plan.printed_fins, &uploaded.fins) {
+            for object in scene.objects().iter().filter(|object| object.lines != ObjectLines::None) {
+                let fin_view = printed.view(scene, object, &view.camera, size_px(size), scale);
+                let Some(fin_view) = fin_view else { continue };
+                let ink = printed.style.ink.extend(1.0).to_array();
+                let (fins, color, depth) = (&fins[object.mesh()], &canvas.color_view, &canvas.depth_view);
+                self.printed().record(device, &mut encoder, fins, &fin_view, ink, color, depth)?;
+            }
         }
         if let Some(edges) = &plan.edge_lines {
             self.edge_lines(&mut encoder, &frame, edges, canvas)?;
@@ -201,6 +216,8 @@ impl<'a> GpuRenderer<'a> {
             casting: frame.uploaded.casting.as_ref(),
             vertices: &frame.uploaded.vertices,
             indices: frame.uploaded.indices.as_ref(),
+            instances: &frame.uploaded.instances.borrow(),
+            solid: &frame.uploaded.solid,
         };
         let mut draw_depth = |encoder: &mut wgpu::CommandEncoder, depth: &wgpu::TextureView| {
             let drawn = SurfaceTargets { color: None, texels: None, depth, size_px: size_px(size), samples: 1 };
@@ -218,20 +235,9 @@ impl<'a> GpuRenderer<'a> {
         canvas: &Targets,
     ) -> Result<(), HarnessError> {
         let View { camera, samples, .. } = &frame.plan.view;
-        let eye = camera.homogeneous_eye();
-        let mut scratch = self.scratch.borrow_mut();
-        let (lines, records) = &mut *scratch;
-        let source = match &frame.uploaded.edges {
-            Some(edges) => LineSource::OnDevice(edges),
-            None => {
-                edges.contours.scan(eye, lines);
-                line_records(&edges.contours, &frame.scene.model.positions, lines, eye, records);
-                LineSource::Records(records)
-            }
-        };
-        let scale = *samples as f32;
-        let style = &LineStyle { width_px: edges.style.width_px.map(|width_px| width_px * scale), ..edges.style };
+        let (scene, scale) = (frame.scene, *samples as f32);
         let view = camera.line_view(size_px((canvas.width, canvas.height)));
+        let eye = camera.homogeneous_eye();
         let line_targets = LineTargets {
             painted: &canvas.color_view,
             depth: &canvas.depth_view,
@@ -240,23 +246,61 @@ impl<'a> GpuRenderer<'a> {
         };
         canvas.begin_ink(encoder);
         // What was uploaded decides, which is of the same plan.
-        let method = if frame.uploaded.edges.is_some() { EdgeLineMethod::OnDevice } else { EdgeLineMethod::OnCpu };
-        self.lines(method).record(frame.device, encoder, source, style, &view, eye, &line_targets)?;
+        let uploaded = frame.uploaded.edges.as_ref();
+        let method = if uploaded.is_some() { EdgeLineMethod::OnDevice } else { EdgeLineMethod::OnCpu };
+        let mut scratch = self.scratch.borrow_mut();
+        let (lines, records) = &mut *scratch;
+        for (number, (style, objects)) in edges.groups(scene).into_iter().enumerate() {
+            if number > 0 {
+                canvas.continue_ink(encoder);
+            }
+            let groups: Vec<LineGroup<'_>> = match uploaded {
+                Some(uploaded) => {
+                    let group = |&number: &u32| {
+                        let object = &scene.objects()[number as usize];
+                        let clip_from_mesh = view.clip_from_world * DMat4::from(*object.scene_from_mesh());
+                        LineGroup {
+                            source: LineSource::OnDevice(&uploaded[number as usize]),
+                            view: LineView { clip_from_world: clip_from_mesh, ..view },
+                            eye: object.homogeneous(eye),
+                        }
+                    };
+                    objects.iter().map(group).collect()
+                }
+                None => {
+                    records.clear();
+                    for number in objects {
+                        let (object, mesh) = scene.placed(number);
+                        let (contours, eye) = (&edges.contours[number as usize], object.homogeneous(eye));
+                        contours.scan(eye, lines);
+                        let first = records.len();
+                        line_records(contours, &mesh.model().positions, lines, eye, records);
+                        records[first..].iter_mut().for_each(|record| place_record(object, record));
+                    }
+                    vec![LineGroup { source: LineSource::Records(records), view, eye }]
+                }
+            };
+            let style = &LineStyle { width_px: style.width_px.map(|width_px| width_px * scale), ..style };
+            self.lines(method).record(frame.device, encoder, &groups, style, &line_targets)?;
+        }
         Ok(())
     }
 
-    /// The lines, in no order, that the device found for the last frame of this upload, or `None` if they were found on
-    /// the CPU.
+    /// The lines, in no order, that the device found for the last frame of this upload, each as object and edge, or `None`
+    /// if they were found on the CPU.
     ///
     /// # Errors
     /// [`HarnessError::Device`].
-    pub fn found_lines(&self, uploaded: &GpuScene) -> Result<Option<Vec<u32>>, HarnessError> {
+    pub fn found_lines(&self, uploaded: &GpuScene) -> Result<Option<Vec<[u32; 2]>>, HarnessError> {
         let Some(edges) = &uploaded.edges else { return Ok(None) };
-        let arguments: Vec<u32> = bytemuck::pod_collect_to_vec(&self.context.read_buffer(edges.arguments())?);
-        let mut lines: Vec<u32> = bytemuck::pod_collect_to_vec(&self.context.read_buffer(edges.lines())?);
-        // The second argument of the draw call is how many instances it has.
-        lines.truncate(arguments[1] as usize);
-        Ok(Some(lines))
+        let mut found = Vec::new();
+        for (object, edges) in (0u32..).zip(edges) {
+            let arguments: Vec<u32> = bytemuck::pod_collect_to_vec(&self.context.read_buffer(edges.arguments())?);
+            let lines: Vec<u32> = bytemuck::pod_collect_to_vec(&self.context.read_buffer(edges.lines())?);
+            // The second argument of the draw call is how many instances it has.
+            found.extend(lines.iter().take(arguments[1] as usize).map(|&line| [object, line]));
+        }
+        Ok(Some(found))
     }
 
     /// What the last frame's surfaces left for lines in the image: normal, region and depth of each pixel of the ink,
@@ -274,6 +318,19 @@ impl<'a> GpuRenderer<'a> {
     /// [`HarnessError::Device`].
     pub fn read(&self, targets: &Targets) -> Result<Image, HarnessError> {
         targets.read(self.context)
+    }
+}
+
+/// Brings a record from the space of an object's mesh to that of the scene.
+fn place_record(object: &Object, record: &mut LineRecord) {
+    if *object.scene_from_mesh() == DAffine3::IDENTITY {
+        return;
+    }
+    let [end0, end1] = [record.end0, record.end1].map(|end| object.point(end.into()).as_vec3().to_array());
+    // A mirrored face's corners run the other way around its normal.
+    (record.end0, record.end1) = if object.is_mirrored() { (end1, end0) } else { (end0, end1) };
+    for normal in [&mut record.normal0, &mut record.normal1] {
+        *normal = object.normal((*normal).into()).as_vec3().to_array();
     }
 }
 

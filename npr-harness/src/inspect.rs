@@ -15,6 +15,10 @@ const CREASE_DEG: f64 = 30.0;
 pub struct Inspection {
     /// The name it was given: as a rule the file's, without folder and ending.
     pub model: String,
+    /// Meshes; a model in memory is one.
+    pub meshes: usize,
+    /// Objects, which place meshes.
+    pub objects: usize,
     /// Triangles; a polygon of n corners makes n − 2.
     pub faces: usize,
     /// Faces whose corners lie on one line or at one place.
@@ -75,6 +79,8 @@ pub fn inspect(name: &str, model: &Model, warnings: Vec<Warning>) -> Inspection 
     let (min, max) = model.bounds().unwrap_or_default();
     Inspection {
         model: name.to_owned(),
+        meshes: 1,
+        objects: 1,
         faces: model.faces.len(),
         zero_area_faces: model.faces.iter().filter(|face| edges::has_zero_area(&model.positions, face)).count(),
         duplicate_faces: duplicate_faces(model, &found.representative),
@@ -207,6 +213,8 @@ impl fmt::Display for Inspection {
         let corner = |[x, y, z]: [f32; 3]| format!("{x} {y} {z}");
         let mut rows = vec![
             ("model", self.model.clone()),
+            ("meshes", self.meshes.to_string()),
+            ("objects", self.objects.to_string()),
             ("faces", self.faces.to_string()),
             ("polygons", self.polygons.to_string()),
             ("vertices", self.vertices.to_string()),

@@ -9,6 +9,7 @@ use crate::capabilities::Capabilities;
 #[cfg(feature = "gpu")]
 use crate::edge_lines::EdgeLineMethod;
 use crate::edge_lines::EdgeLinePlan;
+use crate::edge_lines::plan::device_bytes;
 use crate::error::HarnessError;
 use crate::hatch::{HatchMapping, HatchPlan};
 use crate::image_lines::{ImagePlan, InkScale};
@@ -109,7 +110,7 @@ impl Plan {
         if scene.clip.is_some() && (lines.edges.is_some() || lines.printed.is_some()) {
             return Err(HarnessError::ClippedEdges { style: style.name.clone() });
         }
-        let used = |test: &dyn Fn(&npr_mesh::Material) -> bool| scene.model.materials.iter().any(test);
+        let used = |test: &dyn Fn(&npr_mesh::Material) -> bool| scene.materials().iter().any(test);
         let paint = match style.shade {
             Shade::Paper => None,
             _ => Some(PaintPlan::new(scene, style, &view.camera)?),
@@ -120,14 +121,15 @@ impl Plan {
         };
         let edge_lines = match &lines.edges {
             Some(edges) => {
-                let method = |bytes| capabilities.edge_lines(bytes).0;
+                let method = |bytes| capabilities.edge_lines(bytes, scene.objects().len()).0;
                 Some(EdgeLinePlan::new(scene, edges, style.crease_angle_rad, method)?)
             }
             None => None,
         };
         let printed_fins = lines.printed.map(|printed| PrintedFinPlan::new(scene, printed));
         let cut_out = used(&|m| matches!(m.alpha_mode, AlphaMode::Mask { .. }));
-        let textured = paint.is_some() && (used(&|m| m.texture.is_some()) || !scene.model.colors.is_empty());
+        let colored = || scene.meshes().iter().any(|mesh| !mesh.model().colors.is_empty());
+        let textured = paint.is_some() && (used(&|m| m.texture.is_some()) || colored());
         let says_lines = |image: &ImagePlan| image.line_kinds.iter().any(|&kind| kind != InnerLines::Normals);
         let beside_picture = image.as_ref().is_some_and(|image| !image.own_surfaces);
         let mut plan = Self {
@@ -137,7 +139,7 @@ impl Plan {
             looks_up: textured || cut_out || image.as_ref().is_some_and(says_lines),
             cut_out,
             blended: paint.is_some() && scene.has_blend(),
-            cull_back: scene.closed && scene.clip.is_none() && !sees_the_inside(scene, &view.camera),
+            cull_back: scene.is_closed() && scene.clip.is_none() && !sees_the_inside(scene, &view.camera),
             shadow: None,
             half_float_maps: capabilities.half_float_maps().0,
             passes: Vec::new(),
@@ -167,7 +169,7 @@ impl Plan {
         let in_picture = self.paint.is_some() || drawn.is_some() && !in_lines;
         let Some(shadow) = style.shadow.as_ref().filter(|_| in_picture || in_lines) else { return Ok(None) };
         let light = casting_light(&style.lights, scene, &self.view.camera);
-        let (method, float_depth) = (capabilities.volumes().0, capabilities.float_stencil);
+        let (method, float_depth) = (capabilities.volumes(scene.objects().len()).0, capabilities.float_stencil);
         let technique = ShadowTechnique::new(scene, shadow, light, method, float_depth)?;
         Ok(Some(ShadowPlan { light, terminator: shadow.terminator, technique, in_picture, in_lines }))
     }
@@ -179,7 +181,8 @@ impl Plan {
         let mut methods = Vec::new();
         let mut add = |pass, why: &str| methods.push(Reason { pass, why: why.to_owned() });
         if let Some(EdgeLinePlan { contours, .. }) = &self.edge_lines {
-            add("edge lines", &capabilities.edge_lines(contours.device_bytes(&scene.model.positions)).1);
+            let (bytes, objects) = (device_bytes(scene, contours), scene.objects().len());
+            add("edge lines", &capabilities.edge_lines(bytes, objects).1);
         }
         if let Some(image) = &self.image {
             capabilities.check_size("the ink", image.size)?;
@@ -189,7 +192,7 @@ impl Plan {
                 if self.view.is_parallel() && !capabilities.unclipped_depth {
                     return Err(HarnessError::ParallelVolumes);
                 }
-                add("shadow volumes", capabilities.volumes().1);
+                add("shadow volumes", capabilities.volumes(scene.objects().len()).1);
                 add(
                     "shadow volumes",
                     match float_depth {
@@ -210,7 +213,7 @@ impl Plan {
             add("tonal art map", capabilities.half_float_maps().1);
         }
         if self.looks_up {
-            for texture in &scene.model.textures {
+            for texture in scene.textures() {
                 capabilities.check_size("a texture of the model", (texture.width, texture.height))?;
             }
         }
@@ -244,9 +247,10 @@ impl Plan {
         self.paint.as_ref().and_then(|paint| paint.hatch.as_ref())
     }
 
-    /// The edges that are lines in the plan's view, and how many there are of each [`LineKind`].
-    pub fn lines(&self) -> (Vec<u32>, [usize; LineKind::ALL.len()]) {
-        self.edge_lines.as_ref().map_or_else(Default::default, |lines| lines.lines(self.view.camera.homogeneous_eye()))
+    /// The edges that are lines in the plan's view, each as object and edge, and how many there are of each [`LineKind`].
+    pub fn lines(&self, scene: &Scene) -> (Vec<[u32; 2]>, [usize; LineKind::ALL.len()]) {
+        let eye = self.view.camera.homogeneous_eye();
+        self.edge_lines.as_ref().map_or_else(Default::default, |lines| lines.lines(scene, eye))
     }
 
     /// Lists the passes, and those that are left out, with reasons.

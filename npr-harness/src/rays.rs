@@ -50,6 +50,8 @@ struct Seen {
 pub struct Hit {
     /// How far along, in units of the ray's direction.
     pub t: f64,
+    /// Of which object; a [`RayCaster`] knows of one only, 0.
+    pub object: u32,
     /// Which face.
     pub face: u32,
     /// The weight of each of the face's corners, 0..=1; together 1 but for rounding.
@@ -323,7 +325,7 @@ impl Frame {
         }
         let barycentric = [u / sum, v / sum, w / sum];
         let z = barycentric[0] * a[2] + barycentric[1] * b[2] + barycentric[2] * c[2];
-        Some(Hit { t: z / self.along, face: triangle.face, barycentric, front: sum < 0.0 })
+        Some(Hit { t: z / self.along, object: 0, face: triangle.face, barycentric, front: sum < 0.0 })
     }
 }
 

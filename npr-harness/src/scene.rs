@@ -1,86 +1,280 @@
-//! What a picture shows: a model, ready for both executors, and its light.
+//! What a picture shows: objects, which place meshes, and where their materials' lines come from.
+//!
+//! A mesh is prepared once, however often it is placed. Moving an object rebuilds its matrices and, when a ray is next
+//! cast, the hierarchy over the objects, but nothing of a mesh's size.
+
+mod hierarchy;
+mod mesh;
+mod object;
+
+pub use mesh::Mesh;
+pub use object::{Object, ObjectLines};
 
 use crate::camera::Camera;
 use crate::color::encode_rgb;
-use crate::derived::Derived;
 use crate::error::HarnessError;
-use crate::rays::RayCaster;
+use crate::rays::Hit;
 use crate::suggest::nearest;
 use crate::texture::MipMapped;
-use glam::{DVec3, DVec4, Vec3};
+use glam::{DAffine3, DVec3, DVec4, Vec3};
+use hierarchy::BoxHierarchy;
 use npr_imagespace::artist::LineKind;
-use npr_mesh::edges::{self, EdgeKind, EdgeOptions, Edges};
-use npr_mesh::{AlphaMode, Model};
-use std::sync::OnceLock;
+use npr_mesh::edges::Edges;
+use npr_mesh::{LoadOptions, Loaded, Material, Model, Texture, normals};
+use std::borrow::Cow;
+use std::ops::Range;
+use std::sync::{Arc, OnceLock};
 
-/// A model with everything that is derived from it once.
+/// Meshes, and the objects that place them.
+#[derive(Clone)]
 pub struct Scene {
-    /// Its positions are relative to [`Scene::origin`], and multiplied by [`Scene::scale`]. It must not be changed: what is
-    /// derived from it is kept.
-    pub model: Model,
-    /// What the positions are relative to, in the model's own units: 0, or the model's middle where that is far from 0,
-    /// since f32 positions keep their precision only near 0.
+    meshes: Vec<Arc<Mesh>>,
+    objects: Vec<Object>,
+    /// What the scene's positions are relative to, in the units of the file: 0, or the middle of all objects where that is
+    /// far from 0. It is subtracted in f64, so that nothing far away loses digits.
     pub origin: DVec3,
-    /// What the model's own units are multiplied by: 1, or a power of two where the half of the box's diagonal is not
-    /// within 2⁻²⁰..=2²⁰ of them. Squares and products of lengths then stay within f32, on a device, too.
+    /// What the units of the file are multiplied by: 1, or a power of two, as [`Mesh::scale`].
     pub scale: f64,
-    /// For drawing: redundant faces left out.
-    pub edges: Edges,
+    /// The materials of all meshes, one mesh after the other, then those that objects have of their own.
+    materials: Vec<Material>,
+    /// Per mesh the number of its first material.
+    first_materials: Vec<usize>,
     /// Per material its colour without texture and vertex colour, display-referred.
-    pub material_colors: Vec<DVec3>,
-    /// Whether every edge has two faces, wound alike, so that no back of a face can be seen from outside.
-    pub closed: bool,
+    pub(crate) material_colors: Vec<DVec3>,
+    /// The images that the materials refer to, each once.
+    textures: Vec<Texture>,
     /// Cuts the scene: shown is where n · p + d >= 0 for the plane (n, d), for positions as they are here (see
-    /// [`Scene::plane_here`]). The lines of a model's edges do not know of it; those found in the image do.
+    /// [`Scene::plane_here`]). Lines along edges do not know of it; those found in the image do.
     pub clip: Option<DVec4>,
     /// Per material where its inner lines come from, in styles that ask: [`ImageInk::artist`]. All from their normals
     /// to begin with.
     ///
     /// [`ImageInk::artist`]: crate::image_lines::ImageInk::artist
     pub line_kinds: Vec<LineKind>,
-    rays: OnceLock<RayCaster>,
-    boundary_sides: OnceLock<Vec<u8>>,
-    bounds: OnceLock<Option<(Vec3, Vec3)>>,
-    /// What techniques derive from it.
-    pub(crate) derived: Derived,
+    bounds: Option<(Vec3, Vec3)>,
+    /// Over the boxes of the objects; of a single one there is none.
+    hierarchy: OnceLock<BoxHierarchy>,
     mip_mapped: OnceLock<Vec<MipMapped>>,
 }
 
+impl From<Loaded> for Scene {
+    fn from(loaded: Loaded) -> Self {
+        Self::with_objects(loaded.meshes, loaded.objects)
+    }
+}
+
 impl Scene {
-    /// Finds a model's edges and prepares it. Faces without material get [`npr_mesh::Material::default`].
-    pub fn new(mut model: Model) -> Self {
-        model.fill_face_material();
-        let bounds = model.bounds();
-        let (origin, scale) = normalize(&mut model, bounds);
-        let moved = origin != DVec3::ZERO || scale != 1.0;
-        let edges = edges::find(
-            &model.positions,
-            &model.faces,
-            &model.face_polygon,
-            &model.face_material,
-            &EdgeOptions::default(),
-        );
-        let closed = !edges.edges.is_empty()
-            && edges.skipped.is_empty()
-            && edges.edges.iter().all(|edge| edge.kind() == EdgeKind::TwoFace && !edge.wound_oppositely())
-            && signed_volume(&model) > 0.0;
-        let material_colors = model.materials.iter().map(|m| encode_rgb(m.base_color.truncate().as_dvec3())).collect();
-        let line_kinds = vec![LineKind::Normals; model.materials.len()];
-        Self {
-            model,
+    /// A model as the only object. Faces without material get [`Material::default`].
+    pub fn new(model: Model) -> Self {
+        let world_from_mesh = DAffine3::IDENTITY;
+        Self::with_objects(vec![model], vec![npr_mesh::Object { name: String::new(), mesh: 0, world_from_mesh }])
+    }
+
+    /// Meshes as objects place them.
+    ///
+    /// A mesh that a transform makes flat is placed as a mesh of its own, since the transform has no inverse.
+    ///
+    /// # Panics
+    /// If an object has no mesh.
+    pub fn with_objects(mut models: Vec<Model>, mut placed: Vec<npr_mesh::Object>) -> Self {
+        for object in &mut placed {
+            if !object::is_invertible(&object.world_from_mesh) {
+                let mut flat = models[object.mesh].clone().transformed(&object.world_from_mesh);
+                normals::fill_missing(&mut flat, LoadOptions::default().normal_crease_angle_rad);
+                models.push(flat);
+                (object.mesh, object.world_from_mesh) = (models.len() - 1, DAffine3::IDENTITY);
+            }
+        }
+        let meshes: Vec<Arc<Mesh>> = models.into_iter().map(|model| Arc::new(Mesh::new(model))).collect();
+        let world_box = |object: &npr_mesh::Object| {
+            let mesh = &meshes[object.mesh];
+            let (low, high) = mesh.bounds()?;
+            let of_file = [low, high].map(|corner| corner.as_dvec3() / mesh.scale() + mesh.origin());
+            Some(object::placed_box(&object.world_from_mesh, of_file.into()))
+        };
+        let bounds = placed.iter().filter_map(world_box).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+        let (origin, scale) = bounds.map_or((DVec3::ZERO, 1.0), |(low, high)| mesh::normalization(low, high));
+        let mut scene = Self {
+            meshes,
+            objects: Vec::new(),
             origin,
             scale,
-            edges,
-            material_colors,
-            closed,
+            materials: Vec::new(),
+            first_materials: Vec::new(),
+            material_colors: Vec::new(),
+            textures: Vec::new(),
             clip: None,
-            line_kinds,
-            rays: OnceLock::new(),
-            boundary_sides: OnceLock::new(),
-            bounds: if moved { OnceLock::new() } else { OnceLock::from(bounds) },
-            derived: Derived::default(),
+            line_kinds: Vec::new(),
+            bounds: None,
+            hierarchy: OnceLock::new(),
             mip_mapped: OnceLock::new(),
+        };
+        for mesh in 0..scene.meshes.len() {
+            scene.add_materials(&Arc::clone(&scene.meshes[mesh]));
         }
+        for npr_mesh::Object { name, mesh, world_from_mesh } in placed {
+            let scene_from_mesh = scene.scene_from_mesh(mesh, &world_from_mesh);
+            scene.objects.push(Object::new(name, mesh, scene.first_materials[mesh], scene_from_mesh));
+        }
+        scene.bounds = scene.box_around_objects();
+        scene
+    }
+
+    /// Adds a mesh's materials to the scene's.
+    fn add_materials(&mut self, mesh: &Mesh) {
+        self.first_materials.push(self.materials.len());
+        let textures: Vec<u32> = mesh.model().textures.iter().map(|texture| self.texture_number(texture)).collect();
+        for material in &mesh.model().materials {
+            let texture = material.texture.map(|texture| textures[texture as usize]);
+            self.add_material(Material { texture, ..material.clone() });
+        }
+    }
+
+    fn add_material(&mut self, material: Material) {
+        self.material_colors.push(encode_rgb(material.base_color.truncate().as_dvec3()));
+        self.line_kinds.push(LineKind::Normals);
+        self.materials.push(material);
+    }
+
+    /// Meshes of one file share their images.
+    fn texture_number(&mut self, texture: &Texture) -> u32 {
+        let is_same = |known: &Texture| {
+            Arc::ptr_eq(&known.rgba8, &texture.rgba8)
+                && (known.width, known.wrap, known.smooth) == (texture.width, texture.wrap, texture.smooth)
+        };
+        let known = self.textures.iter().position(is_same);
+        known.unwrap_or_else(|| {
+            self.textures.push(texture.clone());
+            self.textures.len() - 1
+        }) as u32
+    }
+
+    /// From the positions of a mesh as they are kept to those of the scene.
+    fn scene_from_mesh(&self, mesh: usize, world_from_mesh: &DAffine3) -> DAffine3 {
+        let (mesh, DAffine3 { matrix3, translation }) = (&self.meshes[mesh], *world_from_mesh);
+        DAffine3 {
+            matrix3: matrix3 * (self.scale / mesh.scale()),
+            translation: (matrix3 * mesh.origin() + translation - self.origin) * self.scale,
+        }
+    }
+
+    /// Moves an object: `world_from_mesh` is in the units of the file. The scene's origin and scale stay.
+    ///
+    /// # Errors
+    /// [`HarnessError::SingularTransform`].
+    pub fn place(&mut self, object: usize, world_from_mesh: &DAffine3) -> Result<(), HarnessError> {
+        let mesh = self.objects[object].mesh;
+        let scene_from_mesh = self.scene_from_mesh(mesh, world_from_mesh);
+        if !object::is_invertible(&scene_from_mesh) {
+            return Err(HarnessError::SingularTransform { object });
+        }
+        self.objects[object].place(scene_from_mesh);
+        self.bounds = self.box_around_objects();
+        self.hierarchy = OnceLock::new();
+        Ok(())
+    }
+
+    /// Gives all faces of an object a material of its own. Its texture, if it has one, is one of [`Scene::textures`].
+    ///
+    /// # Errors
+    /// [`HarnessError::ObjectMaterial`] where that is blended or cut out and the mesh's is not, or the reverse, or where
+    /// there is no such texture.
+    pub fn set_material(&mut self, object: usize, material: Material) -> Result<(), HarnessError> {
+        let of_mesh = &self.meshes[self.objects[object].mesh].model().materials;
+        let kind = |material: &Material| std::mem::discriminant(&material.alpha_mode);
+        let has_texture = material.texture.is_none_or(|texture| (texture as usize) < self.textures.len());
+        if !has_texture || of_mesh.iter().any(|other| kind(other) != kind(&material)) {
+            return Err(HarnessError::ObjectMaterial { object, material: material.name });
+        }
+        let object = &mut self.objects[object];
+        (object.first_material, object.one_material) = (self.materials.len(), true);
+        self.add_material(material);
+        Ok(())
+    }
+
+    /// The meshes.
+    pub fn meshes(&self) -> &[Arc<Mesh>] {
+        &self.meshes
+    }
+
+    /// The objects, in the order of the file.
+    pub fn objects(&self) -> &[Object] {
+        &self.objects
+    }
+
+    /// To change an object's name or lines.
+    pub fn object_mut(&mut self, object: usize) -> &mut Object {
+        &mut self.objects[object]
+    }
+
+    /// The mesh of an object.
+    pub fn mesh_of(&self, object: &Object) -> &Mesh {
+        &self.meshes[object.mesh]
+    }
+
+    /// An object by its number, with its mesh.
+    pub(crate) fn placed(&self, object: u32) -> (&Object, &Mesh) {
+        let object = &self.objects[object as usize];
+        (object, &self.meshes[object.mesh])
+    }
+
+    /// The mesh of a scene that is [flattened](Scene::flattened).
+    ///
+    /// # Panics
+    /// If it is not.
+    pub(crate) fn single(&self) -> &Mesh {
+        assert_eq!(self.objects.len(), 1, "the scene is not flattened");
+        self.mesh_of(&self.objects[0])
+    }
+
+    /// Objects with their meshes.
+    pub(crate) fn placed_objects(&self) -> impl Iterator<Item = (&Object, &Mesh)> + Clone {
+        self.objects.iter().map(|object| (object, &*self.meshes[object.mesh]))
+    }
+
+    /// All materials: an object's faces have those from [`Scene::material_number`] on.
+    pub fn materials(&self) -> &[Material] {
+        &self.materials
+    }
+
+    /// All images.
+    pub fn textures(&self) -> &[Texture] {
+        &self.textures
+    }
+
+    /// The numbers of a mesh's own materials.
+    pub(crate) fn materials_of(&self, mesh: usize) -> Range<usize> {
+        let first = self.first_materials[mesh];
+        first..first + self.meshes[mesh].model().materials.len()
+    }
+
+    /// The number of the material of an object's face.
+    pub fn material_number(&self, object: u32, face: u32) -> usize {
+        let (object, mesh) = self.placed(object);
+        let own = if object.one_material { 0 } else { mesh.model().face_material[face as usize] as usize };
+        object.first_material + own
+    }
+
+    /// The material of an object's face.
+    pub fn material(&self, object: u32, face: u32) -> &Material {
+        &self.materials[self.material_number(object, face)]
+    }
+
+    /// The corners of an object's face.
+    pub(crate) fn face_corners(&self, object: u32, face: u32) -> [DVec3; 3] {
+        let (object, mesh) = self.placed(object);
+        let model = mesh.model();
+        model.faces[face as usize].map(|v| object.point(model.positions[v as usize]))
+    }
+
+    /// Faces as often as they are placed.
+    pub fn face_count(&self) -> usize {
+        self.placed_objects().map(|(_, mesh)| mesh.model().faces.len()).sum()
+    }
+
+    /// Whether every mesh is closed.
+    pub fn is_closed(&self) -> bool {
+        self.placed_objects().all(|(_, mesh)| mesh.is_closed())
     }
 
     /// Says where the inner lines of all materials of a name come from.
@@ -89,7 +283,7 @@ impl Scene {
     /// [`HarnessError::UnknownMaterial`].
     pub fn set_line_kind(&mut self, material: &str, kind: LineKind) -> Result<(), HarnessError> {
         let mut known = false;
-        for (of, line_kind) in self.model.materials.iter().zip(&mut self.line_kinds) {
+        for (of, line_kind) in self.materials.iter().zip(&mut self.line_kinds) {
             if of.name == material {
                 (known, *line_kind) = (true, kind);
             }
@@ -97,17 +291,20 @@ impl Scene {
         if known {
             return Ok(());
         }
-        let names = self.model.materials.iter().map(|m| format!("{:?}", m.name)).collect::<Vec<_>>().join(", ");
-        let nearest = nearest(material, self.model.materials.iter().map(|m| m.name.as_str())).map(str::to_owned);
-        Err(HarnessError::UnknownMaterial { name: material.to_owned(), nearest, known: names })
+        let mut names: Vec<&str> = self.materials.iter().map(|m| m.name.as_str()).collect();
+        names.sort_unstable();
+        names.dedup();
+        let nearest = nearest(material, names.iter().copied()).map(str::to_owned);
+        let known = names.iter().map(|name| format!("{name:?}")).collect::<Vec<_>>().join(", ");
+        Err(HarnessError::UnknownMaterial { name: material.to_owned(), nearest, known })
     }
 
-    /// A place in the model's own space, in the space of the positions here.
+    /// A place in the file's own space, in the space of the positions here.
     pub fn place_here(&self, place: DVec3) -> DVec3 {
         (place - self.origin) * self.scale
     }
 
-    /// A plane (n, d) of the model's own space, n · p + d = 0, in the space of the positions here: the same plane, with
+    /// A plane (n, d) of the file's own space, n · p + d = 0, in the space of the positions here: the same plane, with
     /// the same sides, and n made unit. n must not be zero.
     pub fn plane_here(&self, plane: DVec4) -> DVec4 {
         // Of any size: first by the largest component, so that no square leaves the range of f64.
@@ -125,62 +322,142 @@ impl Scene {
         self.clip.is_none_or(|plane| plane.dot(point.extend(1.0)) >= 0.0)
     }
 
-    /// The ray caster, built when it is first asked for.
-    pub fn rays(&self) -> &RayCaster {
-        self.rays.get_or_init(|| RayCaster::new(&self.model.positions, &self.model.faces))
+    /// Builds what rays are cast with, if it is not built yet. Several threads that cast rays would wait for it.
+    pub fn build_rays(&self) {
+        self.meshes.iter().for_each(|mesh| {
+            mesh.rays();
+        });
+        self.hierarchy();
     }
 
-    /// Does `work` while other threads build the ray caster. On two cores a picture of 1.1 million faces whose plan is made
-    /// so takes 0.94 of the time, one of 4.4 million 0.89.
+    /// Does `work` while other threads build what rays are cast with. On two cores a picture of 1.1 million faces whose
+    /// plan is made so takes 0.94 of the time, one of 4.4 million 0.89.
     pub fn while_building_rays<R>(&self, work: impl FnOnce() -> R) -> R {
         if std::thread::available_parallelism().map_or(1, usize::from) == 1 {
             return work();
         }
         std::thread::scope(|scope| {
-            scope.spawn(|| self.rays());
+            scope.spawn(|| self.build_rays());
             work()
         })
     }
 
-    /// The model's textures with their mip levels.
-    pub fn mip_mapped(&self) -> &[MipMapped] {
-        self.mip_mapped.get_or_init(|| self.model.textures.iter().map(MipMapped::new).collect())
+    fn hierarchy(&self) -> &BoxHierarchy {
+        self.hierarchy.get_or_init(|| {
+            let around =
+                |(number, (object, mesh)): (u32, (&Object, &Mesh))| Some((number, object.box_around(mesh.bounds()?)));
+            BoxHierarchy::new((0u32..).zip(self.placed_objects()).filter_map(around).collect())
+        })
     }
 
-    /// Per face which of its sides no other face has: bit i for the side from corner i to the next.
-    pub fn boundary_sides(&self) -> &[u8] {
-        self.boundary_sides.get_or_init(|| {
-            let mut sides = vec![0; self.model.faces.len()];
-            for edge in self.edges.edges.iter().filter(|edge| edge.kind() == EdgeKind::Boundary) {
-                let face = edge.faces()[0] as usize;
-                let corners = self.model.faces[face].map(|v| self.edges.representative[v as usize]);
-                for side in 0..3 {
-                    if edge.ends.contains(&corners[side]) && edge.ends.contains(&corners[(side + 1) % 3]) {
-                        sides[face] |= 1 << side;
-                    }
-                }
+    /// Shows `visit` the objects whose boxes a ray meets. It returns the largest t that still matters.
+    fn objects_on_ray(
+        &self,
+        origin: DVec3,
+        direction: DVec3,
+        t_range: (f64, f64),
+        mut visit: impl FnMut(u32, f64) -> f64,
+    ) {
+        match self.objects.len() {
+            1 => {
+                visit(0, t_range.1);
             }
-            sides
-        })
+            _ => self.hierarchy().visit(origin, direction, t_range, visit),
+        }
+    }
+
+    /// The nearest hit with t in `t_range` (both ends included) that `accept` takes; of several at equal t the one on the
+    /// first object, and of that the one on the lowest-numbered face. Otherwise as [`RayCaster::closest`].
+    ///
+    /// [`RayCaster::closest`]: crate::rays::RayCaster::closest
+    pub fn closest(
+        &self,
+        origin: DVec3,
+        direction: DVec3,
+        t_range: (f64, f64),
+        mut accept: impl FnMut(&Hit) -> bool,
+    ) -> Option<Hit> {
+        let mut nearest: Option<Hit> = None;
+        self.objects_on_ray(origin, direction, t_range, |number, t_max| {
+            let (object, mesh) = self.placed(number);
+            let (origin, direction) = object.ray(origin, direction);
+            let hit = mesh
+                .rays()
+                .closest(origin, direction, (t_range.0, t_max), |hit| accept(&Hit { object: number, ..*hit }));
+            let Some(hit) = hit.map(|hit| Hit { object: number, ..hit }) else { return t_max };
+            if nearest.is_none_or(|n| hit.t < n.t || (hit.t == n.t && number < n.object)) {
+                nearest = Some(hit);
+            }
+            hit.t.min(t_max)
+        });
+        nearest
+    }
+
+    /// Every hit with t in `t_range` (both ends included) that `accept` takes, by ascending t, then by object and face.
+    pub fn all(
+        &self,
+        origin: DVec3,
+        direction: DVec3,
+        t_range: (f64, f64),
+        mut accept: impl FnMut(&Hit) -> bool,
+    ) -> Vec<Hit> {
+        let mut hits: Vec<Hit> = Vec::new();
+        self.objects_on_ray(origin, direction, t_range, |number, t_max| {
+            let (object, mesh) = self.placed(number);
+            let (origin, direction) = object.ray(origin, direction);
+            let found = mesh.rays().all(origin, direction, t_range, |hit| accept(&Hit { object: number, ..*hit }));
+            hits.extend(found.into_iter().map(|hit| Hit { object: number, ..hit }));
+            t_max
+        });
+        if self.objects.len() > 1 {
+            hits.sort_by(|a, b| a.t.total_cmp(&b.t).then(a.object.cmp(&b.object)).then(a.face.cmp(&b.face)));
+        }
+        hits
+    }
+
+    /// Whether there is a hit with t in `t_range` (both ends included) that `accept` takes.
+    pub fn any(
+        &self,
+        origin: DVec3,
+        direction: DVec3,
+        t_range: (f64, f64),
+        mut accept: impl FnMut(&Hit) -> bool,
+    ) -> bool {
+        let mut found = false;
+        self.objects_on_ray(origin, direction, t_range, |number, t_max| {
+            let (object, mesh) = self.placed(number);
+            let (origin, direction) = object.ray(origin, direction);
+            found |= mesh.rays().any(origin, direction, t_range, |hit| accept(&Hit { object: number, ..*hit }));
+            // Nothing further matters.
+            if found { f64::NEG_INFINITY } else { t_max }
+        });
+        found
+    }
+
+    /// The textures with their mip levels.
+    pub fn mip_mapped(&self) -> &[MipMapped] {
+        self.mip_mapped.get_or_init(|| self.textures.iter().map(MipMapped::new).collect())
     }
 
     /// Whether any face is blended over what is behind it.
     pub fn has_blend(&self) -> bool {
-        self.model.materials.iter().any(|m| m.alpha_mode == AlphaMode::Blend)
+        self.meshes.iter().any(|mesh| mesh.has_blend())
     }
 
-    /// The positions of all vertices that are corners of faces, each once.
+    /// The positions of all corners of faces, each once for each object.
     pub fn corners(&self) -> impl Iterator<Item = Vec3> + Clone + '_ {
-        let mut used = vec![false; self.model.positions.len()];
-        for &vertex in self.model.faces.iter().flatten() {
-            used[vertex as usize] = true;
-        }
-        self.model.positions.iter().zip(used).filter_map(|(&position, used)| used.then_some(position))
+        self.placed_objects().flat_map(|(object, mesh)| mesh.corners().map(|at| object.point(at).as_vec3()))
     }
 
-    /// Of the model's box, found when it is first asked for; `None` without faces.
+    fn box_around_objects(&self) -> Option<(Vec3, Vec3)> {
+        let boxes = self.placed_objects().filter_map(|(object, mesh)| Some(object.box_around(mesh.bounds()?)));
+        let (low, high) = boxes.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
+        Some((low.as_vec3(), high.as_vec3()))
+    }
+
+    /// The box around the boxes of all objects; `None` without faces.
     pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
-        *self.bounds.get_or_init(|| self.model.bounds())
+        self.bounds
     }
 
     /// The range of eye depth in which the scene lies, before the camera.
@@ -205,43 +482,38 @@ impl Scene {
     pub fn radius(&self) -> f64 {
         self.bounds().map_or(0.0, |(low, high)| f64::from((high - low).length()) / 2.0)
     }
+
+    /// The same scene as one object whose transform is the identity, for what measures and does not render. A scene that is
+    /// so already is returned as it is.
+    pub fn flattened(&self) -> Cow<'_, Self> {
+        if let [object] = &self.objects[..]
+            && *object.scene_from_mesh() == DAffine3::IDENTITY
+            && !object.one_material
+        {
+            return Cow::Borrowed(self);
+        }
+        let (mut flat, mut edges) = (Model::default(), Edges::default());
+        let mut line_kinds = Vec::new();
+        for (object, mesh) in self.placed_objects() {
+            let mut model = mesh.model().clone().transformed(object.scene_from_mesh());
+            for (number, material) in model.materials.iter_mut().enumerate() {
+                let number = object.first_material + if object.one_material { 0 } else { number };
+                // As `append` expects it: numbers of the part's own textures.
+                let texture = if object.one_material { None } else { material.texture };
+                *material = Material { texture, ..self.materials[number].clone() };
+                line_kinds.push(self.line_kinds[number]);
+            }
+            // Objects that touch are not joined.
+            edges.append(&mesh::find_edges(&model), flat.positions.len() as u32, flat.faces.len() as u32);
+            flat.append(&model);
+        }
+        let mut scene = Self::new(flat);
+        scene.meshes = vec![Arc::new(Mesh::with_edges(scene.meshes[0].model().clone(), edges))];
+        (scene.origin, scene.scale, scene.clip) = (self.origin, self.scale, self.clip);
+        scene.line_kinds = line_kinds;
+        Cow::Owned(scene)
+    }
 }
 
 /// Nothing of a scene is so far away that more would show. Its square is well within f32.
 pub(crate) const FARTHEST: f64 = 1e15;
-
-/// Beyond 2 to this, and below 2 to minus this, a scene is brought to another size.
-const OCTAVES: i32 = 20;
-
-/// Moves a model that is far from the origin, measured in its own size, to the origin; then brings one that is very large
-/// or very small to a size of about 1, by a power of two, which rounds nothing. Returns what was subtracted, and then the
-/// factor.
-///
-/// Others stay where they are: a subtraction could round two positions to one. Far away it cannot, since there
-/// the difference of two f32 is exact.
-///
-/// `bounds`: the model's.
-fn normalize(model: &mut Model, bounds: Option<(Vec3, Vec3)>) -> (DVec3, f64) {
-    let Some((low, high)) = bounds else { return (DVec3::ZERO, 1.0) };
-    let (low, high) = (low.as_dvec3(), high.as_dvec3());
-    let (middle, diagonal) = (low.midpoint(high), (high - low).length());
-    if !(middle.is_finite() && diagonal.is_finite()) {
-        return (DVec3::ZERO, 1.0);
-    }
-    let origin = if middle.length() < 4.0 * diagonal { DVec3::ZERO } else { middle.as_vec3().as_dvec3() };
-    let octave = if diagonal > 0.0 { (diagonal / 2.0).log2().floor() as i32 } else { 0 };
-    let scale = if octave.abs() > OCTAVES { 2f64.powi(-octave) } else { 1.0 };
-    if origin != DVec3::ZERO || scale != 1.0 {
-        for position in &mut model.positions {
-            let here = ((position.as_dvec3() - origin) * scale).as_vec3();
-            // What no face uses may lie anywhere, and is not seen.
-            *position = if here.is_finite() { here } else { Vec3::ZERO };
-        }
-    }
-    (origin, scale)
-}
-
-fn signed_volume(model: &Model) -> f64 {
-    let corner = |v: u32| model.positions[v as usize].as_dvec3();
-    model.faces.iter().map(|&[a, b, c]| corner(a).dot(corner(b).cross(corner(c)))).sum::<f64>() / 6.0
-}

@@ -23,7 +23,7 @@ impl MipMapped {
     /// Halves the image until one texel is left. Each texel of a level is the mean, in linear light, of those that it
     /// covers; of an odd size the last row or column is shared out by area.
     pub fn new(texture: &Texture) -> Self {
-        let mut levels = vec![(texture.width, texture.height, texture.rgba8.clone())];
+        let mut levels = vec![(texture.width, texture.height, texture.rgba8.to_vec())];
         // The largest level is decoded where it is read: in f64 it would take eight times its bytes.
         let decoded = |at: usize| {
             let texel = &texture.rgba8[4 * at..4 * at + 4];
@@ -151,7 +151,14 @@ mod tests {
     use super::*;
 
     fn texture(width: u32, height: u32, rgba8: Vec<u8>) -> Texture {
-        Texture { name: String::new(), width, height, rgba8, wrap: [Wrap::Repeat, Wrap::Mirror], smooth: true }
+        Texture {
+            name: String::new(),
+            width,
+            height,
+            rgba8: rgba8.into(),
+            wrap: [Wrap::Repeat, Wrap::Mirror],
+            smooth: true,
+        }
     }
 
     #[test]

@@ -158,19 +158,19 @@ fn lines_are_found_on_the_cpu_for_the_reason_that_is_there() {
         storage_bytes: 1 << 27,
         memory_bytes: 1 << 31,
     };
-    assert_eq!(all.edge_lines(1 << 27), (EdgeLineMethod::OnDevice, "found and drawn on the device".to_owned()));
+    assert_eq!(all.edge_lines(1 << 27, 1), (EdgeLineMethod::OnDevice, "found and drawn on the device".to_owned()));
     for (missing, reason) in [
         (Capabilities { storage_bytes: 1 << 19, ..all.clone() }, "so many edges"),
         (Capabilities { compute: false, ..all.clone() }, "compute shaders"),
         (Capabilities { vertex_storage: false, ..all.clone() }, "storage buffers in vertex shaders"),
         (Capabilities { indirect_draws: false, ..all.clone() }, "draws with arguments in a buffer"),
     ] {
-        let (method, why) = missing.edge_lines(1 << 20);
+        let (method, why) = missing.edge_lines(1 << 20, 1);
         assert_eq!(method, EdgeLineMethod::OnCpu, "{reason}");
         assert!(why.contains(reason), "{why}");
     }
     let software = Capabilities { kind: ExecutorKind::SoftwareAdapter, ..all };
-    assert_eq!(software.edge_lines(1 << 20).0, EdgeLineMethod::OnCpu);
+    assert_eq!(software.edge_lines(1 << 20, 1).0, EdgeLineMethod::OnCpu);
 }
 
 #[test]
@@ -263,7 +263,7 @@ fn a_texture_beyond_the_limits_is_refused_by_name() {
     let texels = |width: u32| Texture {
         width,
         height: 1,
-        rgba8: vec![128; 4 * width as usize],
+        rgba8: vec![128; 4 * width as usize].into(),
         ..common::waves(1, 1, [Wrap::Repeat; 2], true)
     };
     for (width, fits) in [(2048, true), (2049, false)] {

@@ -133,7 +133,7 @@ fn shared_models_from_one_view() {
         [("suzanne.obj", 40.0, 15.0), ("Fox.glb", 75.0, 20.0), ("fandisk.obj", 200.0, 30.0)]
     {
         let path = folder.join(file);
-        let scene = Scene::new(npr_mesh::load(&path, &Default::default()).expect("a good file").model);
+        let scene = Scene::from(npr_mesh::load(&path, &Default::default()).expect("a good file"));
         let views = [("one".to_owned(), framed(&scene, yaw_deg, pitch_deg, Some(0.6)))];
         let out = Folder::new();
         let report = check::scene(&executor, file, &scene, &views, &out.0).expect("pictures");

@@ -19,7 +19,8 @@ fn the_counts_of_real_models_are_right() {
         let row: Vec<&str> = line.split('\t').collect();
         let name = row[0];
         let loaded = npr_mesh::load(&folder.join(format!("{name}.obj")), &Default::default()).expect("a good file");
-        let counted = serde_json::to_value(inspect(name, &loaded.model, loaded.warnings)).expect("plain numbers");
+        let warnings = loaded.warnings.clone();
+        let counted = serde_json::to_value(inspect(name, &loaded.into_model(), warnings)).expect("plain numbers");
         let slack: u64 =
             row[columns.iter().position(|&c| c == "within_0.01_deg_of_30").expect("there")].parse().expect("a number");
         for (&column, &expected) in columns.iter().zip(&row).skip(1) {

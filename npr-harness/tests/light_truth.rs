@@ -49,7 +49,7 @@ fn antialiased_borders_err_and_flicker_less_than_hard_ones() {
 #[test]
 fn borders_on_real_models() {
     let Some(folder) = shared_models() else { return };
-    let load = |file: &str| npr_mesh::load(&folder.join(file), &Default::default()).expect("it loads").model;
+    let load = |file: &str| npr_mesh::load(&folder.join(file), &Default::default()).expect("it loads").into_model();
     let [found, _] = measured("spot", &load("spot.obj"), (240, 135), 1);
     assert!(found.rmse_ratio() < MOST_ERROR && found.excess_ratio() < MOST_FLICKER, "{found:?}");
     // Where its parts run into each other one tone ends in another, and no border of bands is there to be smoothed.
@@ -69,7 +69,7 @@ fn borders_on_real_models() {
 fn table_of_borders() {
     let Some(folder) = shared_models() else { return };
     for name in ["stanford-bunny.obj", "teapot.obj", "spot.obj"] {
-        let model = npr_mesh::load(&folder.join(name), &Default::default()).expect("it loads").model;
+        let model = npr_mesh::load(&folder.join(name), &Default::default()).expect("it loads").into_model();
         for samples in [1, 2] {
             measured(name, &model, (640, 360), samples);
         }

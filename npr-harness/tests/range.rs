@@ -255,7 +255,7 @@ fn awkward_extents_end_in_a_picture_of_finite_numbers() {
                 for fov_y_rad in [Some(0.6), None] {
                     let scene = Scene::new(model.clone());
                     let shown = picture(executor, &scene, &style, fov_y_rad);
-                    assert!(scene.model.positions.iter().all(|p| p.is_finite()));
+                    assert!(scene.meshes()[0].model().positions.iter().all(|p| p.is_finite()));
                     // All but the triangle without area, and what is a mere dot beside an outlier.
                     if name == "cartoon" && ![4, 7, 8].contains(&number) {
                         let first = &shown.rgba8[..4];

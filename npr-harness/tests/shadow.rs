@@ -100,7 +100,7 @@ fn table_of_masks_and_lines() {
         ["stanford-bunny.obj", "teapot.obj", "fandisk.obj", "CesiumMilkTruck.glb", "suzanne.obj", "beetle-alt.obj"];
     let mut models = vec![("built-in scene".to_owned(), embedded::scene())];
     if let Some(folder) = shared_models() {
-        let load = |name: &str| npr_mesh::load(&folder.join(name), &Default::default()).expect("it loads").model;
+        let load = |name: &str| npr_mesh::load(&folder.join(name), &Default::default()).expect("it loads").into_model();
         models.extend(wanted.map(|name| (name.to_owned(), load(name))));
     }
     for (name, model) in models {
@@ -190,7 +190,7 @@ fn table_of_maps() {
     let Some(executor) = device() else { return };
     let mut models = vec![("built-in scene", embedded::scene())];
     if let Some(folder) = shared_models() {
-        let load = |name: &str| npr_mesh::load(&folder.join(name), &Default::default()).expect("it loads").model;
+        let load = |name: &str| npr_mesh::load(&folder.join(name), &Default::default()).expect("it loads").into_model();
         models.extend(["stanford-bunny.obj", "teapot.obj", "CesiumMilkTruck.glb"].map(|name| (name, load(name))));
     }
     for (name, model) in models {

@@ -198,7 +198,7 @@ fn what_is_wrong_is_said_in_one_line() {
         (&["--width-px", "65"], "width_px is 65"),
         (&["--width-px", "NaN"], "width_px is NaN"),
         (&["--length", "0,1"], "length is 0"),
-        (&["--length", "0.5,0.4"], "length goes from 0.5 to 0.4"),
+        (&["--length", "0.5,0.4"], "length is the range from 0.5 to 0.4"),
         (&["--angle", "400"], "angle_deg is 400"),
         (&["--jitter", "-1"], "jitter_deg is -1"),
         (&["--bow", "1"], "bow is 1"),

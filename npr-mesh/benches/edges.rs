@@ -56,7 +56,7 @@ fn bench(name: &str, model: &Model, rounds: usize) {
 fn main() {
     let bunny = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/data/stanford-bunny.obj"));
     let (name, model) = if bunny.exists() {
-        ("bunny", npr_mesh::load(bunny, &Default::default()).expect("the bunny loads").model)
+        ("bunny", npr_mesh::load(bunny, &Default::default()).expect("the bunny loads").into_model())
     } else {
         ("torus (the bunny is missing)", npr_mesh::embedded::torus(1.0, 0.4, 264, 132))
     };

@@ -41,7 +41,7 @@ fn main() {
             black_box(npr_mesh::load(path, &Default::default()).expect("it loads"));
         });
         time_ms(&mut whole, || {
-            let model = npr_mesh::load(path, &Default::default()).expect("it loads").model;
+            let model = npr_mesh::load(path, &Default::default()).expect("it loads").into_model();
             let found = edges::find(
                 &model.positions,
                 &model.faces,

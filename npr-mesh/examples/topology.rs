@@ -24,7 +24,7 @@ fn main() -> Result<(), LoadError> {
 
 #[cfg(any(feature = "obj", feature = "gltf"))]
 fn read(path: PathBuf) -> Result<Model, LoadError> {
-    Ok(npr_mesh::load(&path, &Default::default())?.model)
+    Ok(npr_mesh::load(&path, &Default::default())?.into_model())
 }
 
 /// Without loaders every format is unknown.

@@ -108,6 +108,26 @@ impl Edges {
         .collect()
     }
 
+    /// Appends the edges of another model, whose vertices and faces are counted from these numbers on. The two share no
+    /// edge, even where they touch.
+    ///
+    /// # Panics
+    /// If there are then more than [`MOST_FACES`] faces.
+    pub fn append(&mut self, other: &Edges, first_vertex: u32, first_face: u32) {
+        let (edges, faces) = (self.edges.len() as u32, first_face as usize + other.face_normals.len());
+        assert!(faces <= MOST_FACES, "{faces} faces, of which at most {MOST_FACES} can be numbered");
+        self.edges.extend(other.edges.iter().map(|edge| edge.moved(first_vertex, first_face)));
+        self.folds.extend(other.folds.iter().map(|fold| fold.moved(first_vertex, first_face)));
+        self.face_normals.extend_from_slice(&other.face_normals);
+        self.representative.extend(other.representative.iter().map(|vertex| vertex + first_vertex));
+        self.further_faces.extend(other.further_faces.iter().map(|(edge, face)| (edge + edges, face + first_face)));
+        if !(self.skipped.is_empty() && other.skipped.is_empty()) {
+            self.skipped.resize(first_face as usize, false);
+            self.skipped.extend_from_slice(&other.skipped);
+            self.skipped.resize(faces, false);
+        }
+    }
+
     /// The dihedral angle in radians: 0 where the surface is flat, π where it folds back. `None` as for
     /// [`Edges::cos_dihedral`].
     pub fn dihedral_rad(&self, edge: &Edge) -> Option<f32> {

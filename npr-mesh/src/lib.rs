@@ -1,9 +1,9 @@
-//! Loads model files into plain arrays of clean triangles with normals, and finds their edges.
+//! Loads model files into meshes, plain arrays of clean triangles with normals, and finds their edges.
 //!
 //! ```
 //! use npr_mesh::{edges, embedded};
 //!
-//! let model = embedded::cube(); // or, from a file: npr_mesh::load(path, &Default::default())?.model
+//! let model = embedded::cube(); // or, from a file: npr_mesh::load(path, &Default::default())?.into_model()
 //! let found =
 //!     edges::find(&model.positions, &model.faces, &model.face_polygon, &model.face_material, &Default::default());
 //! let creases = found.edges.iter().filter(|edge| found.dihedral_rad(edge) > Some(30f32.to_radians()));
@@ -11,8 +11,9 @@
 //! ```
 //!
 //! [`Model`] consists of plain arrays: positions, normals, texture coordinates, triangles. `load` reads `.obj`
-//! (feature `obj`), `.gltf` and `.glb` (feature `gltf`); [`embedded`] has built-in models. Both features are enabled
-//! by default.
+//! (feature `obj`), `.gltf` and `.glb` (feature `gltf`): the meshes of the file, each once as a `Model` of its own, and
+//! the [`Object`]s that place them. `Loaded::into_model` puts all objects into one model in world space. [`embedded`]
+//! has built-in models. Both features are enabled by default.
 //!
 //! # Rules
 //!
@@ -20,9 +21,13 @@
 //!   that texture and normal seams are not boundaries. For shading they remain separate.
 //! - A polygon of n corners becomes n − 2 triangles ([`triangulate`]). Diagonals are not edges, and all triangles of
 //!   a polygon have its Newell normal.
-//! - Missing normals are computed ([`normals`]): weighted by angle, and split at creases.
+//! - Missing normals are computed within each mesh ([`normals`]): weighted by angle, and split at creases.
 //! - Coarse models can be smoothed by their normals ([`pn_triangles`]): closed surfaces remain closed, and edges
 //!   within a smoothed face can be contours.
+//! - A mesh that several nodes place is loaded once. Skinned nodes and nodes with other morph weights have a mesh of
+//!   their own.
+//! - Faces are counter-clockwise seen from outside in the space of their mesh. A mirroring transform does not turn a
+//!   mesh inside out: [`Model::transformed`] reverses the faces.
 //! - There is a rule for non-manifold edges, opposite windings, faces of zero area and duplicate faces, see
 //!   [`edges`]. None of them removes a line that should be visible.
 //! - Files are not trusted: indices, lengths, types and numbers are checked before use, and sizes are checked against
@@ -54,8 +59,10 @@ mod limits;
 mod load;
 mod model;
 pub mod normals;
+mod object;
 pub mod pn_triangles;
 pub mod subdivide;
+mod transform;
 pub mod triangulate;
 pub mod weld;
 
@@ -67,6 +74,7 @@ pub use limits::Limits;
 #[cfg(any(feature = "obj", feature = "gltf"))]
 pub use load::{LoadOptions, Loaded, Warning, load};
 pub use model::{AlphaMode, Material, Model, Texture, Wrap};
+pub use object::Object;
 
 /// Compiles the example of the README.
 #[cfg(all(doctest, any(feature = "obj", feature = "gltf")))]

@@ -9,20 +9,21 @@
 pub struct Limits {
     /// Bytes of the model file, and of all files together that it refers to.
     pub file_bytes: u64,
-    /// Vertices of the flattened scene, including all instances.
+    /// Vertices of all objects: a mesh counts for every object that places it. This and the next limit also bound the
+    /// model of `Loaded::into_model`.
     pub vertices: u64,
-    /// Triangles of the flattened scene, including all instances; never more than [`crate::edges::MOST_FACES`].
+    /// Triangles of all objects, counted likewise; never more than [`crate::edges::MOST_FACES`].
     pub faces: u64,
     /// Vertices, and likewise triangles, that need not be backed by data. Above this number there must be 8 bytes per
-    /// element in the file and its buffers. It limits the amplification by instances and by accessors without data.
+    /// element in the file and its buffers. It limits the amplification by objects and by accessors without data.
     pub repeated: u64,
     /// Corners of one polygon.
     pub polygon_corners: u64,
     /// Nodes of a glTF file.
     pub nodes: u64,
-    /// Primitives of glTF meshes, including all instances.
+    /// Primitives of all objects of a glTF file, counted like vertices.
     pub instances: u64,
-    /// Morph target displacements and joint weights that are read, including all instances.
+    /// Morph target displacements and joint weights that are read, for every skinned node anew.
     pub displacements: u64,
     /// Texels of one image.
     pub texels: u64,

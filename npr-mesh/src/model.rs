@@ -1,8 +1,9 @@
-//! The triangles of a scene as plain arrays.
+//! Triangles as plain arrays.
 
 use glam::{Vec2, Vec3, Vec4};
+use std::sync::Arc;
 
-/// A flattened scene: every mesh instance posed and in world space, in one vertex array.
+/// Triangles in one vertex array, with their materials: a mesh, or several meshes in one space.
 ///
 /// A *vertex* is a shading vertex: a position with its normal, texture coordinate and colour. Several vertices may
 /// have one position, for instance at a texture seam; [`crate::edges`] treats them as one.
@@ -10,7 +11,7 @@ use glam::{Vec2, Vec3, Vec4};
 /// Parallel arrays have equal lengths or, where stated, may be empty.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Model {
-    /// Per vertex: the position in world space, right-handed, Y up.
+    /// Per vertex: the position, right-handed, Y up.
     pub positions: Vec<Vec3>,
     /// Per vertex: the unit normal for shading.
     pub normals: Vec<Vec3>,
@@ -24,8 +25,8 @@ pub struct Model {
     /// Per face, or empty if faces have no material: an index into [`Model::materials`]. Faces without material are
     /// opaque.
     pub face_material: Vec<u32>,
-    /// Per face, or empty if there is one mesh: the index of its mesh. A mesh is the mesh of a node in a glTF file,
-    /// and an object or group in an `.obj` file. Appended models keep their meshes.
+    /// Per face, or empty if there is one mesh: the index of its mesh. A mesh is an object or group in an `.obj` file,
+    /// and each of several objects in one model. Appended models keep their meshes.
     pub face_mesh: Vec<u32>,
     /// Per face, or empty if every face is a polygon of its own: the index of the polygon of the file that the face
     /// was cut from. Faces of one polygon are adjacent and the indices ascend. An edge between two faces of one
@@ -90,7 +91,8 @@ pub struct Texture {
     /// Height in texels.
     pub height: u32,
     /// `width * height * 4` bytes, rows from the top: sRGB-encoded red, green, blue, and linear alpha.
-    pub rgba8: Vec<u8>,
+    /// Textures of several models may share them.
+    pub rgba8: Arc<[u8]>,
     /// The addressing outside 0..1 along u and v.
     pub wrap: [Wrap; 2],
     /// Whether magnification interpolates linearly or shows the nearest texel.
@@ -98,7 +100,7 @@ pub struct Texture {
 }
 
 /// The addressing of a texture outside 0..1.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Wrap {
     /// The texture repeats.
     #[default]
@@ -124,19 +126,39 @@ impl Model {
         }
     }
 
-    /// Appends another scene.
+    /// Appends another model.
     ///
-    /// Optional arrays that only one of the scenes has are filled for the other: texture coordinates with zeros,
+    /// Optional arrays that only one of the models has are filled for the other: texture coordinates with zeros,
     /// colours with white, polygons with one per face, materials with [`Material::default`]. The meshes of both
-    /// scenes remain distinct.
+    /// models remain distinct.
     pub fn append(&mut self, other: &Model) {
         let has_materials = !self.face_material.is_empty() || !other.face_material.is_empty();
         if has_materials {
             self.fill_face_material();
         }
-        let first_vertex = self.positions.len() as u32;
         let first_material = self.materials.len() as u32;
         let first_texture = self.textures.len() as u32;
+        if !self.faces.is_empty() || !other.face_mesh.is_empty() {
+            self.face_mesh.resize(self.faces.len(), 0);
+            let first_mesh = self.face_mesh.iter().max().map_or(0, |last| last + 1);
+            let of = |face: usize| other.face_mesh.get(face).copied().unwrap_or(0);
+            self.face_mesh.extend((0..other.faces.len()).map(|face| first_mesh + of(face)));
+        }
+        self.append_geometry(other);
+        self.face_material.extend(other.face_material.iter().map(|m| m + first_material));
+        self.materials.extend(
+            other.materials.iter().map(|m| Material { texture: m.texture.map(|t| t + first_texture), ..m.clone() }),
+        );
+        self.textures.extend_from_slice(&other.textures);
+        if has_materials && other.face_material.is_empty() && !other.faces.is_empty() {
+            self.face_material.resize(self.faces.len(), self.materials.len() as u32);
+            self.materials.push(Material::default());
+        }
+    }
+
+    /// Appends the vertices, faces and polygons of another model, without its materials and meshes.
+    pub(crate) fn append_geometry(&mut self, other: &Model) {
+        let first_vertex = self.positions.len() as u32;
         append_optional(&mut self.uvs, self.positions.len(), &other.uvs, other.positions.len(), Vec2::ZERO);
         append_optional(&mut self.colors, self.positions.len(), &other.colors, other.positions.len(), Vec4::ONE);
         if !self.face_polygon.is_empty() || !other.face_polygon.is_empty() {
@@ -150,24 +172,9 @@ impl Model {
                 self.face_polygon.extend(other.face_polygon.iter().map(|p| first_polygon + p));
             }
         }
-        if !self.faces.is_empty() || !other.face_mesh.is_empty() {
-            self.face_mesh.resize(self.faces.len(), 0);
-            let first_mesh = self.face_mesh.iter().max().map_or(0, |last| last + 1);
-            let of = |face: usize| other.face_mesh.get(face).copied().unwrap_or(0);
-            self.face_mesh.extend((0..other.faces.len()).map(|face| first_mesh + of(face)));
-        }
         self.positions.extend_from_slice(&other.positions);
         self.normals.extend_from_slice(&other.normals);
         self.faces.extend(other.faces.iter().map(|f| f.map(|v| v + first_vertex)));
-        self.face_material.extend(other.face_material.iter().map(|m| m + first_material));
-        self.materials.extend(
-            other.materials.iter().map(|m| Material { texture: m.texture.map(|t| t + first_texture), ..m.clone() }),
-        );
-        self.textures.extend_from_slice(&other.textures);
-        if has_materials && other.face_material.is_empty() && !other.faces.is_empty() {
-            self.face_material.resize(self.faces.len(), self.materials.len() as u32);
-            self.materials.push(Material::default());
-        }
     }
 
     /// The corners of the axis-aligned bounding box of all vertices that faces use, or `None` without faces.

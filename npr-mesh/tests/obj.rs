@@ -3,7 +3,7 @@
 #![allow(clippy::print_stdout)] // A test that is skipped says so.
 
 use glam::{Vec2, Vec3};
-use npr_mesh::{AlphaMode, Limits, LoadError, LoadOptions, Loaded, Wrap, load};
+use npr_mesh::{AlphaMode, Limits, LoadError, LoadOptions, Loaded, Object, Wrap, load};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -40,7 +40,7 @@ fn try_text(text: impl AsRef<[u8]>) -> Result<Loaded, LoadError> {
 
 fn text(text: impl AsRef<[u8]>) -> Loaded {
     let loaded = try_text(text).unwrap();
-    let m = &loaded.model;
+    let m = &loaded.meshes[0];
     let n = m.positions.len();
     assert_eq!(m.normals.len(), n);
     assert!(m.uvs.is_empty() || m.uvs.len() == n);
@@ -69,7 +69,7 @@ fn a_triangle_and_all_ways_to_write_a_corner() {
     for face in
         ["1 2 3", "1/1 2/2 3/3", "1//1 2//2 3//3", "1/1/1 2/2/2 3/3/3", "-3/-3/-3 -2/-2/-2 -1/-1/-1", "1/ 2/ 3/"]
     {
-        let m = text(format!("{arrays}f {face}\n")).model;
+        let m = text(format!("{arrays}f {face}\n")).into_model();
         assert_eq!(m.faces, [[0, 1, 2]]);
         assert_eq!(m.normals, [Vec3::Z; 3], "{face}");
         assert!(m.face_polygon.is_empty());
@@ -82,7 +82,7 @@ fn a_triangle_and_all_ways_to_write_a_corner() {
 
 #[test]
 fn comments_continued_lines_line_ends_and_byte_order_marks_do_no_harm() {
-    let plain = text(format!("{TRIANGLE}f 1 2 3\n")).model;
+    let plain = text(format!("{TRIANGLE}f 1 2 3\n")).into_model();
     for same in [
         format!("# a\n####\n{TRIANGLE}f 1 2 3 # behind\n"),
         format!("\u{feff}{TRIANGLE}f 1 2 3"),
@@ -92,26 +92,27 @@ fn comments_continued_lines_line_ends_and_byte_order_marks_do_no_harm() {
         format!("\t{TRIANGLE}   f\t1\t2  3 \n"),
         format!("{TRIANGLE}g\no \ns off\nusemtl\nmtllib\nvp 1 2\nf 1 2 3\nl 1 2 3\nl 1 2\np 1\ncstype bezier\n"),
     ] {
-        assert_eq!(text(&same).model, plain, "{same:?}");
+        assert_eq!(text(&same).into_model(), plain, "{same:?}");
     }
     let latin1 = [b"# caf\xe9\ng \xff\n", format!("{TRIANGLE}f 1 2 3\n").as_bytes()].concat();
-    assert_eq!(text(latin1).model, plain);
+    assert_eq!(text(latin1).into_model(), plain);
 }
 
 #[test]
 fn polygons_count_n_minus_2_faces_and_are_numbered() {
-    let m = text("v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nv 3 1 0\nf 2 5 3\nf 1 2 3 4\nf 1 2 5 3 4\nf 1 1 1\n").model;
+    let m =
+        text("v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nv 3 1 0\nf 2 5 3\nf 1 2 3 4\nf 1 2 5 3 4\nf 1 1 1\n").into_model();
     assert_eq!(m.faces.len(), 1 + 2 + 3 + 1);
     assert_eq!(m.face_polygon, [0, 1, 1, 2, 2, 2, 3]);
     // Polygons are numbered from the first face on, also across materials.
-    let m = text(format!("{TRIANGLE}v 1 1 0\nf 1 2 3\nusemtl a\nf 2 4 3\nf 1 2 4 3\nusemtl b\nf 1 2 3\n")).model;
+    let m = text(format!("{TRIANGLE}v 1 1 0\nf 1 2 3\nusemtl a\nf 2 4 3\nf 1 2 4 3\nusemtl b\nf 1 2 3\n")).into_model();
     assert_eq!(m.face_polygon, [0, 1, 2, 2, 3]);
 }
 
 #[test]
 fn faces_of_two_corners_are_left_out_with_a_warning() {
     let loaded = text(format!("{TRIANGLE}f 1 2\nf 1\nf\nf 1 2 3\n"));
-    assert_eq!(loaded.model.faces.len(), 1);
+    assert_eq!(loaded.meshes[0].faces.len(), 1);
     assert!(loaded.warnings.iter().any(|w| w.text.starts_with("3 faces")), "{:?}", loaded.warnings);
 }
 
@@ -132,7 +133,7 @@ fn materials_that_no_file_defines_are_one_warning() {
 #[test]
 fn an_absent_normal_or_texture_coordinate_is_not_the_one_before() {
     let m = text(format!("{TRIANGLE}v 0 0 1\nvt 0.5 0.25\nvn 1 0 0\nf 1/1/1 2/1/1 3/1/1\nf 1//1 2 4/1\nf 1/0/0 2 3\n"))
-        .model;
+        .into_model();
     let corner = |face: usize, k: usize| m.faces[face][k] as usize;
     assert_eq!(m.normals[corner(0, 0)], Vec3::X);
     assert_eq!(m.uvs[corner(0, 0)], Vec2::new(0.5, 0.75));
@@ -145,12 +146,12 @@ fn an_absent_normal_or_texture_coordinate_is_not_the_one_before() {
 
 #[test]
 fn vertex_colours_become_linear_and_vertices_without_are_white() {
-    let m = text("v 0 0 0 1 0.5 0\nv 1 0 0\nv 0 1 0 0 0 0\nf 1 2 3\n").model;
+    let m = text("v 0 0 0 1 0.5 0\nv 1 0 0\nv 0 1 0 0 0 0\nf 1 2 3\n").into_model();
     assert!((m.colors[0].y - 0.214_041).abs() < 1e-5);
     assert_eq!(m.colors[1].to_array(), [1.0; 4]);
     assert_eq!(m.colors[2].to_array(), [0.0, 0.0, 0.0, 1.0]);
     let bytes = text("v 0 0 0 255 0 0\nv 1 0 0 0 255 0\nv 0 1 0 0 0 255\nf 1 2 3\n");
-    assert_eq!(bytes.model.colors[0].to_array(), [1.0, 0.0, 0.0, 1.0]);
+    assert_eq!(bytes.meshes[0].colors[0].to_array(), [1.0, 0.0, 0.0, 1.0]);
     assert!(
         bytes.warnings.iter().any(|w| w.text == "vertex colours above 1 are taken as 0..=255"),
         "{:?}",
@@ -178,7 +179,8 @@ fn materials_colours_alpha_and_textures() {
              usemtl two\nf 1 2 3\nusemtl three\nf 1 2 3\nusemtl one\nf 3 2 1\n"
         ),
     );
-    let Loaded { model, warnings } = load(&path, &LoadOptions::default()).unwrap();
+    let loaded = load(&path, &LoadOptions::default()).unwrap();
+    let (model, warnings) = (&loaded.meshes[0], &loaded.warnings);
     assert_eq!(model.face_material, [0, 1, 2, 0]);
     let [one, two, three] = &model.materials[..] else { panic!("{:?}", model.materials) };
     assert_eq!(one.base_color.to_array(), [1.0, 0.214_041_14, 0.0, 0.25]);
@@ -199,7 +201,8 @@ fn faces_without_a_material_have_material_0_and_unknown_ones_are_named() {
     folder.write("m.mtl", "newmtl red\nKd 1 0 0\n");
     let path =
         folder.write("m.obj", format!("{TRIANGLE}f 1 2 3\nmtllib m.mtl\nusemtl red\nf 1 2 3\nusemtl blue\nf 1 2 3\n"));
-    let Loaded { model, warnings } = load(&path, &LoadOptions::default()).unwrap();
+    let loaded = load(&path, &LoadOptions::default()).unwrap();
+    let (model, warnings) = (&loaded.meshes[0], &loaded.warnings);
     assert_eq!(model.face_material, [0, 1, 0]);
     assert_eq!(model.materials[0], Default::default());
     assert_eq!(model.materials[1].name, "red");
@@ -208,17 +211,22 @@ fn faces_without_a_material_have_material_0_and_unknown_ones_are_named() {
 
 #[test]
 fn groups_share_vertices_and_materials_keep_positions_equal() {
-    let m = text(format!("{TRIANGLE}v 1 1 0\no a\nf 1 2 3\ng b\nf 2 4 3\n")).model;
+    let m = text(format!("{TRIANGLE}v 1 1 0\no a\nf 1 2 3\ng b\nf 2 4 3\n")).into_model();
     assert_eq!(m.positions.len(), 4);
-    let m = text(format!("{TRIANGLE}v 1 1 0\nusemtl a\nf 1 2 3\nusemtl b\nf 2 4 3\n")).model;
+    let m = text(format!("{TRIANGLE}v 1 1 0\nusemtl a\nf 1 2 3\nusemtl b\nf 2 4 3\n")).into_model();
     assert_eq!(m.normals, vec![Vec3::Z; m.positions.len()]);
 }
 
 #[test]
 fn objects_are_meshes_and_materials_are_not() {
-    let m = text(format!("{TRIANGLE}o one\nusemtl a\nf 1 2 3\nusemtl b\nf 3 2 1\no two\nf 1 2 3\n")).model;
+    let m = text(format!("{TRIANGLE}o one\nusemtl a\nf 1 2 3\nusemtl b\nf 3 2 1\no two\nf 1 2 3\n")).into_model();
     assert_eq!(m.face_mesh, [0, 0, 1]);
-    assert!(text(format!("{TRIANGLE}o one\nf 1 2 3\n")).model.face_mesh.is_empty());
+    assert!(text(format!("{TRIANGLE}o one\nf 1 2 3\n")).into_model().face_mesh.is_empty());
+    // Whatever its groups, a file is one mesh and one object.
+    let loaded = text(format!("{TRIANGLE}o one\nf 1 2 3\no two\nf 1 2 3\n"));
+    let object = Object { name: String::new(), mesh: 0, world_from_mesh: glam::DAffine3::IDENTITY };
+    assert_eq!((loaded.meshes.len(), &loaded.objects[..]), (1, &[object][..]));
+    assert_eq!(loaded.into_model().face_mesh, [0, 1]);
 }
 
 #[test]
@@ -227,7 +235,7 @@ fn a_position_with_many_normals_takes_no_quadratic_time() {
     for i in 0..60_000 {
         file += &format!("vn 1 0 {i}\nf 1//{0} 2//{0} 3//{0}\n", i + 1);
     }
-    assert_eq!(text(file).model.positions.len(), 180_000);
+    assert_eq!(text(file).into_model().positions.len(), 180_000);
 }
 
 fn fault(result: Result<Loaded, LoadError>) -> String {
@@ -263,7 +271,7 @@ fn bad_files_are_refused_with_the_line() {
         assert!(message.contains(part), "{message:?} for {body:?}");
     }
     // Vertices that no face uses may be any number.
-    assert_eq!(text("v NaN inf 0\nv 0 0 0\nf 2 2 2\n").model.faces.len(), 1);
+    assert_eq!(text("v NaN inf 0\nv 0 0 0\nf 2 2 2\n").into_model().faces.len(), 1);
 }
 
 #[test]
@@ -337,8 +345,8 @@ fn known_models_have_their_face_counts() {
     let mut models = 0;
     for row in table.lines().filter(|l| !l.starts_with('#')).skip(1) {
         let columns: Vec<_> = row.split('\t').collect();
-        let Loaded { model, warnings } =
-            load(&shared(&format!("{}.obj", columns[0])).unwrap(), &LoadOptions::default()).unwrap();
+        let loaded = load(&shared(&format!("{}.obj", columns[0])).unwrap(), &LoadOptions::default()).unwrap();
+        let (model, warnings) = (&loaded.meshes[0], &loaded.warnings);
         assert_eq!(model.faces.len().to_string(), columns[1], "{}", columns[0]);
         assert!(warnings.iter().all(|w| w.text == "no normals: they are made from the faces"), "{warnings:?}");
         assert!(model.normals.iter().all(|n| (n.length() - 1.0).abs() < 1e-6));
@@ -351,7 +359,7 @@ fn known_models_have_their_face_counts() {
 fn spot_has_its_seams_and_its_texture() {
     let Some(path) = shared("spot.obj") else { return };
     let options = LoadOptions { normal_crease_angle_rad: std::f32::consts::PI, ..LoadOptions::default() };
-    let model = load(&path, &options).unwrap().model;
+    let model = load(&path, &options).unwrap().into_model();
     assert_eq!(model.positions.len(), 3225);
     assert_eq!(model.uvs.len(), 3225);
     assert_eq!(model.materials.len(), 1);
@@ -362,7 +370,7 @@ fn spot_has_its_seams_and_its_texture() {
 #[test]
 fn suzanne_keeps_the_normals_of_the_file() {
     let Some(path) = shared("suzanne.obj") else { return };
-    let model = load(&path, &LoadOptions::default()).unwrap().model;
+    let model = load(&path, &LoadOptions::default()).unwrap().into_model();
     let file = fs::read_to_string(path).unwrap();
     let given: Vec<Vec3> = file
         .lines()

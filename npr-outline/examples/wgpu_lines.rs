@@ -6,7 +6,7 @@ use glam::dcamera::rh::view::look_at_mat4;
 use glam::{DVec2, DVec3};
 use npr_mesh::{edges, embedded};
 use npr_outline::contour_edges;
-use npr_outline::line_pass::{COVERAGE_FORMAT, LinePass, LineSource, LineTargets, line_records};
+use npr_outline::line_pass::{COVERAGE_FORMAT, LineGroup, LinePass, LineSource, LineTargets, line_records};
 use npr_outline::line_style::LineStyle;
 use npr_outline::segment::LineView;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
@@ -133,8 +133,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let targets =
         LineTargets { painted: &painted_view, depth: &depth_view, inked: &inked_view, coverage: &coverage_view };
     let line_pass = LinePass::new(&device, COLOR, false)?;
-    let source = LineSource::Records(&records);
-    line_pass.record(&device, &mut encoder, source, &style, &view, eye.extend(1.0), &targets)?;
+    let lines = LineGroup { source: LineSource::Records(&records), view, eye: eye.extend(1.0) };
+    line_pass.record(&device, &mut encoder, &[lines], &style, &targets)?;
 
     let (size, usage) = (u64::from(4 * SIZE.width * SIZE.height), BufferUsages::COPY_DST | BufferUsages::MAP_READ);
     let copy = device.create_buffer(&BufferDescriptor { label: None, size, usage, mapped_at_creation: false });

@@ -19,7 +19,7 @@
 //! creases) come first, so that a scan tests only the others.
 
 use crate::OutlineError;
-use glam::{DVec3, DVec4, Vec3, Vec4};
+use glam::{DMat3, DVec3, DVec4, Vec3, Vec4};
 use npr_mesh::edges::{Edge, EdgeKind, Edges, NO_FACE, triangle_normal};
 use npr_mesh::{AlphaMode, Model};
 use std::collections::HashMap;
@@ -66,12 +66,15 @@ pub struct ContourOptions {
     pub crease_angle_rad: f32,
     /// Whether edges between two materials are lines.
     pub material_borders: bool,
+    /// The inverse transpose of the matrix that places the model, where angles between faces are those of the placed
+    /// model: shear and non-uniform scale change them. Any factor; the identity for the model's own angles.
+    pub world_from_normal: DMat3,
 }
 
 impl Default for ContourOptions {
-    /// Creases over 45°, no material borders.
+    /// Creases over 45°, no material borders, the model's own angles.
     fn default() -> Self {
-        Self { crease_angle_rad: 45f32.to_radians(), material_borders: false }
+        Self { crease_angle_rad: 45f32.to_radians(), material_borders: false, world_from_normal: DMat3::IDENTITY }
     }
 }
 
@@ -147,6 +150,11 @@ pub fn contour_edges(model: &Model, edges: &Edges, options: &ContourOptions) -> 
         let [x, y, z, _] = planes[face as usize];
         if folded.is_empty() { Vec3::new(x, y, z) } else { normal_of(face) }
     };
+    let is_placed = options.world_from_normal != DMat3::IDENTITY;
+    let placed = |normal: Vec3| match is_placed {
+        true => (options.world_from_normal * normal.as_dvec3()).normalize_or_zero().as_vec3(),
+        false => normal,
+    };
     // After flipping, two faces with different windings remain only on non-orientable surfaces.
     let fits = |edge: &Edge| {
         let [first, second] = edge.faces();
@@ -156,7 +164,7 @@ pub fn contour_edges(model: &Model, edges: &Edges, options: &ContourOptions) -> 
         EdgeKind::Boundary => Some(LineKind::Boundary),
         EdgeKind::NonManifold => Some(LineKind::Crease),
         EdgeKind::TwoFace => {
-            let [n0, n1] = edge.faces().map(wound_normal);
+            let [n0, n1] = edge.faces().map(|face| placed(wound_normal(face)));
             let cos = if fits(edge) { n0.dot(n1) } else { -n0.dot(n1) };
             if cos < cos_crease && n0 != Vec3::ZERO && n1 != Vec3::ZERO {
                 Some(LineKind::Crease)

@@ -80,7 +80,7 @@ pub struct LineRecord {
 
 const _: () = assert!(size_of::<LineRecord>() == 52);
 
-/// Makes the records of the lines that a scan found; `records` is cleared first. `eye` as for [`ContourEdges::scan`].
+/// Appends the records of the lines that a scan found. `eye` as for [`ContourEdges::scan`].
 pub fn line_records(
     contours: &ContourEdges,
     positions: &[Vec3],
@@ -89,7 +89,6 @@ pub fn line_records(
     records: &mut Vec<LineRecord>,
 ) {
     let eye = contours.local_eye(eye);
-    records.clear();
     records.extend(lines.iter().filter_map(|&line| {
         let edge = line as usize;
         let kind = contours.kind(edge, eye)?;
@@ -119,6 +118,19 @@ pub enum LineSource<'a> {
     Records(&'a [LineRecord]),
     /// Found by a compute pass and drawn indirectly, without uploads. Faster on hardware.
     OnDevice(&'a EdgesOnDevice),
+}
+
+/// Lines that are seen in one view, such as those of a mesh that is placed in a scene: view and eye are in the space of
+/// the source's positions, which any affine matrix may map to the scene's.
+#[derive(Clone, Copy, Debug)]
+pub struct LineGroup<'a> {
+    /// The lines.
+    pub source: LineSource<'a>,
+    /// From the space of the source's positions. The depth of [`LineView::clip_from_world`] is reversed: 1 at the near
+    /// plane, falling with distance.
+    pub view: LineView,
+    /// The eye in the space of the source's positions: a point with w = 1 or the direction to the viewer with w = 0.
+    pub eye: DVec4,
 }
 
 /// What a frame reads and draws into: views of the first level of textures of the size of [`LineView::viewport_px`],
@@ -302,40 +314,57 @@ impl LinePass {
         })
     }
 
-    /// Records finding and drawing a frame's lines.
-    ///
-    /// `eye`: world space, a point with w = 1 or the direction to the viewer with w = 0. The depth of
-    /// [`LineView::clip_from_world`] is reversed: 1 at the near plane, falling with distance.
+    /// Records finding and drawing a frame's lines, those of all groups in one style.
     ///
     /// # Errors
     /// [`OutlineError::Width`]; [`OutlineError::TooManyEdges`] where the records do not fit a buffer; if a texture is
-    /// not as [`LineTargets`] says; [`OutlineError::StandardDepth`], where the matrix can be judged. Nothing is
-    /// recorded then.
-    #[expect(clippy::too_many_arguments, reason = "each is a thing of its own; a struct would only rename them")]
+    /// not as [`LineTargets`] says; [`OutlineError::StandardDepth`], where a matrix can be judged. Nothing is recorded
+    /// then.
     pub fn record(
         &self,
         device: &wgpu::Device,
         encoder: &mut wgpu::CommandEncoder,
-        source: LineSource<'_>,
+        groups: &[LineGroup<'_>],
         style: &LineStyle,
-        view: &LineView,
-        eye: DVec4,
         targets: &LineTargets<'_>,
     ) -> Result<(), OutlineError> {
         style.validate()?;
-        self.check(view, eye, targets)?;
-        let uniform = OutlineUniform::new(style, view, eye, source);
-        let uniform = filled_buffer(device, "outline view", bytemuck::bytes_of(&uniform), wgpu::BufferUsages::UNIFORM);
-        let group = |layout, resources: &[_]| bind_group(device, "outline", layout, resources);
-        let view_group = group(&self.view_layout, &[uniform.as_entire_binding()]);
+        let limit = device.limits().max_buffer_size;
+        for LineGroup { source, view, eye } in groups {
+            self.check(view, *eye, targets)?;
+            if let LineSource::Records(records) = source
+                && size_of_val(*records) as u64 > limit
+            {
+                return Err(OutlineError::TooManyEdges { bytes: size_of_val(*records) as u64, limit });
+            }
+        }
         let picture_group = picture_group(device, &self.picture_layout, targets.depth, targets.painted, &self.nearest);
+        for (number, group) in groups.iter().enumerate() {
+            // Of all groups, a pixel's ink is that of the line with the greatest coverage.
+            let load = if number == 0 { wgpu::LoadOp::Clear(0.0) } else { wgpu::LoadOp::Load };
+            let last = number + 1 == groups.len();
+            let store = if last { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store };
+            let coverage = wgpu::Operations { load, store };
+            self.record_group(device, encoder, group, style, targets, (&picture_group, coverage));
+        }
+        Ok(())
+    }
+
+    fn record_group(
+        &self,
+        device: &wgpu::Device,
+        encoder: &mut wgpu::CommandEncoder,
+        &LineGroup { source, view, eye }: &LineGroup<'_>,
+        style: &LineStyle,
+        targets: &LineTargets<'_>,
+        (picture_group, coverage): (&wgpu::BindGroup, wgpu::Operations<f32>),
+    ) {
+        let uniform = OutlineUniform::new(style, &view, eye, source);
+        let uniform = filled_buffer(device, "outline view", bytemuck::bytes_of(&uniform), wgpu::BufferUsages::UNIFORM);
+        let view_group = bind_group(device, "outline", &self.view_layout, &[uniform.as_entire_binding()]);
         let records = match source {
             LineSource::Records([]) => None,
             LineSource::Records(records) => {
-                let (bytes, limit) = (size_of_val(records) as u64, device.limits().max_buffer_size);
-                if bytes > limit {
-                    return Err(OutlineError::TooManyEdges { bytes, limit });
-                }
                 let usage = wgpu::BufferUsages::VERTEX;
                 Some(filled_buffer(device, "outline records", bytemuck::cast_slice(records), usage))
             }
@@ -354,13 +383,13 @@ impl LinePass {
             })],
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: targets.coverage,
-                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard }),
+                depth_ops: Some(coverage),
                 stencil_ops: None,
             }),
             ..Default::default()
         });
         pass.set_bind_group(0, &view_group, &[]);
-        pass.set_bind_group(1, &picture_group, &[]);
+        pass.set_bind_group(1, picture_group, &[]);
         match (source, &records) {
             (LineSource::Records(lines), Some(buffer)) => {
                 pass.set_pipeline(&self.record_pipeline);
@@ -376,8 +405,6 @@ impl LinePass {
             }
             (LineSource::Records(_), None) => {}
         }
-        drop(pass);
-        Ok(())
     }
 
     /// Refuses what the pass cannot draw right with.

@@ -16,7 +16,8 @@ use crate::filled_buffer::filled_buffer;
 use crate::shader::assemble;
 use crate::shadow_volume::{ShadowCasters, VolumeEdge, VolumeFace};
 use crate::target::{check_area, check_no_far_plane, check_reversed, check_view, size, towards_viewer};
-use glam::{DMat4, DVec4};
+use glam::{DAffine3, DMat4, DVec4};
+use std::sync::OnceLock;
 
 /// WGSL of [`crate::shadow_volume`]: no bindings, no entry points.
 pub const SHADOW_WGSL: &str = include_str!("shadow_volume.wgsl");
@@ -27,8 +28,21 @@ const PASS: (&str, &str) = ("shadow_pass.wgsl", include_str!("shadow_pass.wgsl")
 #[repr(C)]
 struct ShadowUniform {
     clip_from_world: [[f32; 4]; 4],
+    world_from_mesh: [[f32; 4]; 3],
     light: [f32; 4],
     local_light: [f32; 4],
+}
+
+/// The casters of a mesh that is placed in a scene.
+#[derive(Clone, Copy, Debug)]
+pub struct PlacedCasters<'a> {
+    /// The casters, in the space of the mesh.
+    pub casters: &'a CastersOnDevice,
+    /// Rounded to f32 as for the scene's own faces: with equal bits a cap lies exactly on its face.
+    pub world_from_mesh: DAffine3,
+    /// The light in the space of the mesh: a point with w = 1 or the direction to the light with w = 0. Of
+    /// [`CastersOnDevice::of_light`] the same.
+    pub light: DVec4,
 }
 
 /// The shadow casters of a model in buffers of the device.
@@ -84,14 +98,22 @@ impl CastersOnDevice {
 #[derive(Debug)]
 pub struct ShadowPass {
     layout: wgpu::BindGroupLayout,
+    module: wgpu::ShaderModule,
+    plain: Pipelines,
+    /// For meshes that are placed mirrored, which turns the windings on the screen; made when needed.
+    mirrored: OnceLock<Pipelines>,
+    format: wgpu::TextureFormat,
+    unclipped: bool,
+}
+
+#[derive(Debug)]
+struct Pipelines {
     /// For a directional light, and for a point light.
     sides: [wgpu::RenderPipeline; 2],
     /// For faces towards the light, and for faces away from it.
     caps: [wgpu::RenderPipeline; 2],
     /// The same for triangles made on the CPU.
     placed: [wgpu::RenderPipeline; 2],
-    format: wgpu::TextureFormat,
-    unclipped: bool,
 }
 
 /// Vertices of one sweep of an edge, and of the caps of a face, for a light far away and for one near.
@@ -125,9 +147,103 @@ impl ShadowPass {
                 count: None,
             }],
         });
+        let plain = Pipelines::new(device, &layout, &module, (format, unclipped), wgpu::FrontFace::Ccw);
+        Ok(Self { layout, module, plain, mirrored: OnceLock::new(), format, unclipped })
+    }
+
+    /// Records the pass: clears the stencil, and counts the volumes of all casters against the depth that is there.
+    ///
+    /// - `clip_from_world`: of the depth buffer, reversed, rounded to f32 as the scene's own was;
+    /// - `endless`: of a parallel view the sum of what [`ShadowCasters::endless`] says of its direction, else 0;
+    /// - `area`: left, top, width and height, px, in which there are surfaces: volumes reach to infinity, and counting
+    ///   where there is no surface is wasted. `None` for the whole target.
+    ///
+    /// # Errors
+    /// If `depth_stencil` is no view of the first level of a texture of the pass's format with one sample a pixel;
+    /// [`OutlineError::Area`]; [`OutlineError::StandardDepth`] and, of a pass with depth clipping,
+    /// [`OutlineError::FarPlane`], where the matrix can be judged. Nothing is recorded then.
+    #[expect(clippy::too_many_arguments, reason = "each is a thing of its own; a struct would only rename them")]
+    pub fn record(
+        &self,
+        device: &wgpu::Device,
+        encoder: &mut wgpu::CommandEncoder,
+        casters: &[PlacedCasters<'_>],
+        clip_from_world: DMat4,
+        depth_stencil: &wgpu::TextureView,
+        endless: u32,
+        area: Option<[u32; 4]>,
+    ) -> Result<(), OutlineError> {
+        check_reversed(&clip_from_world, Some(towards_viewer(&clip_from_world)))?;
+        if !self.unclipped {
+            check_no_far_plane(&clip_from_world)?;
+        }
+        let needed = "the format that the pass was made for";
+        check_view("depth and stencil", depth_stencil, needed, |format| format == self.format, None)?;
+        check_area(area, size(depth_stencil))?;
+        let groups: Vec<_> = casters.iter().map(|placed| self.group(device, placed, clip_from_world)).collect();
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("shadow volumes"),
+            color_attachments: &[],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: depth_stencil,
+                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store }),
+                stencil_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(endless & 0xff),
+                    store: wgpu::StoreOp::Store,
+                }),
+            }),
+            ..Default::default()
+        });
+        if let Some([x, y, width, height]) = area {
+            if width == 0 || height == 0 {
+                return Ok(());
+            }
+            pass.set_scissor_rect(x, y, width, height);
+        }
+        for (placed, group) in casters.iter().zip(&groups) {
+            pass.set_bind_group(0, group, &[]);
+            let pipelines = if placed.world_from_mesh.matrix3.determinant() < 0.0 {
+                let state = (self.format, self.unclipped);
+                let new = || Pipelines::new(device, &self.layout, &self.module, state, wgpu::FrontFace::Cw);
+                self.mirrored.get_or_init(new)
+            } else {
+                &self.plain
+            };
+            pipelines.draw(&mut pass, placed);
+        }
+        Ok(())
+    }
+
+    fn group(&self, device: &wgpu::Device, placed: &PlacedCasters<'_>, clip_from_world: DMat4) -> wgpu::BindGroup {
+        let PlacedCasters { casters, world_from_mesh, light } = placed;
+        let local = *light - casters.origin.as_dvec3().extend(0.0) * light.w;
+        let uniform = ShadowUniform {
+            clip_from_world: clip_from_world.as_mat4().to_cols_array_2d(),
+            world_from_mesh: affine_rows(world_from_mesh),
+            light: light.as_vec4().to_array(),
+            local_light: local.as_vec4().to_array(),
+        };
+        let usage = wgpu::BufferUsages::UNIFORM;
+        let uniform = filled_buffer(device, "shadow view", bytemuck::bytes_of(&uniform), usage);
+        device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("shadow view"),
+            layout: &self.layout,
+            entries: &[wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() }],
+        })
+    }
+}
+
+impl Pipelines {
+    fn new(
+        device: &wgpu::Device,
+        layout: &wgpu::BindGroupLayout,
+        module: &wgpu::ShaderModule,
+        (format, unclipped): (wgpu::TextureFormat, bool),
+        front_face: wgpu::FrontFace,
+    ) -> Self {
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("shadow volumes"),
-            bind_group_layouts: &[Some(&layout)],
+            bind_group_layouts: &[Some(layout)],
             immediate_size: 0,
         });
         let counted = |operation| wgpu::StencilFaceState {
@@ -143,12 +259,12 @@ impl ShadowPass {
                 label: Some(entry_point),
                 layout: Some(&pipeline_layout),
                 vertex: wgpu::VertexState {
-                    module: &module,
+                    module,
                     entry_point: Some(entry_point),
                     compilation_options: wgpu::PipelineCompilationOptions { constants, ..Default::default() },
                     buffers: &[Some(buffer)],
                 },
-                primitive: wgpu::PrimitiveState { unclipped_depth: unclipped, ..Default::default() },
+                primitive: wgpu::PrimitiveState { unclipped_depth: unclipped, front_face, ..Default::default() },
                 depth_stencil: Some(wgpu::DepthStencilState {
                     format,
                     depth_write_enabled: Some(false),
@@ -200,73 +316,10 @@ impl ShadowPass {
         };
         let placed = [false, true].map(|faces_away| pipeline("vs_placed", placed_buffer.clone(), &[], faces_away));
         let (sides, caps) = (SWEEP_VERTICES.map(side), [cap(1.0), cap(-1.0)]);
-        Ok(Self { sides, caps, placed, layout, format, unclipped })
+        Self { sides, caps, placed }
     }
 
-    /// Records the pass: clears the stencil, and counts the volumes against the depth that is there.
-    ///
-    /// - `light`: world space, a point with w = 1 or the direction to the light with w = 0;
-    /// - `clip_from_world`: of the depth buffer, reversed, rounded to f32 as the scene's own was;
-    /// - `endless`: of a parallel view what [`ShadowCasters::endless`] says of its direction, else 0;
-    /// - `area`: left, top, width and height, px, in which there are surfaces: volumes reach to infinity, and counting
-    ///   where there is no surface is wasted. `None` for the whole target.
-    ///
-    /// # Errors
-    /// If `depth_stencil` is no view of the first level of a texture of the pass's format with one sample a pixel;
-    /// [`OutlineError::Area`]; [`OutlineError::StandardDepth`] and, of a pass with depth clipping,
-    /// [`OutlineError::FarPlane`], where the matrix can be judged. Nothing is recorded then.
-    #[expect(clippy::too_many_arguments, reason = "each is a thing of its own; a struct would only rename them")]
-    pub fn record(
-        &self,
-        device: &wgpu::Device,
-        encoder: &mut wgpu::CommandEncoder,
-        casters: &CastersOnDevice,
-        light: DVec4,
-        clip_from_world: DMat4,
-        depth_stencil: &wgpu::TextureView,
-        endless: u32,
-        area: Option<[u32; 4]>,
-    ) -> Result<(), OutlineError> {
-        check_reversed(&clip_from_world, Some(towards_viewer(&clip_from_world)))?;
-        if !self.unclipped {
-            check_no_far_plane(&clip_from_world)?;
-        }
-        let needed = "the format that the pass was made for";
-        check_view("depth and stencil", depth_stencil, needed, |format| format == self.format, None)?;
-        check_area(area, size(depth_stencil))?;
-        let local = light - casters.origin.as_dvec3().extend(0.0) * light.w;
-        let uniform = ShadowUniform {
-            clip_from_world: clip_from_world.as_mat4().to_cols_array_2d(),
-            light: light.as_vec4().to_array(),
-            local_light: local.as_vec4().to_array(),
-        };
-        let usage = wgpu::BufferUsages::UNIFORM;
-        let uniform = filled_buffer(device, "shadow view", bytemuck::bytes_of(&uniform), usage);
-        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("shadow view"),
-            layout: &self.layout,
-            entries: &[wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() }],
-        });
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("shadow volumes"),
-            color_attachments: &[],
-            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: depth_stencil,
-                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store }),
-                stencil_ops: Some(wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(endless & 0xff),
-                    store: wgpu::StoreOp::Store,
-                }),
-            }),
-            ..Default::default()
-        });
-        pass.set_bind_group(0, &group, &[]);
-        if let Some([x, y, width, height]) = area {
-            if width == 0 || height == 0 {
-                return Ok(());
-            }
-            pass.set_scissor_rect(x, y, width, height);
-        }
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, PlacedCasters { casters, light, .. }: &PlacedCasters<'_>) {
         let near = usize::from(light.w != 0.0);
         match &casters.source {
             Source::All { edges, edge_count, faces, face_count, open } => {
@@ -286,7 +339,7 @@ impl ShadowPass {
                 }
             }
             Source::Triangles { vertices, towards, away } => {
-                let Some(vertices) = vertices else { return Ok(()) };
+                let Some(vertices) = vertices else { return };
                 pass.set_vertex_buffer(0, vertices.slice(..));
                 for (pipeline, range) in self.placed.iter().zip([0..*towards, *towards..towards + away]) {
                     if !range.is_empty() {
@@ -296,8 +349,15 @@ impl ShadowPass {
                 }
             }
         }
-        Ok(())
     }
+}
+
+/// The rows of an affine matrix in f32, as shaders place positions by: x, y and z are a row's product with the position.
+pub fn affine_rows(matrix: &DAffine3) -> [[f32; 4]; 3] {
+    let rows = matrix.matrix3.transpose();
+    let translation = matrix.translation;
+    [(rows.x_axis, translation.x), (rows.y_axis, translation.y), (rows.z_axis, translation.z)]
+        .map(|(row, along)| row.extend(along).as_vec4().to_array())
 }
 
 /// Refuses formats without depth or without stencil.

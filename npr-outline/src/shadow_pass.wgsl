@@ -2,7 +2,9 @@
 
 struct ShadowView {
     clip_from_world: mat4x4<f32>,
-    // World space: a point with w = 1, or the direction to the light with w = 0.
+    // The rows of the matrix that places the mesh in the world.
+    world_from_mesh: array<vec4<f32>, 3>,
+    // In the space of the mesh: a point with w = 1, or the direction to the light with w = 0.
     light: vec4<f32>,
     // The light relative to the origin of the planes.
     local_light: vec4<f32>,
@@ -17,6 +19,13 @@ override cap_turn: i32 = 1;
 
 // A position that draws nothing: all corners of a triangle are here.
 const NOWHERE: vec4<f32> = vec4<f32>(0.0, 0.0, 0.0, 1.0);
+
+// The same arithmetic as for the scene's faces, so that a cap lies exactly on its face.
+fn placed(point: vec4<f32>) -> Placed {
+    let rows = view.world_from_mesh;
+    let world = vec3<f32>(dot(rows[0], point), dot(rows[1], point), dot(rows[2], point));
+    return Placed(view.clip_from_world * vec4<f32>(world, point.w));
+}
 
 struct Placed {
     @invariant @builtin(position) position: vec4<f32>,
@@ -40,7 +49,7 @@ fn vs_side(
         case 5u: { corner = outline_swept(end, view.light); }
         default: {}
     }
-    return Placed(view.clip_from_world * corner);
+    return placed(corner);
 }
 
 @vertex
@@ -59,17 +68,16 @@ fn vs_cap(
         default: {}
     }
     if index > 2u {
-        return Placed(view.clip_from_world * outline_swept(corner, view.light));
+        return placed(outline_swept(corner, view.light));
     }
-    // The same arithmetic as for the scene's faces, so that a cap lies exactly on its face.
-    return Placed(view.clip_from_world * vec4<f32>(corner, 1.0));
+    return placed(vec4<f32>(corner, 1.0));
 }
 
 // A corner of a triangle made on the CPU: a position with w = 1, or with w = 0 the position that is swept to infinity.
 @vertex
 fn vs_placed(@location(0) corner: vec4<f32>) -> Placed {
     if corner.w == 0.0 {
-        return Placed(view.clip_from_world * outline_swept(corner.xyz, view.light));
+        return placed(outline_swept(corner.xyz, view.light));
     }
-    return Placed(view.clip_from_world * vec4<f32>(corner.xyz, 1.0));
+    return placed(vec4<f32>(corner.xyz, 1.0));
 }

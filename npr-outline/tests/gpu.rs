@@ -18,7 +18,7 @@ use npr_mesh::{Model, embedded};
 use npr_outline::contour::{ContourOptions, contour_edges, outline_facing};
 use npr_outline::fin_pass::FinPass;
 use npr_outline::fin_printed::{FinDepth, FinView, fin_printed_triangles, printed_fins, rasterise};
-use npr_outline::line_pass::{LinePass, LineRecord, LineSource, line_records};
+use npr_outline::line_pass::{LineGroup, LinePass, LineRecord, LineSource, line_records};
 use npr_outline::line_style::LineStyle;
 use npr_outline::normal_format::{NormalFormat, fibonacci_sphere};
 use npr_outline::segment::{LineView, ScreenSegment, outline_coverage, outline_is_visible, outline_project};
@@ -61,7 +61,8 @@ fn draw(
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     encoder.copy_texture_to_texture(picture.color.as_image_copy(), picture.inked.as_image_copy(), picture.color.size());
     let eye = view.clip_from_world.inverse() * glam::DVec4::Z;
-    pass.record(&gpu.device, &mut encoder, source, &black(width_px), view, eye / eye.w, &picture.targets()).unwrap();
+    let lines = LineGroup { source, view: *view, eye: eye / eye.w };
+    pass.record(&gpu.device, &mut encoder, &[lines], &black(width_px), &picture.targets()).unwrap();
     gpu.queue.submit([encoder.finish()]);
     let inked = gpu.read_texture(&picture.inked, 4);
     // Black ink on white.

@@ -17,14 +17,14 @@ const ROUNDS: usize = 25;
 pub fn bunny(change: impl Fn(&mut Model)) -> (Scene, Camera) {
     let bunny = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/data/stanford-bunny.obj"));
     let (name, mut model) = if bunny.exists() {
-        ("bunny", npr_mesh::load(bunny, &Default::default()).expect("the bunny loads").model)
+        ("bunny", npr_mesh::load(bunny, &Default::default()).expect("the bunny loads").into_model())
     } else {
         ("built-in scene", npr_mesh::embedded::scene())
     };
     change(&mut model);
     let scene = Scene::new(model);
     let camera = Camera::framed(scene.corners(), f64::from(SIZE.0) / f64::from(SIZE.1), &Framing::default());
-    println!("{name}, {} faces, {} × {} px", scene.model.faces.len(), SIZE.0, SIZE.1);
+    println!("{name}, {} faces, {} × {} px", scene.face_count(), SIZE.0, SIZE.1);
     (scene, camera)
 }
 

@@ -32,6 +32,7 @@ use npr_imagespace::filter::printed::{
 use npr_imagespace::format::printed::{CLEAR, CLEAR_PRINTED, ink_printed_encode};
 use npr_imagespace::format::texel::{TexelLayout, ink_texel64_tap};
 use npr_imagespace::picture::{Taps, filter_picture};
+use npr_mesh::edges::NO_FACE;
 use npr_outline::LineKind;
 
 /// Silhouettes and boundaries behind which the next surface is nearer than this share of the model's size, the
@@ -78,27 +79,27 @@ impl Checker<'_> {
         &mut self,
         model: &str,
         view: &str,
-        scene: &Scene,
+        (scene, flat): (&Scene, &Scene),
         camera: &Camera,
     ) -> Result<(), HarnessError> {
         let crease_angle_rad = f64::from(one_px_style(Lines::image(ImageInk::default())).crease_angle_rad);
         let view_of = View::new(*camera, SIZE);
         let least_step = LEAST_STEP * 2.0 * scene.radius();
-        let of_edges = true_lines_of_steps(scene, camera, SIZE, crease_angle_rad, least_step);
-        let intersections = |least_angle_rad| true_intersections(scene, camera, SIZE, least_angle_rad).segments;
+        let of_edges = true_lines_of_steps(flat, camera, SIZE, crease_angle_rad, least_step);
+        let intersections = |least_angle_rad| true_intersections(flat, camera, SIZE, least_angle_rad).segments;
         let with = |lines: &TrueLines, more: Vec<TrueSegment>| TrueLines {
             segments: [lines.segments.as_slice(), &more].concat(),
             ..lines.clone()
         };
         let asked = with(&of_edges, intersections(crease_angle_rad));
-        let all = with(&true_lines(scene, camera, SIZE, crease_angle_rad), intersections(0.0));
-        if scene.model.faces.len() > MOST_FACES_INTERSECTED {
+        let all = with(&true_lines(flat, camera, SIZE, crease_angle_rad), intersections(0.0));
+        if scene.face_count() > MOST_FACES_INTERSECTED {
             self.skipped
                 .push(format!("intersections of surfaces of {model}: more than {MOST_FACES_INTERSECTED} faces"));
         }
         let style = one_px_style(Lines::image(ImageInk::default()));
         let uncarried =
-            uncarried_share(scene, &of_edges, &Plan::new(scene, &style, &view_of, &Capabilities::RAY_CASTER)?);
+            uncarried_share(flat, &of_edges, &Plan::new(flat, &style, &view_of, &Capabilities::RAY_CASTER)?);
         self.add(model, view, "image lines", "share of creases within one patch", uncarried, None);
         let judge = |checker: &mut Self, technique: &'static str, darkness: &[f64]| {
             let drawn = drawn_centreline(darkness, SIZE.0, SIZE.1);
@@ -188,7 +189,8 @@ fn uncarried_share(scene: &Scene, lines: &TrueLines, plan: &Plan) -> f64 {
     let is_uncarried = |segment: &&TrueSegment| {
         let [first, second] = scene_edge(scene, segment.edge).faces();
         segment.kind == LineKind::Crease
-            && image.face_region.get(first as usize) == image.face_region.get(second as usize)
+            && second != NO_FACE
+            && image.regions.of_face(scene, 0, first) == image.regions.of_face(scene, 0, second)
     };
     let length = |segment: &TrueSegment| segment.ends_px[0].distance(segment.ends_px[1]);
     let total: f64 = lines.segments.iter().map(length).sum();

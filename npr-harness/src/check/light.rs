@@ -23,7 +23,7 @@ impl Checker<'_> {
         scene: &Scene,
         camera: &Camera,
     ) -> Result<(), HarnessError> {
-        let white = Scene::new(white(&scene.model));
+        let white = Scene::new(white(scene.flattened().single().model()));
         let all = band_accuracy(&white, camera, BORDER_SIZE, &Bands::default(), 1)?;
         for (technique, found) in ["borders", "borders, no crease near"].into_iter().zip(all) {
             if found.pixels == 0 {

@@ -28,14 +28,14 @@ const RISES: [f64; 3] = [0.0, 0.07, 0.6];
 impl Checker<'_> {
     /// How often silhouettes are misclassified, by the format of the face normals, and by the plane records.
     pub(super) fn formats(&mut self, model: &str, scene: &Scene) -> Result<(), HarnessError> {
-        let edges = scene.edges.edges.len();
+        let edges = scene.single().edges().edges.len();
         if edges > LARGEST_FORMAT_EDGES {
             self.skipped.push(format!("formats of {model}: {edges} edges are more than {LARGEST_FORMAT_EDGES}"));
             return Ok(());
         }
         let view = format!("{FORMAT_VIEWS} around");
         for format in NormalFormat::ALL {
-            let share = misclassified_share(&scene.model, &scene.edges, format, FORMAT_VIEWS);
+            let share = misclassified_share(scene.single().model(), scene.single().edges(), format, FORMAT_VIEWS);
             let metric = match format {
                 NormalFormat::F32 => "misclassified share, f32",
                 NormalFormat::Snorm16 => "misclassified share, snorm16",
@@ -45,7 +45,7 @@ impl Checker<'_> {
             };
             self.add(model, &view, "formats", metric, share, None);
         }
-        let share = misclassified_share_of_planes(&scene.model, &scene.edges, FORMAT_VIEWS)?;
+        let share = misclassified_share_of_planes(scene.single().model(), scene.single().edges(), FORMAT_VIEWS)?;
         let limit = Some(Limit::AtMost(PLANES_MISCLASSIFIED));
         self.add(model, &view, "formats", "misclassified share, planes", share, limit);
         Ok(())
@@ -78,8 +78,8 @@ impl Checker<'_> {
         let uploaded = renderer.upload(scene, &plan)?;
         renderer.draw(scene, &uploaded, &plan, &targets)?;
         let found = renderer.found_lines(&uploaded)?.unwrap_or_default();
-        let on_device: BTreeSet<u32> = found.iter().copied().collect();
-        let scanned: BTreeSet<u32> = plan.lines().0.into_iter().collect();
+        let on_device: BTreeSet<[u32; 2]> = found.iter().copied().collect();
+        let scanned: BTreeSet<[u32; 2]> = plan.lines(scene).0.into_iter().collect();
         // A line found twice is as wrong as one found wrongly.
         let wrong = on_device.symmetric_difference(&scanned).count() + (found.len() - on_device.len());
         self.add(model, view, "line finder", "edges in one set only", wrong as f64, Some(Limit::AtMost(0.0)));

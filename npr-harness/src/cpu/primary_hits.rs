@@ -37,7 +37,7 @@ impl<'a> PrimaryHits<'a> {
     /// and place.
     pub fn kept(scene: &'a Scene, view: View, most: usize) -> Self {
         // Which faces alpha cuts out depends on the style.
-        let cut_out = scene.model.materials.iter().any(|m| matches!(m.alpha_mode, AlphaMode::Mask { .. }));
+        let cut_out = scene.materials().iter().any(|m| matches!(m.alpha_mode, AlphaMode::Mask { .. }));
         Self { scene, view, most: if cut_out { 0 } else { most }, found: Mutex::new(Vec::new()) }
     }
 

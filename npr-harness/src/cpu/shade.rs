@@ -6,7 +6,7 @@ use crate::hatch::cpu::{Hatching, Strokes};
 use crate::plan::PaintPlan;
 use crate::rays::Hit;
 use crate::shade::{LitPoint, ShadeModel, Shading};
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, Vec3};
 use npr_toon::border::toon_border_width;
 use npr_toon::normal::NormalUse;
 use npr_toon::source::toon_to_light;
@@ -60,10 +60,11 @@ impl FrameContext<'_> {
     }
 
     fn corners(&self, hit: &Hit) -> [LitPoint; 3] {
-        self.scene.model.faces[hit.face as usize].map(|v| {
-            let normal = self.scene.model.normals[v as usize].as_dvec3();
-            let at = self.scene.model.positions[v as usize].as_dvec3();
-            self.lit_point(if hit.front { normal } else { -normal }, at)
+        let (object, mesh) = self.scene.placed(hit.object);
+        let model = mesh.model();
+        model.faces[hit.face as usize].map(|v| {
+            let normal = object.normal(model.normals[v as usize]);
+            self.lit_point(if hit.front { normal } else { -normal }, object.point(model.positions[v as usize]))
         })
     }
 
@@ -88,7 +89,15 @@ impl FrameContext<'_> {
         y: u32,
         strokes: &Strokes<'_>,
     ) -> DVec3 {
-        let position = |weights| strokes.position(self.interpolate(hit, weights).at, self.interpolate_uv(hit, weights));
+        // Strokes lie in the space of the mesh, so that they move with it.
+        let (object, mesh) = self.scene.placed(hit.object);
+        let corners = mesh.model().faces[hit.face as usize];
+        let sum = |of: &[Vec3], weights: [f64; 3]| -> DVec3 {
+            (0..3).map(|i| of[corners[i] as usize].as_dvec3() * weights[i]).sum()
+        };
+        let position = |weights| {
+            strokes.position(sum(&mesh.model().positions, weights) * object.scale(), self.interpolate_uv(hit, weights))
+        };
         let Footprint { along_x, dx, along_y, dy } = self.footprint(hit, x, y);
         let at = position(hit.barycentric);
         // On the back of a face light at its front's vertices says nothing.
@@ -98,8 +107,10 @@ impl FrameContext<'_> {
             at,
             at_dx: (position(along_x) - at) * dx,
             at_dy: (position(along_y) - at) * dy,
-            normal: self.interpolate(hit, hit.barycentric).normal.normalize_or_zero(),
-            corners: self.scene.model.faces[hit.face as usize],
+            normal: sum(&mesh.model().normals, hit.barycentric).normalize_or_zero(),
+            mesh: object.mesh(),
+            octave: object.scale().log2(),
+            corners,
             barycentric: hit.barycentric,
             diffuse,
             in_shadow,

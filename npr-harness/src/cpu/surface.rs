@@ -27,7 +27,7 @@ pub(super) struct Footprint {
 
 impl FrameContext<'_> {
     pub(super) fn material(&self, hit: &Hit) -> &Material {
-        &self.scene.model.materials[self.scene.model.face_material[hit.face as usize] as usize]
+        self.scene.material(hit.object, hit.face)
     }
 
     pub(super) fn is_shown(&self, hit: &Hit) -> bool {
@@ -49,8 +49,11 @@ impl FrameContext<'_> {
     /// face too: that is what a rasteriser extrapolates to for its derivatives.
     fn extrapolated(&self, hit: &Hit, point_px: DVec2) -> [f64; 3] {
         let (origin, direction) = self.rays.through(point_px);
-        let [a, b, c] =
-            self.scene.model.faces[hit.face as usize].map(|v| self.scene.model.positions[v as usize].as_dvec3());
+        // In the space of the mesh, which the weights do not depend on.
+        let (object, mesh) = self.scene.placed(hit.object);
+        let (origin, direction) = object.ray(origin, direction);
+        let model = mesh.model();
+        let [a, b, c] = model.faces[hit.face as usize].map(|v| model.positions[v as usize].as_dvec3());
         let (ab, ac, from_a) = (b - a, c - a, origin - a);
         let across = direction.cross(ac);
         let determinant = ab.dot(across);
@@ -64,7 +67,7 @@ impl FrameContext<'_> {
         if self.boundary_inset_px <= 0.0 {
             return false;
         }
-        let boundaries = self.scene.boundary_sides()[hit.face as usize];
+        let boundaries = self.scene.placed(hit.object).1.boundary_sides()[hit.face as usize];
         if boundaries == 0 {
             return false;
         }
@@ -89,7 +92,7 @@ impl FrameContext<'_> {
     }
 
     pub(super) fn interpolate_uv(&self, hit: &Hit, weights: [f64; 3]) -> DVec2 {
-        let model = &self.scene.model;
+        let model = self.scene.placed(hit.object).1.model();
         if model.uvs.is_empty() {
             return DVec2::ZERO;
         }
@@ -98,11 +101,11 @@ impl FrameContext<'_> {
     }
 
     pub(super) fn interpolate(&self, hit: &Hit, weights: [f64; 3]) -> Surface {
-        let model = &self.scene.model;
-        let corners = model.faces[hit.face as usize];
-        let sum =
-            |of: &[glam::Vec3]| -> DVec3 { (0..3).map(|i| of[corners[i] as usize].as_dvec3() * weights[i]).sum() };
-        let (normal, at) = (sum(&model.normals), sum(&model.positions));
+        let (object, mesh) = self.scene.placed(hit.object);
+        let model = mesh.model();
+        let corners = model.faces[hit.face as usize].map(|v| v as usize);
+        let normal: DVec3 = (0..3).map(|i| object.normal(model.normals[corners[i]]) * weights[i]).sum();
+        let at = (0..3).map(|i| object.point(model.positions[corners[i]]) * weights[i]).sum();
         Surface { normal: if hit.front { normal } else { -normal }, at }
     }
 
@@ -126,7 +129,7 @@ impl FrameContext<'_> {
 
     /// Linear; white where there is none.
     pub(super) fn vertex_color(&self, hit: &Hit) -> DVec4 {
-        let model = &self.scene.model;
+        let model = self.scene.placed(hit.object).1.model();
         if model.colors.is_empty() {
             return DVec4::ONE;
         }
@@ -147,23 +150,24 @@ impl FrameContext<'_> {
 
     /// Where a material's inner lines come from.
     pub(super) fn line_kind(&self, hit: &Hit) -> LineKind {
-        let material = self.scene.model.face_material[hit.face as usize] as usize;
+        let material = self.scene.material_number(hit.object, hit.face);
         self.plan.image.as_ref().map_or(LineKind::Normals, |image| image.line_kinds[material])
     }
 
     /// The display-referred colour of a hit, and its opacity.
     pub(super) fn paint(&self, hit: &Hit, x: u32, y: u32) -> DVec4 {
-        let material = self.scene.model.face_material[hit.face as usize] as usize;
-        let plain = self.scene.model.colors.is_empty() && self.scene.model.materials[material].texture.is_none();
+        let number = self.scene.material_number(hit.object, hit.face);
+        let material = &self.scene.materials()[number];
+        let plain = self.scene.placed(hit.object).1.model().colors.is_empty() && material.texture.is_none();
         let (base, alpha) = if plain {
-            (self.scene.material_colors[material], f64::from(self.scene.model.materials[material].base_color.w))
+            (self.scene.material_colors[number], f64::from(material.base_color.w))
         } else {
             let linear = self.base_color(hit, x, y);
             (encode_rgb(linear.truncate()), linear.w)
         };
         // As a target holds it before it is blended.
         let lit = self.shaded(hit, base, x, y).clamp(DVec3::ZERO, DVec3::ONE);
-        let opacity = match self.scene.model.materials[material].alpha_mode {
+        let opacity = match material.alpha_mode {
             AlphaMode::Blend => alpha.clamp(0.0, 1.0),
             _ => 1.0,
         };
@@ -188,7 +192,7 @@ impl FrameContext<'_> {
             Some(self.textures[texture as usize].nearest_bytes(self.interpolate_uv(hit, hit.barycentric)))
         };
         let sample = InkSample {
-            face: hit.face,
+            region: image.regions.of_face(self.scene, hit.object, hit.face),
             kind: self.line_kind(hit),
             normal: self.interpolate(hit, hit.barycentric).normal,
             depth: hit.t,

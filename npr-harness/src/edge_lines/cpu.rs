@@ -2,32 +2,49 @@
 
 use super::plan::EdgeLinePlan;
 use crate::cpu::frame::CpuFrame;
-use crate::scene::Scene;
+use crate::scene::{Mesh, Object, Scene};
 use crate::view::View;
-use glam::{DVec2, DVec3, Vec3};
-use npr_outline::contour::TRAIT_CUT_OUT;
+use glam::{DVec2, DVec3};
+use npr_outline::contour::{ContourEdges, TRAIT_CUT_OUT};
+use npr_outline::line_style::LineStyle;
 use npr_outline::segment::{ScreenSegment, outline_coverage, outline_is_visible, outline_project};
 
 /// Draws lines over `frame`, which has all samples of the view. `shift_px`: where its surfaces were sampled relative to the
 /// samples' centres, in px of the frame.
 pub(crate) fn draw_lines(plan: &EdgeLinePlan, scene: &Scene, view: &View, shift_px: DVec2, frame: &mut CpuFrame) {
-    let coverage = line_coverage(plan, scene, view, shift_px, frame);
-    let [r, g, b, opacity] = plan.style.ink;
-    let ink = DVec3::new(r.into(), g.into(), b.into());
-    for (color, coverage) in frame.color.iter_mut().zip(coverage) {
-        if coverage > 0.0 {
-            let opacity = f64::from(opacity) * coverage;
-            *color = color.truncate().lerp(ink, opacity).extend(opacity + color.w * (1.0 - opacity));
+    for (style, objects) in plan.groups(scene) {
+        let mut coverage = vec![0.0f64; frame.color.len()];
+        for number in objects {
+            let (object, mesh) = scene.placed(number);
+            let lines = ObjectEdges { object, mesh, contours: &plan.contours[number as usize], style: &style };
+            add_coverage(&lines, view, shift_px, frame, &mut coverage);
+        }
+        let [r, g, b, opacity] = style.ink;
+        let ink = DVec3::new(r.into(), g.into(), b.into());
+        for (color, coverage) in frame.color.iter_mut().zip(coverage) {
+            if coverage > 0.0 {
+                let opacity = f64::from(opacity) * coverage;
+                *color = color.truncate().lerp(ink, opacity).extend(opacity + color.w * (1.0 - opacity));
+            }
         }
     }
 }
 
-/// Per pixel how much of it visible lines cover, the greatest of any line.
-fn line_coverage(plan: &EdgeLinePlan, scene: &Scene, view: &View, shift_px: DVec2, frame: &CpuFrame) -> Vec<f64> {
-    let mut coverage = vec![0.0f64; frame.color.len()];
-    let (contours, scale) = (&plan.contours, f64::from(view.samples.max(1)));
-    let eye = view.camera.homogeneous_eye();
-    let (lines, _) = plan.lines(eye);
+/// The edges of an object, and how their lines look.
+struct ObjectEdges<'a> {
+    object: &'a Object,
+    mesh: &'a Mesh,
+    contours: &'a ContourEdges,
+    style: &'a LineStyle,
+}
+
+/// Adds how much visible lines of an object cover of each pixel, the greatest of any line.
+fn add_coverage(edges: &ObjectEdges<'_>, view: &View, shift_px: DVec2, frame: &CpuFrame, coverage: &mut [f64]) {
+    let &ObjectEdges { object, mesh, contours, style } = edges;
+    let scale = f64::from(view.samples.max(1));
+    let eye = object.homogeneous(view.camera.homogeneous_eye());
+    let mut lines = Vec::new();
+    contours.scan(eye, &mut lines);
     let view = view.camera.line_view(view.sampled_size_px());
     let local_eye = contours.local_eye(eye);
     let last = (i64::from(frame.width) - 1, i64::from(frame.height) - 1);
@@ -35,12 +52,11 @@ fn line_coverage(plan: &EdgeLinePlan, scene: &Scene, view: &View, shift_px: DVec
     for line in lines {
         let edge = line as usize;
         let Some(kind) = contours.kind(edge, local_eye) else { continue };
-        let width_px = f64::from(plan.style.width_px[kind as usize]) * scale;
+        let width_px = f64::from(style.width_px[kind as usize]) * scale;
         if width_px <= 0.0 {
             continue;
         }
-        let ends = contours.ends[edge].map(|v| scene.model.positions[v as usize].as_dvec3());
-        let normals = contours.normals(edge).map(|n: Vec3| n.as_dvec3());
+        let (ends, normals) = placed_edge(object, mesh, contours, edge);
         let Some(segment) = outline_project(ends, normals, width_px, &view) else { continue };
         // The depth samples move, the coverage does not: it is no sample, but a function of where the pixel is.
         let among_samples = ScreenSegment { ends_px: segment.ends_px.map(|end| end - shift_px), ..segment };
@@ -67,7 +83,20 @@ fn line_coverage(plan: &EdgeLinePlan, scene: &Scene, view: &View, shift_px: DVec
             }
         }
     }
-    coverage
+}
+
+/// The ends of an edge in the scene, in the order in which its first face runs over it there, and the unit normals of its
+/// faces; zero where there is no second.
+pub(crate) fn placed_edge(
+    object: &Object,
+    mesh: &Mesh,
+    contours: &ContourEdges,
+    edge: usize,
+) -> ([DVec3; 2], [DVec3; 2]) {
+    let [from, to] = contours.ends[edge].map(|v| object.point(mesh.model().positions[v as usize]));
+    // A mirrored face's normal is on the side of its front, and its corners run the other way around it.
+    let ends = if object.is_mirrored() { [to, from] } else { [from, to] };
+    (ends, contours.normals(edge).map(|normal| object.normal(normal)))
 }
 
 /// Where a row of pixels may be within reach of a line: the columns' range, a little too wide.

@@ -1,7 +1,7 @@
 //! The part of a plan that is about lines along edges.
 
 use crate::error::HarnessError;
-use crate::scene::Scene;
+use crate::scene::{Mesh, Object, ObjectLines, Scene};
 use crate::schema::{within, within_colors};
 use glam::DVec4;
 use npr_outline::contour::{ContourEdges, ContourOptions, contour_edges};
@@ -14,8 +14,8 @@ pub const INK: [f32; 4] = [0.10, 0.09, 0.11, 1.0];
 /// Lines along edges.
 #[derive(Clone, Debug)]
 pub struct EdgeLinePlan {
-    /// The edges that can be lines.
-    pub contours: Arc<ContourEdges>,
+    /// Per object the edges that can be lines; objects share them whose transforms keep angles.
+    pub contours: Vec<Arc<ContourEdges>>,
     /// Their widths in px of the picture, and their ink.
     pub style: LineStyle,
     /// How a device finds them.
@@ -31,7 +31,7 @@ pub enum EdgeLineMethod {
     OnDevice,
 }
 
-/// The key of the contours among what is derived of a scene: the crease angle.
+/// The key of the contours among what is derived of a mesh: the crease angle.
 #[derive(PartialEq)]
 struct ContoursKey(f32);
 
@@ -44,24 +44,61 @@ impl EdgeLinePlan {
         method: impl FnOnce(u64) -> EdgeLineMethod,
     ) -> Result<Self, HarnessError> {
         style.validate()?;
-        let contours = scene.derived.get(ContoursKey(crease_angle_rad), || {
-            let options = ContourOptions { crease_angle_rad, material_borders: false };
-            contour_edges(&scene.model, &scene.edges, &options)
-        })?;
-        let method = method(contours.device_bytes(&scene.model.positions));
+        for object in scene.objects() {
+            if let ObjectLines::Own(own) = &object.lines {
+                validate(own)?;
+            }
+        }
+        let of_object = |(object, mesh): (&Object, &Mesh)| {
+            let (derived, world_from_normal) = object.derived(mesh);
+            let options = ContourOptions { crease_angle_rad, material_borders: false, world_from_normal };
+            derived.get(ContoursKey(crease_angle_rad), || contour_edges(mesh.model(), mesh.edges(), &options))
+        };
+        let contours = scene.placed_objects().map(of_object).collect::<Result<Vec<_>, _>>()?;
+        let method = method(device_bytes(scene, &contours));
         Ok(Self { contours, style: *style, method })
     }
 
-    /// The edges that are lines for an eye, and how many there are of each [`LineKind`](npr_outline::LineKind).
-    pub fn lines(&self, eye: DVec4) -> (Vec<u32>, [usize; 4]) {
-        let (mut lines, mut counts) = (Vec::new(), [0; 4]);
-        self.contours.scan(eye, &mut lines);
-        let eye = self.contours.local_eye(eye);
-        for kind in lines.iter().filter_map(|&line| self.contours.kind(line as usize, eye)) {
-            counts[kind as usize] += 1;
+    /// The objects that have lines, by the style of their lines: that of the picture first.
+    pub(crate) fn groups(&self, scene: &Scene) -> Vec<(LineStyle, Vec<u32>)> {
+        let mut groups: Vec<(LineStyle, Vec<u32>)> = vec![(self.style, Vec::new())];
+        for (number, object) in (0u32..).zip(scene.objects()) {
+            let style = match object.lines {
+                ObjectLines::OfStyle => self.style,
+                ObjectLines::None => continue,
+                ObjectLines::Own(style) => style,
+            };
+            match groups.iter_mut().find(|(known, _)| *known == style) {
+                Some((_, objects)) => objects.push(number),
+                None => groups.push((style, vec![number])),
+            }
+        }
+        groups.retain(|(_, objects)| !objects.is_empty());
+        groups
+    }
+
+    /// The edges that are lines for an eye, each as object and edge, and how many there are of each
+    /// [`LineKind`](npr_outline::LineKind).
+    pub fn lines(&self, scene: &Scene, eye: DVec4) -> (Vec<[u32; 2]>, [usize; 4]) {
+        let (mut lines, mut counts, mut found) = (Vec::new(), [0; 4], Vec::new());
+        for number in self.groups(scene).into_iter().flat_map(|(_, objects)| objects) {
+            let object = &scene.objects()[number as usize];
+            let (contours, eye) = (&self.contours[number as usize], object.homogeneous(eye));
+            contours.scan(eye, &mut found);
+            let eye = contours.local_eye(eye);
+            for kind in found.iter().filter_map(|&line| contours.kind(line as usize, eye)) {
+                counts[kind as usize] += 1;
+            }
+            lines.extend(found.iter().map(|&line| [number, line]));
         }
         (lines, counts)
     }
+}
+
+/// The size of the largest buffer for finding lines on a device, bytes.
+pub(crate) fn device_bytes(scene: &Scene, contours: &[Arc<ContourEdges>]) -> u64 {
+    let bytes = scene.placed_objects().zip(contours).map(|((_, mesh), of)| of.device_bytes(&mesh.model().positions));
+    bytes.max().unwrap_or(0)
 }
 
 /// Whether widths and colours are in their ranges.

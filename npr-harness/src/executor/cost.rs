@@ -62,7 +62,7 @@ impl Work {
     /// Of so many frames by a renderer that is kept, with whatever moves but the scene's own shape.
     pub fn sequence(scene: &Scene, style: &Style, (width, height): (u32, u32), samples: u32, frames: u32) -> Self {
         let pixels = f64::from(width) * f64::from(height);
-        let (faces, frames) = (scene.model.faces.len() as f64, f64::from(frames));
+        let (faces, frames) = (scene.face_count() as f64, f64::from(frames));
         let count = pixels * f64::from(samples).powi(2);
         let ink = style.lines.image.map(|ink| ink.scale);
         let volumes = style.shadow.is_some_and(|shadow| shadow.method == ShadowMethod::Volumes);
@@ -144,6 +144,6 @@ mod tests {
         approx::assert_relative_eq!(two.cpu_ms(), 2.0 * one.cpu_ms() - one.hierarchy_ms);
         approx::assert_relative_eq!(two.software_adapter_ms(), 2.0 * one.software_adapter_ms() - OPEN_MS);
         let finer = Work::new(&scene, &cartoon, (640, 360), 2);
-        assert!((finer.rays_ms - 4.0 * one.rays_ms).abs() < 4.0 * SCAN_MS * scene.model.faces.len() as f64);
+        assert!((finer.rays_ms - 4.0 * one.rays_ms).abs() < 4.0 * SCAN_MS * scene.face_count() as f64);
     }
 }

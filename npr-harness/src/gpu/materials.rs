@@ -8,6 +8,7 @@ use crate::texture::MipMapped;
 use npr_mesh::{AlphaMode, Texture, Wrap};
 use npr_outline::filled_buffer::filled_buffer;
 use std::collections::HashMap;
+use std::sync::Arc;
 use wgpu::util::DeviceExt;
 
 /// `SurfaceMaterial` of `surface.wgsl`.
@@ -52,8 +53,9 @@ impl Materials {
 
 /// Whether a material's colour differs from pixel to pixel, or its alpha decides.
 pub(super) fn is_looked_up(scene: &Scene, material: usize) -> bool {
-    let m = &scene.model.materials[material];
-    m.texture.is_some() || !scene.model.colors.is_empty() || matches!(m.alpha_mode, AlphaMode::Mask { .. })
+    let m = &scene.materials()[material];
+    let colored = || scene.meshes().iter().any(|mesh| !mesh.model().colors.is_empty());
+    m.texture.is_some() || matches!(m.alpha_mode, AlphaMode::Mask { .. }) || colored()
 }
 
 /// `uniforms`: of all materials, each where an offset says that is given when the group is bound.
@@ -101,11 +103,11 @@ fn materials(
         name: "white".into(),
         width: 1,
         height: 1,
-        rgba8: vec![255; 4],
+        rgba8: Arc::from([255; 4]),
         wrap: [Wrap::Clamp; 2],
         smooth: true,
     };
-    let of_model: &[Texture] = if plan.looks_up { &scene.model.textures } else { &[] };
+    let of_model: &[Texture] = if plan.looks_up { scene.textures() } else { &[] };
     let upload = |texture| upload_texture(context, texture);
     let textures: Vec<_> = of_model.iter().chain([&white]).map(upload).collect::<Result<_, _>>()?;
     // A uniform's dynamic offset is a multiple of this.
@@ -114,7 +116,7 @@ fn materials(
     let mut uniforms: Vec<u8> = Vec::new();
     let mut first: HashMap<_, usize> = HashMap::new();
     let (mut duplicates, mut places) = (Vec::new(), Vec::new());
-    for (number, material) in scene.model.materials.iter().enumerate() {
+    for (number, material) in scene.materials().iter().enumerate() {
         let group = material.texture.map(|t| t as usize).filter(|&t| t < of_model.len()).unwrap_or(of_model.len());
         let (_, _, size, levels) = &textures[group];
         let cutoff = if let AlphaMode::Mask { cutoff } = material.alpha_mode { cutoff } else { f32::MIN };
@@ -128,7 +130,7 @@ fn materials(
             texture_size: *size,
             last_level: (*levels - 1) as f32,
             cutoff,
-            wrap: material.texture.map_or([0; 2], |t| scene.model.textures[t as usize].wrap.map(|wrap| wrap as u32)),
+            wrap: material.texture.map_or([0; 2], |t| scene.textures()[t as usize].wrap.map(|wrap| wrap as u32)),
             padding: [0; 2],
         };
         let bytes: [u8; size_of::<MaterialUniform>()] = bytemuck::cast(uniform);

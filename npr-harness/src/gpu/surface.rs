@@ -1,7 +1,8 @@
 //! The geometry pass.
 
+use super::instances::INSTANCE_LAYOUT;
 use super::materials::is_looked_up;
-use super::scene::{Batch, GpuScene};
+use super::scene::GpuScene;
 use super::shader::{Blank, LightOnDevice, ShaderKey, assemble};
 use super::targets::COLOR_FORMAT;
 use super::uniform::uniform_buffer;
@@ -21,6 +22,7 @@ use npr_imagespace::pass::fused::texel_format;
 use npr_outline::filled_buffer::filled_buffer;
 use std::cell::RefCell;
 use std::collections::HashMap;
+use std::ops::Range;
 
 /// `SurfaceView` of `surface.wgsl`.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
@@ -60,13 +62,15 @@ pub(super) struct InkUniform {
     right: [f32; 4],
     up: [f32; 4],
     back: [f32; 4],
+    region_max: u32,
+    padding: [u32; 3],
 }
 
 impl InkUniform {
     fn new(image: &ImagePlan, camera: &Camera) -> Self {
         let axis = |axis: DVec3| axis.as_vec3().extend(0.0).to_array();
         let [right, up, back] = camera.axes().map(axis);
-        Self { code: image.buffer_code(camera), right, up, back }
+        Self { code: image.buffer_code(camera), right, up, back, region_max: image.regions.most, padding: [0; 3] }
     }
 }
 
@@ -91,6 +95,15 @@ struct Inking {
     region_of_texture: bool,
 }
 
+/// Faces of one material, of one or several objects.
+struct Drawn<'a> {
+    material: usize,
+    indices: Range<u32>,
+    instances: wgpu::BufferSlice<'a>,
+    count: u32,
+    mirrored: bool,
+}
+
 /// What the pass draws into: depth, and what of the others is there.
 #[derive(Clone, Copy)]
 pub(super) struct SurfaceTargets<'a> {
@@ -109,6 +122,7 @@ struct Variant {
     looked_up: bool,
     by_alpha: bool,
     cull_back: bool,
+    mirrored: bool,
     blended: bool,
     /// The shader's number in [`SurfacePass::shaders`].
     shader: usize,
@@ -329,15 +343,21 @@ impl SurfacePass {
         } else {
             Vec::new()
         };
+        let instances = uploaded.instances.borrow();
         let duplicates = &uploaded.materials.duplicates;
-        let material_of = |face: &u32| duplicates[scene.model.face_material[*face as usize] as usize];
-        let blended_runs: Vec<&[u32]> = blended.chunk_by(|a, b| material_of(a) == material_of(b)).collect();
-        let (draws, limit) = (uploaded.batches.len() + blended_runs.len(), uploaded.most_draws);
+        let look = |&[object, face]: &[u32; 2]| (object, duplicates[scene.material_number(object, face)]);
+        let blended_runs: Vec<&[[u32; 2]]> = blended.chunk_by(|a, b| look(a) == look(b)).collect();
+        let solid_draws: usize = instances.runs().iter().map(|run| uploaded.batches[run.mesh].len()).sum();
+        let (draws, limit) = (solid_draws + blended_runs.len(), uploaded.most_draws);
         if draws > limit {
             return Err(HarnessError::TooManyDraws { draws, limit });
         }
         let blended_indices = (!blended.is_empty()).then(|| {
-            let faces: Vec<_> = blended.iter().map(|f| scene.model.faces[*f as usize]).collect();
+            let corners = |&[object, face]: &[u32; 2]| {
+                let (object, mesh) = scene.placed(object);
+                mesh.model().faces[face as usize].map(|vertex| uploaded.first_vertices[object.mesh()] + vertex)
+            };
+            let faces: Vec<_> = blended.iter().map(corners).collect();
             filled_buffer(device, "blended faces", bytemuck::cast_slice(&faces), wgpu::BufferUsages::INDEX)
         });
         let paper = plan.paper.as_dvec3();
@@ -350,12 +370,12 @@ impl SurfacePass {
         };
         let bound = (&view_group, uploaded, targets.depth);
         let mut set = None;
-        let mut draw = |pass: &mut wgpu::RenderPass<'_>, batch: &Batch, colored: bool, blended: bool| {
-            let material = &scene.model.materials[batch.material];
+        let mut draw = |pass: &mut wgpu::RenderPass<'_>, drawn: Drawn<'_>, colored: bool, blended: bool| {
+            let material = &scene.materials()[drawn.material];
             let double_sided = material.double_sided;
             // A blended surface is no surface to lines in the image.
             let inking = plan.image.as_ref().filter(|_| targets.texels.is_some() && !blended).map(|image| {
-                let line_kind = image.line_kinds[batch.material];
+                let line_kind = image.line_kinds[drawn.material];
                 Inking {
                     layout: image.ink.layout,
                     line_kind,
@@ -367,9 +387,10 @@ impl SurfacePass {
                 || inking.is_some_and(|inking| inking.line_kind != LineKind::Normals);
             let variant = Variant {
                 paint,
-                looked_up: is_looked_up(scene, batch.material) && wanted,
+                looked_up: is_looked_up(scene, drawn.material) && wanted,
                 by_alpha: by_alpha && material.texture.is_some(),
                 cull_back: plan.cull_back || !double_sided,
+                mirrored: drawn.mirrored,
                 blended,
                 shader,
                 // No shadow is known of what is blended: it is not what the stencil was counted against.
@@ -388,8 +409,9 @@ impl SurfacePass {
                 pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
                 set = Some(variant);
             }
-            uploaded.materials.bind(pass, batch.material);
-            pass.draw_indexed(batch.indices.clone(), 0, 0..1);
+            uploaded.materials.bind(pass, drawn.material);
+            pass.set_vertex_buffer(4, drawn.instances);
+            pass.draw_indexed(drawn.indices, 0, 0..drawn.count);
         };
         // WebGL2 has one write mask and one blend state for all targets of a pass. So a picture that is left as paper is
         // cleared by itself where texels are drawn, and blended surfaces, which have no texels, have a pass of their own.
@@ -407,8 +429,18 @@ impl SurfacePass {
         }
         let mut pass = begin(encoder, bound, [color.filter(|_| colored), texels], wgpu::LoadOp::Clear(0.0));
         let needed = targets.color.is_none() || plan.draws_surfaces;
-        for batch in uploaded.batches.iter().filter(|_| needed) {
-            draw(&mut pass, batch, colored, false);
+        for run in instances.runs().iter().filter(|_| needed) {
+            let (first, is_one) = run.material;
+            for batch in &uploaded.batches[run.mesh] {
+                let drawn = Drawn {
+                    material: first + if is_one { 0 } else { batch.material },
+                    indices: batch.indices.clone(),
+                    instances: instances.slice(run),
+                    count: run.objects.len() as u32,
+                    mirrored: run.mirrored,
+                };
+                draw(&mut pass, drawn, colored, false);
+            }
         }
         if let (Some(view), Some(_), false) = (targets.color, targets.texels, blended_runs.is_empty()) {
             drop(pass);
@@ -417,14 +449,23 @@ impl SurfacePass {
         let mut start = 0;
         for run in blended_runs {
             let end = start + 3 * run.len() as u32;
-            draw(&mut pass, &Batch { material: material_of(&run[0]), indices: start..end }, true, true);
+            let (object, material) = look(&run[0]);
+            let drawn = Drawn {
+                material,
+                indices: start..end,
+                instances: instances.slice_of(object),
+                count: 1,
+                mirrored: scene.objects()[object as usize].is_mirrored(),
+            };
+            draw(&mut pass, drawn, true, true);
             start = end;
         }
         Ok(())
     }
 
     fn pipeline(&self, device: &wgpu::Device, variant: Variant) -> wgpu::RenderPipeline {
-        let Variant { paint, looked_up, by_alpha, cull_back, blended, colored, clipped, inking, .. } = variant;
+        let Variant { paint, looked_up, by_alpha, cull_back, mirrored, blended, colored, clipped, inking, .. } =
+            variant;
         let shaders = self.shaders.borrow();
         let (key, module) = &shaders[variant.shader];
         let inked = inking.is_some();
@@ -470,8 +511,13 @@ impl SurfacePass {
         let hatched = paint == Paint::Hatched;
         let everything = hatched || vertex == "vs_lit";
         let (looks_up, has_regions) = (everything || looked_up, everything || inked);
-        let buffers =
-            [Some(geometry), looks_up.then_some(lookups), has_regions.then_some(regions), hatched.then_some(strokes)];
+        let buffers = [
+            Some(geometry),
+            looks_up.then_some(lookups),
+            has_regions.then_some(regions),
+            hatched.then_some(strokes),
+            Some(INSTANCE_LAYOUT),
+        ];
         let target = wgpu::ColorTargetState {
             format: COLOR_FORMAT,
             blend: blended.then_some(wgpu::BlendState::ALPHA_BLENDING),
@@ -513,7 +559,11 @@ impl SurfacePass {
                 compilation_options: options(),
                 buffers: &buffers,
             },
-            primitive: wgpu::PrimitiveState { cull_mode: cull_back.then_some(wgpu::Face::Back), ..Default::default() },
+            primitive: wgpu::PrimitiveState {
+                cull_mode: cull_back.then_some(wgpu::Face::Back),
+                front_face: if mirrored { wgpu::FrontFace::Cw } else { wgpu::FrontFace::Ccw },
+                ..Default::default()
+            },
             depth_stencil: Some(wgpu::DepthStencilState {
                 format: variant.depth,
                 depth_write_enabled: Some(!blended),
@@ -570,14 +620,10 @@ fn begin<'a>(
 }
 
 /// Blended faces from the farthest to the nearest, by the eye depth of their middle; equals in the file's order.
-fn back_to_front(scene: &Scene, faces: &[u32], camera: &Camera) -> Vec<u32> {
+fn back_to_front(scene: &Scene, faces: &[[u32; 2]], camera: &Camera) -> Vec<[u32; 2]> {
     let back = camera.axes()[2];
-    let depth = |face: u32| {
-        let middle: DVec3 =
-            scene.model.faces[face as usize].iter().map(|&v| scene.model.positions[v as usize].as_dvec3()).sum();
-        middle.dot(back)
-    };
-    let mut keyed: Vec<(f64, u32)> = faces.iter().map(|&face| (depth(face), face)).collect();
+    let depth = |[object, face]: [u32; 2]| scene.face_corners(object, face).into_iter().sum::<DVec3>().dot(back);
+    let mut keyed: Vec<(f64, [u32; 2])> = faces.iter().map(|&face| (depth(face), face)).collect();
     keyed.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     keyed.into_iter().map(|(_, face)| face).collect()
 }

@@ -33,6 +33,11 @@ struct SurfaceInk {
     right: vec4<f32>,
     up: vec4<f32>,
     back: vec4<f32>,
+    // The largest number of a region; larger ones are folded.
+    region_max: u32,
+    padding0: u32,
+    padding1: u32,
+    padding2: u32,
 }
 
 // Whether a plane cuts the scene.
@@ -128,41 +133,81 @@ fn to_eye(position_px: vec2<f32>) -> vec3<f32> {
     return view.to_eye.xyz + view.to_eye_dx.xyz * position_px.x + view.to_eye_dy.xyz * position_px.y;
 }
 
-@vertex
-fn vs_depth(@location(0) position: vec3<f32>) -> @invariant @builtin(position) vec4<f32> {
-    return view.clip_from_world * vec4<f32>(position, 1.0);
+// Where an object is placed.
+struct Instance {
+    // The rows of the matrix from the mesh to the world.
+    @location(8) row_x: vec4<f32>,
+    @location(9) row_y: vec4<f32>,
+    @location(10) row_z: vec4<f32>,
+    // What is added to the regions of the mesh, and what these are multiplied by before.
+    @location(11) regions: vec2<u32>,
+    // How much larger the mesh is placed, and log2 of that.
+    @location(12) scale: vec2<f32>,
+}
+
+fn placed_position(position: vec3<f32>, instance: Instance) -> vec3<f32> {
+    let point = vec4<f32>(position, 1.0);
+    return vec3<f32>(dot(instance.row_x, point), dot(instance.row_y, point), dot(instance.row_z, point));
+}
+
+// Of the same length, by the inverse transpose.
+fn placed_normal(normal: vec3<f32>, instance: Instance) -> vec3<f32> {
+    let x = vec3<f32>(instance.row_x.x, instance.row_y.x, instance.row_z.x);
+    let y = vec3<f32>(instance.row_x.y, instance.row_y.y, instance.row_z.y);
+    let z = vec3<f32>(instance.row_x.z, instance.row_y.z, instance.row_z.z);
+    // The columns of the inverse transpose times the determinant.
+    let cofactors = mat3x3<f32>(cross(y, z), cross(z, x), cross(x, y));
+    let turned = cofactors * normal * sign(dot(x, cofactors[0]));
+    return turned * sqrt(dot(normal, normal) / max(dot(turned, turned), 1e-37));
+}
+
+fn placed_region(region: u32, instance: Instance) -> u32 {
+    return ink_fold_region(instance.regions.x + instance.regions.y * region, max(ink.region_max, 1u));
 }
 
 @vertex
-fn vs_plain(@location(0) position: vec3<f32>, @location(1) normal: vec3<f32>) -> Surface {
-    return Surface(view.clip_from_world * vec4<f32>(position, 1.0), normal);
+fn vs_depth(@location(0) position: vec3<f32>, instance: Instance) -> @invariant @builtin(position) vec4<f32> {
+    return view.clip_from_world * vec4<f32>(placed_position(position, instance), 1.0);
+}
+
+@vertex
+fn vs_plain(@location(0) position: vec3<f32>, @location(1) normal: vec3<f32>, instance: Instance) -> Surface {
+    let world = placed_position(position, instance);
+    return Surface(view.clip_from_world * vec4<f32>(world, 1.0), placed_normal(normal, instance));
 }
 
 @vertex
 fn vs_textured(
     @location(0) position: vec3<f32>, @location(1) normal: vec3<f32>, @location(2) uv: vec2<f32>,
-    @location(3) color: vec4<f32>,
+    @location(3) color: vec4<f32>, instance: Instance,
 ) -> TexturedSurface {
-    return TexturedSurface(view.clip_from_world * vec4<f32>(position, 1.0), normal, uv, color);
+    let world = placed_position(position, instance);
+    return TexturedSurface(view.clip_from_world * vec4<f32>(world, 1.0), placed_normal(normal, instance), uv, color);
 }
 
 @vertex
 fn vs_plain_inked(
-    @location(0) position: vec3<f32>, @location(1) normal: vec3<f32>, @location(4) region: u32,
+    @location(0) position: vec3<f32>, @location(1) normal: vec3<f32>, @location(4) region: u32, instance: Instance,
 ) -> InkedSurface {
-    return InkedSurface(view.clip_from_world * vec4<f32>(position, 1.0), normal, region);
+    let world = placed_position(position, instance);
+    let number = placed_region(region, instance);
+    return InkedSurface(view.clip_from_world * vec4<f32>(world, 1.0), placed_normal(normal, instance), number);
 }
 
 @vertex
 fn vs_textured_inked(
     @location(0) position: vec3<f32>, @location(1) normal: vec3<f32>, @location(2) uv: vec2<f32>,
-    @location(3) color: vec4<f32>, @location(4) region: u32,
+    @location(3) color: vec4<f32>, @location(4) region: u32, instance: Instance,
 ) -> InkedTexturedSurface {
-    return InkedTexturedSurface(view.clip_from_world * vec4<f32>(position, 1.0), normal, uv, color, region);
+    let world = placed_position(position, instance);
+    let clip = view.clip_from_world * vec4<f32>(world, 1.0);
+    return InkedTexturedSurface(clip, placed_normal(normal, instance), uv, color, placed_region(region, instance));
 }
 
 // What the light needs of a vertex.
-fn lit_vertex(position: vec3<f32>, normal: vec3<f32>) -> PlainLitSurface {
+fn lit_vertex(mesh_position: vec3<f32>, mesh_normal: vec3<f32>, instance: Instance) -> PlainLitSurface {
+    let position = placed_position(mesh_position, instance);
+    let normal = placed_normal(mesh_normal, instance);
     let n = toon_unit(normal);
     let eye = view.eye.xyz - position * view.eye.w;
     // Brought to unit length at the pixel, all it takes is where that is.
@@ -180,20 +225,25 @@ fn lit_vertex(position: vec3<f32>, normal: vec3<f32>) -> PlainLitSurface {
 @vertex
 fn vs_lit(
     @location(0) position: vec3<f32>, @location(1) normal: vec3<f32>, @location(2) uv: vec2<f32>,
-    @location(3) color: vec4<f32>, @location(4) region: u32,
+    @location(3) color: vec4<f32>, @location(4) region: u32, instance: Instance,
 ) -> LitSurface {
-    let plain = lit_vertex(position, normal);
-    return LitSurface(plain.position, plain.normal, uv, color, region, plain.first, plain.second);
+    let plain = lit_vertex(position, normal, instance);
+    let number = placed_region(region, instance);
+    return LitSurface(plain.position, plain.normal, uv, color, number, plain.first, plain.second);
 }
 
 @vertex
-fn vs_lit_plain(@location(0) position: vec3<f32>, @location(1) normal: vec3<f32>) -> PlainLitSurface {
-    return lit_vertex(position, normal);
+fn vs_lit_plain(
+    @location(0) position: vec3<f32>, @location(1) normal: vec3<f32>, instance: Instance,
+) -> PlainLitSurface {
+    return lit_vertex(position, normal, instance);
 }
 
 @vertex
-fn vs_lit_vertex(@location(0) position: vec3<f32>, @location(1) normal: vec3<f32>) -> VertexLitSurface {
-    let plain = lit_vertex(position, normal);
+fn vs_lit_vertex(
+    @location(0) position: vec3<f32>, @location(1) normal: vec3<f32>, instance: Instance,
+) -> VertexLitSurface {
+    let plain = lit_vertex(position, normal, instance);
     return VertexLitSurface(plain.position, plain.first.xy);
 }
 

@@ -124,8 +124,8 @@ impl Targets {
         let texture = |label, format, usage| texture(context, label, format, usage, (width, height));
         let view = |texture: &wgpu::Texture| texture.create_view(&Default::default());
         let read = wgpu::TextureUsages::TEXTURE_BINDING;
-        let color = texture("colour", COLOR_FORMAT, read | wgpu::TextureUsages::COPY_SRC);
         let copied = wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::COPY_DST;
+        let color = texture("colour", COLOR_FORMAT, read | copied);
         let inked = texture("colour and lines", COLOR_FORMAT, read | copied);
         Ok(Self {
             width,
@@ -178,6 +178,11 @@ impl Targets {
     pub(crate) fn begin_ink(&self, encoder: &mut wgpu::CommandEncoder) {
         encoder.copy_texture_to_texture(self.color.as_image_copy(), self.inked.as_image_copy(), self.color.size());
         self.is_inked.set(true);
+    }
+
+    /// Takes the picture with the lines so far as the painted one, for lines that are drawn over these.
+    pub(crate) fn continue_ink(&self, encoder: &mut wgpu::CommandEncoder) {
+        encoder.copy_texture_to_texture(self.inked.as_image_copy(), self.color.as_image_copy(), self.color.size());
     }
 
     pub(crate) fn read(&self, context: &GpuContext) -> Result<Image, HarnessError> {

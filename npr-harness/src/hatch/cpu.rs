@@ -30,8 +30,11 @@ pub(crate) struct Hatching<'a> {
     pub(crate) at: DVec3,
     pub(crate) at_dx: DVec3,
     pub(crate) at_dy: DVec3,
-    /// Of unit length.
+    /// In the space of the mesh, of unit length.
     pub(crate) normal: DVec3,
+    /// The number of the mesh, and log2 of how much larger it is placed.
+    pub(crate) mesh: usize,
+    pub(crate) octave: f64,
     /// Corners of the face, and the point's weights in it.
     pub(crate) corners: [u32; 3],
     pub(crate) barycentric: [f64; 3],
@@ -63,7 +66,8 @@ impl<'a> Strokes<'a> {
         Self { plan, tam, thresholds, tones: six_tones(tam), texels: f64::from(tam.side) * texel_px }
     }
 
-    /// Where on a surface strokes lie, of a position and texture coordinates.
+    /// Where on a surface strokes lie, of a position in the space of its mesh, in the scene's units, and of texture
+    /// coordinates.
     pub(crate) fn position(&self, at: DVec3, uv: DVec2) -> DVec3 {
         match self.plan.shade.mapping {
             HatchMapping::Coordinates => uv.extend(0.0),
@@ -167,8 +171,8 @@ impl<'a> Strokes<'a> {
     }
 
     /// The direction of the field and the octave of texture coordinates at a point of a face.
-    fn at_point(&self, corners: [u32; 3], barycentric: [f64; 3]) -> ([DVec3; 2], f64) {
-        let vertices = &self.plan.vertices;
+    fn at_point(&self, mesh: usize, corners: [u32; 3], barycentric: [f64; 3]) -> ([DVec3; 2], f64) {
+        let vertices = &self.plan.vertices[mesh];
         if vertices.is_empty() {
             return ([DVec3::ZERO; 2], 0.0);
         }
@@ -197,7 +201,8 @@ impl<'a> Strokes<'a> {
             }
             None => self.weights(tone),
         };
-        let (tensor, octave) = self.at_point(hatching.corners, hatching.barycentric);
+        let (tensor, octave) = self.at_point(hatching.mesh, hatching.corners, hatching.barycentric);
+        let octave = octave + hatching.octave;
         let Hatching { at, at_dx, at_dy, normal, .. } = *hatching;
         let left = self.hatched(&Sampled { at, at_dx, at_dy, normal, tensor, octave, tone, weights });
         let ground = match self.plan.shade.ground {

@@ -57,6 +57,8 @@ struct HatchedSurface {
     // Listing 4's weights, where they are computed at the vertices.
     @location(10) light_weights: vec3<f32>,
     @location(11) dark_weights: vec3<f32>,
+    // In the space of the mesh, as where the strokes lie.
+    @location(12) mesh_normal: vec3<f32>,
 }
 
 // What is asked of strokes at a pixel.
@@ -88,16 +90,17 @@ fn hatched_weights(tone: f32) -> HatchWeights {
 fn vs_hatched(
     @location(0) position: vec3<f32>, @location(1) normal: vec3<f32>, @location(2) uv: vec2<f32>,
     @location(3) color: vec4<f32>, @location(4) region: u32, @location(5) diagonal: vec3<f32>,
-    @location(6) others: vec3<f32>, @location(7) octave: f32,
+    @location(6) others: vec3<f32>, @location(7) octave: f32, instance: Instance,
 ) -> HatchedSurface {
-    let plain = lit_vertex(position, normal);
-    var at = position * hatch.tiles;
+    let plain = lit_vertex(position, normal, instance);
+    // In the space of the mesh, so that strokes move with it.
+    var at = position * instance.scale.x * hatch.tiles;
     if surface_hatch_mapping == HATCH_BY_COORDINATES {
         at = vec3<f32>(uv, 0.0);
     }
     var out = HatchedSurface(
-        plain.position, plain.normal, uv, color, region, plain.first, plain.second, at, diagonal, others, octave,
-        vec3<f32>(0.0), vec3<f32>(0.0),
+        plain.position, plain.normal, uv, color, placed_region(region, instance), plain.first, plain.second, at,
+        diagonal, others, octave + instance.scale.y, vec3<f32>(0.0), vec3<f32>(0.0), normal,
     );
     if surface_hatch_at_vertices {
         let weights = hatched_weights(hatched_tone(plain.first.x));
@@ -210,7 +213,7 @@ fn hatched_color(in: HatchedSurface, base: vec3<f32>, front: bool, at: ShadowAt)
         // The tone is known, its weights are not.
         weights = hatched_weights(tone);
     }
-    let normal = toon_unit(in.normal);
+    let normal = toon_unit(in.mesh_normal);
     let paper = hatched(Hatching(in.at, at_dx, at_dy, normal, in.diagonal, in.others, in.octave, tone, weights));
     var ground = hatch.paper;
     if surface_hatch_over_surface {

@@ -2,7 +2,8 @@
 
 use super::style::{HatchEncoding, HatchMapping, HatchShade};
 use crate::error::HarnessError;
-use crate::scene::Scene;
+use crate::scene::{Mesh, Scene};
+use glam::Vec2;
 use npr_hatch::field::{FieldOptions, LineTensor, direction_field};
 use npr_hatch::{HatchError, Tam, Thresholds, density};
 use npr_mesh::Model;
@@ -27,13 +28,14 @@ pub struct HatchPlan {
     pub shade: HatchShade,
     /// The length on the surface of one side of the map, in the units of the scene's positions.
     pub tile: f64,
-    /// Per vertex; empty if the mapping needs nothing.
-    pub vertices: Arc<Vec<HatchVertex>>,
+    /// Per mesh and vertex; empty if the mapping needs nothing. Strokes lie in the space of the mesh, so that they move
+    /// with it.
+    pub vertices: Vec<Arc<Vec<HatchVertex>>>,
     /// Whether the weights of six tones are computed at the vertices and interpolated, as listing 4 has them.
     pub weights_at_vertices: bool,
 }
 
-/// The key of [`HatchPlan::vertices`] among what is derived of a scene. The tile's bits.
+/// The key of [`HatchPlan::vertices`] among what is derived of a mesh. The tile's bits.
 #[derive(PartialEq)]
 enum VerticesKey {
     Form,
@@ -45,28 +47,13 @@ impl HatchPlan {
     pub(crate) fn new(scene: &Scene, shade: &HatchShade, at_vertices: bool) -> Result<Self, HarnessError> {
         let tile = f64::from(shade.tile) * if scene.radius() > 0.0 { scene.radius() } else { 1.0 };
         let mapping = match shade.mapping {
-            HatchMapping::Coordinates if scene.model.uvs.is_empty() => HatchMapping::Planes,
+            HatchMapping::Coordinates if scene.meshes().iter().all(|mesh| mesh.model().uvs.is_empty()) => {
+                HatchMapping::Planes
+            }
             other => other,
         };
-        let derived = &scene.derived;
-        let vertices = match mapping {
-            HatchMapping::Planes => Arc::default(),
-            HatchMapping::Form => derived.get(VerticesKey::Form, || {
-                let Model { positions, normals, faces, .. } = &scene.model;
-                let seams = &scene.edges.representative;
-                let directions = direction_field(positions, normals, faces, seams, &FieldOptions::default())?;
-                let vertex =
-                    |line: &LineTensor| HatchVertex { diagonal: line.diagonal, others: line.others, octave: 0.0 };
-                Ok::<_, HatchError>(directions.iter().map(vertex).collect())
-            })?,
-            HatchMapping::Coordinates => derived.get(VerticesKey::Coordinates(tile.to_bits()), || {
-                let model = &scene.model;
-                let seams = &scene.edges.representative;
-                let octaves = density::octaves(&model.positions, &model.uvs, &model.faces, seams, tile as f32)?;
-                let vertex = |octave| HatchVertex { diagonal: [0.0; 3], others: [0.0; 3], octave };
-                Ok::<_, HatchError>(octaves.into_iter().map(vertex).collect())
-            })?,
-        };
+        let of_mesh = |mesh: &Arc<Mesh>| vertices(mesh, mapping, tile);
+        let vertices = scene.meshes().iter().map(of_mesh).collect::<Result<_, _>>()?;
         let shade = HatchShade { mapping, ..shade.clone() };
         let plan = Self { tile, vertices, weights_at_vertices: false, shade };
         // Draws the map, if it is not drawn yet.
@@ -86,5 +73,26 @@ impl HatchPlan {
             HatchEncoding::SixTones => Ok(None),
             HatchEncoding::Thresholds => self.shade.map.thresholds(),
         }
+    }
+}
+
+/// What the strokes of a mesh need per vertex.
+fn vertices(mesh: &Mesh, mapping: HatchMapping, tile: f64) -> Result<Arc<Vec<HatchVertex>>, HatchError> {
+    let (Model { positions, normals, uvs, faces, .. }, seams) = (mesh.model(), &mesh.edges().representative);
+    match mapping {
+        HatchMapping::Planes => Ok(Arc::default()),
+        HatchMapping::Form => mesh.derived().get(VerticesKey::Form, || {
+            let directions = direction_field(positions, normals, faces, seams, &FieldOptions::default())?;
+            let vertex = |line: &LineTensor| HatchVertex { diagonal: line.diagonal, others: line.others, octave: 0.0 };
+            Ok(directions.iter().map(vertex).collect())
+        }),
+        HatchMapping::Coordinates => mesh.derived().get(VerticesKey::Coordinates(tile.to_bits()), || {
+            // Where only other meshes have any, all strokes lie at one place.
+            let none = if uvs.is_empty() { vec![Vec2::ZERO; positions.len()] } else { Vec::new() };
+            let uvs = if uvs.is_empty() { &none } else { uvs };
+            let octaves = density::octaves(positions, uvs, faces, seams, tile as f32)?;
+            let vertex = |octave| HatchVertex { diagonal: [0.0; 3], others: [0.0; 3], octave };
+            Ok(octaves.into_iter().map(vertex).collect())
+        }),
     }
 }

@@ -18,7 +18,7 @@ use npr_imagespace::shadow::{ShadowState, ink_shadow_normal, ink_shadow_region};
 
 /// A point of a surface as lines in the image see it.
 pub(crate) struct InkSample<'a> {
-    pub(crate) face: u32,
+    pub(crate) region: u32,
     /// Where the material's inner lines come from.
     pub(crate) kind: LineKind,
     /// World space, of any length, on the viewer's side.
@@ -45,7 +45,7 @@ pub(crate) fn texel(image: &ImagePlan, sample: Option<&InkSample<'_>>) -> [u32; 
     let shadow = if image.ink.shadows == ShadowLines::None { ShadowAt::default() } else { (sample.shadow)() };
     let negated = image.ink.shadows == ShadowLines::Negated && kind == LineKind::Normals && shadow.negated;
     let normal = ink_shadow_normal(normal(sample).as_vec3(), negated);
-    let of_face = image.face_region[sample.face as usize];
+    let of_face = sample.region;
     let of_texture = if kind == LineKind::Regions { (sample.texture_bytes)() } else { None };
     let region = of_texture.map_or(of_face, |rgb| ink_region_pair(of_face, ink_region_of_color(rgb)));
     let region = if image.ink.shadows.has_states() {

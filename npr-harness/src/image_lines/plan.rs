@@ -3,7 +3,7 @@
 use super::style::{ImageInk, InkScale, Regions};
 use crate::camera::{Camera, Projection};
 use crate::error::HarnessError;
-use crate::scene::Scene;
+use crate::scene::{Mesh, Object, Scene};
 use crate::shadow::ShadowLines;
 use crate::view::View;
 use glam::UVec2;
@@ -26,8 +26,8 @@ pub struct ImagePlan {
     pub ink: ImageInk,
     /// How eye depth is packed: the scene's own range, as far as the near plane leaves it.
     pub code: DepthCode,
-    /// Per face its region, folded to what a texel holds: from 1.
-    pub face_region: Arc<Vec<u32>>,
+    /// The region of each face.
+    pub regions: RegionPlan,
     /// Per material where its inner lines come from.
     pub line_kinds: Vec<LineKind>,
     /// The objects' lines, and those of shadows where they are drawn by the same pass.
@@ -40,13 +40,65 @@ pub struct ImagePlan {
     pub own_surfaces: bool,
 }
 
-/// The key of [`ImagePlan::face_region`] among what is derived of a scene.
+/// The regions of faces: those of their mesh, from 1, and where those of an object begin.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RegionPlan {
+    /// Per mesh and face.
+    pub of_meshes: Vec<Arc<Vec<u32>>>,
+    /// Per object what is added, and whether it is all there is.
+    pub of_objects: Vec<(u32, bool)>,
+    /// The largest number that a texel holds; larger ones are folded.
+    pub most: u32,
+}
+
+impl RegionPlan {
+    /// The region of an object's face as a texel holds it.
+    pub fn of_face(&self, scene: &Scene, object: u32, face: u32) -> u32 {
+        let (first, is_all) = self.of_objects[object as usize];
+        let of_mesh = &self.of_meshes[scene.objects()[object as usize].mesh()];
+        ink_fold_region(first + if is_all { 0 } else { of_mesh[face as usize] }, self.most)
+    }
+
+    fn new(
+        scene: &Scene,
+        by: Regions,
+        line_kinds: &[LineKind],
+        crease_angle_rad: f32,
+        most: u32,
+    ) -> Result<Self, HarnessError> {
+        let of_mesh = |(number, mesh): (usize, &Arc<Mesh>)| {
+            let line_kinds = &line_kinds[scene.materials_of(number)];
+            let key = FaceRegionKey { regions: by, crease_angle_rad, line_kinds: line_kinds.to_vec() };
+            mesh.derived().get(key, || face_regions(mesh, by, line_kinds, crease_angle_rad))
+        };
+        let of_meshes = scene.meshes().iter().enumerate().map(of_mesh).collect::<Result<Vec<_>, _>>()?;
+        let count = |regions: &Arc<Vec<u32>>| regions.iter().copied().max().unwrap_or(0);
+        let counts: Vec<u32> = of_meshes.iter().map(count).collect();
+        let mut next = 0u32;
+        let of_object = |object: &Object| {
+            let (material, is_one) = object.first_material();
+            match by {
+                Regions::One => (0, false),
+                Regions::Material if is_one => (region_of_index(material as u32), true),
+                Regions::Material => (material as u32, false),
+                Regions::Mesh | Regions::Patch => {
+                    let first = next;
+                    next = next.wrapping_add(counts[object.mesh()]);
+                    (first, false)
+                }
+            }
+        };
+        let of_objects = scene.objects().iter().map(of_object).collect();
+        Ok(Self { of_meshes, of_objects, most })
+    }
+}
+
+/// The key of a mesh's regions among what is derived of it.
 #[derive(PartialEq)]
 struct FaceRegionKey {
     regions: Regions,
     crease_angle_rad: f32,
     line_kinds: Vec<LineKind>,
-    most: u32,
 }
 
 /// One pass of lines.
@@ -99,25 +151,12 @@ impl ImagePlan {
             )?),
             _ => None,
         };
-        let materials = scene.model.materials.len();
+        let materials = scene.materials().len();
         let line_kinds = if ink.artist { scene.line_kinds.clone() } else { vec![LineKind::Normals; materials] };
         let most = ink.region_max();
-        let key = FaceRegionKey { regions: ink.regions, crease_angle_rad, line_kinds: line_kinds.clone(), most };
-        let face_region = scene.derived.get(key, || {
-            let regions = face_regions(scene, ink.regions, &line_kinds, crease_angle_rad)?;
-            Ok::<_, ImageSpaceError>(regions.into_iter().map(|region| ink_fold_region(region, most)).collect())
-        })?;
+        let regions = RegionPlan::new(scene, ink.regions, &line_kinds, crease_angle_rad, most)?;
         let own_surfaces = ink.scale != InkScale::One || view.samples > 1;
-        Ok(Self {
-            ink,
-            code,
-            face_region,
-            line_kinds,
-            lines,
-            shadow_lines,
-            size: ink.scale.size(view.size),
-            own_surfaces,
-        })
+        Ok(Self { ink, code, regions, line_kinds, lines, shadow_lines, size: ink.scale.size(view.size), own_surfaces })
     }
 
     /// Whether ink is needed by itself before it is composited: for a dilation, or since it has not the picture's size.
@@ -180,12 +219,12 @@ fn depth_code(scene: &Scene, camera: &Camera, layout: TexelLayout) -> Result<Dep
 /// Per face its region. Only materials whose lines come from normals or regions are split into patches: of the others
 /// each mesh is one, so that nothing is drawn in it but what the artist wants.
 fn face_regions(
-    scene: &Scene,
+    mesh: &Mesh,
     by: Regions,
     line_kinds: &[LineKind],
     crease_angle_rad: f32,
 ) -> Result<Vec<u32>, ImageSpaceError> {
-    let model = &scene.model;
+    let (model, edges) = (mesh.model(), mesh.edges());
     let faces = model.faces.len();
     let materials = || model.face_material.iter().map(|&material| region_of_index(material));
     let meshes = || {
@@ -200,9 +239,9 @@ fn face_regions(
         Regions::Patch => {
             let is_smooth = |edge: &Edge| {
                 edge.kind() == EdgeKind::TwoFace
-                    && scene.edges.dihedral_rad(edge).is_some_and(|angle| angle <= crease_angle_rad)
+                    && edges.dihedral_rad(edge).is_some_and(|angle| angle <= crease_angle_rad)
             };
-            let smooth = scene.edges.edges.iter().filter(|edge| is_smooth(edge)).map(Edge::faces);
+            let smooth = edges.edges.iter().filter(|edge| is_smooth(edge)).map(Edge::faces);
             let pairs: Vec<[u32; 2]> = smooth.chain(same_polygon(&model.face_polygon)).collect();
             let mut patches = region_of_patches(faces, &pairs)?;
             for ((patch, &material), mesh) in patches.iter_mut().zip(&model.face_material).zip(meshes()) {

@@ -2,7 +2,7 @@
 
 use super::plan::PrintedFinPlan;
 use crate::cpu::frame::CpuFrame;
-use crate::scene::Scene;
+use crate::scene::{ObjectLines, Scene};
 use crate::view::View;
 use glam::{DVec2, DVec4};
 use npr_outline::fin_printed::{fin_printed_triangles, rasterise};
@@ -10,12 +10,14 @@ use npr_outline::fin_printed::{fin_printed_triangles, rasterise};
 /// Draws the fins of the printed listing over `frame`. They are sampled where the surfaces are, so that a moved sample
 /// shows where their aliased borders are sensitive.
 pub(crate) fn draw_printed(plan: &PrintedFinPlan, scene: &Scene, view: &View, shift_px: DVec2, frame: &mut CpuFrame) {
-    let Some(bounds) = scene.bounds() else { return };
-    let (size_px, width_px) = (view.sampled_size_px(), f64::from(plan.style.width_px) * f64::from(view.samples.max(1)));
-    let view = view.camera.fin_view(size_px, width_px, bounds);
+    let (size_px, scale) = (view.sampled_size_px(), f64::from(view.samples.max(1)));
     // Clip space is 2 w wide and high, and its y points up.
     let moved = DVec2::new(-2.0, 2.0) * shift_px / size_px;
-    let mut triangles = fin_printed_triangles(&plan.fins, &view);
+    let mut triangles = Vec::new();
+    for object in scene.objects().iter().filter(|object| object.lines != ObjectLines::None) {
+        let Some(view) = plan.view(scene, object, &view.camera, size_px, scale) else { continue };
+        triangles.extend(fin_printed_triangles(&plan.fins[object.mesh()], &view));
+    }
     for corner in triangles.iter_mut().flatten() {
         *corner += DVec4::new(moved.x, moved.y, 0.0, 0.0) * corner.w;
     }

@@ -1,10 +1,11 @@
 //! The part of a plan that is about printed fins.
 
+use crate::camera::Camera;
 use crate::error::HarnessError;
-use crate::scene::Scene;
+use crate::scene::{Mesh, Object, Scene};
 use crate::schema::{within, within_colors};
-use glam::Vec3;
-use npr_outline::fin_printed::{PrintedFins, printed_fins};
+use glam::{DMat4, DVec2, Vec3};
+use npr_outline::fin_printed::{FinView, PrintedFins, printed_fins};
 use std::convert::Infallible;
 use std::sync::Arc;
 
@@ -27,20 +28,43 @@ impl PrintedLines {
 /// Printed fins of a scene.
 #[derive(Clone, Debug)]
 pub struct PrintedFinPlan {
-    /// A fin for every edge.
-    pub fins: Arc<PrintedFins>,
+    /// Per mesh a fin for every edge.
+    pub fins: Vec<Arc<PrintedFins>>,
     /// Their width and colour.
     pub style: PrintedLines,
 }
 
-/// The key of the fins among what is derived of a scene.
+/// The key of the fins among what is derived of a mesh.
 #[derive(PartialEq)]
 struct FinsKey;
 
 impl PrintedFinPlan {
     pub(crate) fn new(scene: &Scene, style: PrintedLines) -> Self {
-        let make = || Ok::<_, Infallible>(printed_fins(&scene.model, &scene.edges));
-        let Ok(fins) = scene.derived.get(FinsKey, make);
-        Self { fins, style }
+        let of_mesh = |mesh: &Arc<Mesh>| {
+            let make = || Ok::<_, Infallible>(printed_fins(mesh.model(), mesh.edges()));
+            let Ok(fins) = mesh.derived().get(FinsKey, make);
+            fins
+        };
+        Self { fins: scene.meshes().iter().map(of_mesh).collect(), style }
+    }
+
+    /// The view of an object's fins: in the space of its mesh, but for depth. `None` without faces.
+    ///
+    /// `size_px`: of the target; `scale`: px of it in one of the picture.
+    pub(crate) fn view(
+        &self,
+        scene: &Scene,
+        object: &Object,
+        camera: &Camera,
+        size_px: DVec2,
+        scale: f64,
+    ) -> Option<FinView> {
+        let view = camera.fin_view(size_px, f64::from(self.style.width_px) * scale, scene.bounds()?);
+        Some(FinView {
+            clip_from_world: view.clip_from_world * DMat4::from(*object.scene_from_mesh()),
+            eye: object.homogeneous(view.eye.extend(1.0)).truncate(),
+            thickness: view.thickness / object.scale(),
+            ..view
+        })
     }
 }

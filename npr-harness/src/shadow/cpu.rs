@@ -21,16 +21,18 @@ pub(crate) struct ShadowAt {
 pub(crate) fn shadow_at(shadow: &ShadowPlan, scene: &Scene, hit: &Hit, at: DVec3, normal: DVec3) -> ShadowAt {
     let light = shadow.light;
     let way = light.truncate() - at * light.w;
-    let [a, b, c] = scene.model.faces[hit.face as usize].map(|v| scene.model.positions[v as usize].as_dvec3());
-    let of_face = (b - a).cross(c - a) * if hit.front { 1.0 } else { -1.0 };
+    let [a, b, c] = scene.face_corners(hit.object, hit.face);
+    let is_turned = hit.front == scene.placed(hit.object).0.is_mirrored();
+    let of_face = (b - a).cross(c - a) * if is_turned { -1.0 } else { 1.0 };
     if of_face.dot(way) <= 0.0 {
         return ShadowAt { negated: true, ..ShadowAt::default() };
     }
     // What is nearer is the surface itself, or a copy of it.
     let nearest = scene.radius() * 1e-9;
     let range = (nearest / way.length(), if light.w == 0.0 { f64::INFINITY } else { 1.0 });
-    let is_caster = |other: &Hit| other.face != hit.face && casts(scene, other.face);
-    let falls = scene.rays().any(at, way, range, is_caster);
+    let is_itself = |other: &Hit| (other.object, other.face) == (hit.object, hit.face);
+    let is_caster = |other: &Hit| !is_itself(other) && casts(scene, other);
+    let falls = scene.any(at, way, range, is_caster);
     let n_dot_l = normal.normalize_or_zero().dot(way.normalize_or_zero());
     let state = match falls {
         _ if n_dot_l <= f64::from(shadow.terminator) => ShadowState::BackFacing,

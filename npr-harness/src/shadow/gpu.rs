@@ -4,13 +4,15 @@ use super::plan::{ShadowPlan, ShadowTechnique, VolumeMethod};
 use crate::camera::{Camera, Projection};
 use crate::error::HarnessError;
 use crate::gpu::context::GpuContext;
+use crate::gpu::instances::{INSTANCE_LAYOUT, Instances};
 use crate::gpu::uniform::uniform_buffer;
-use crate::scene::Scene;
+use crate::scene::{Object, Scene};
 use crate::view::size_px;
 use glam::{DMat4, DVec2, DVec3, DVec4};
 use npr_outline::shadow_mask::{MASK_FORMAT, ShadowMaskPass};
-use npr_outline::shadow_pass::{CastersOnDevice, ShadowPass};
-use std::cell::{OnceCell, Ref, RefCell};
+use npr_outline::shadow_pass::{CastersOnDevice, PlacedCasters, ShadowPass};
+use std::cell::{OnceCell, RefCell};
+use std::ops::Range;
 
 /// `SurfaceShadow` of `shadow.wgsl`.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
@@ -91,10 +93,10 @@ impl StencilTarget {
 
 /// What casts, on the device.
 pub(crate) enum ShadowCasting {
-    /// All of it; the device sorts out what casts under a light.
-    OnDevice(CastersOnDevice),
-    /// What casts under the light of the last frame.
-    Scanned(RefCell<Option<(DVec4, CastersOnDevice)>>),
+    /// Per mesh all of it; the device sorts out what casts under a light.
+    OnDevice(Vec<CastersOnDevice>),
+    /// Per object what casts under the light of the last frame, in the space of its mesh.
+    Scanned(RefCell<Vec<(DVec4, CastersOnDevice)>>),
 }
 
 /// The passes, made when they are first needed.
@@ -118,9 +120,12 @@ pub(crate) struct ShadowFrame<'a> {
     pub(crate) size: (u32, u32),
     /// The shadow casters, where volumes are drawn.
     pub(crate) casting: Option<&'a ShadowCasting>,
-    /// Positions of vertices, 24 bytes apart, and the faces that cast into a map.
+    /// What casts into a map: positions of vertices, 24 bytes apart, faces, and where they are placed.
     pub(crate) vertices: &'a wgpu::Buffer,
     pub(crate) indices: Option<&'a wgpu::Buffer>,
+    pub(crate) instances: &'a Instances,
+    /// Per mesh its faces in [`Self::indices`].
+    pub(crate) solid: &'a [Range<u32>],
 }
 
 impl ShadowFrame<'_> {
@@ -185,7 +190,8 @@ impl ShadowPasses {
     ) -> Result<Option<ShadowCasting>, HarnessError> {
         Ok(match technique {
             ShadowTechnique::Volumes { casters, method: VolumeMethod::OnDevice, .. } => {
-                Some(ShadowCasting::OnDevice(CastersOnDevice::new(&context.device, casters)?))
+                let uploaded = casters.iter().map(|casters| CastersOnDevice::new(&context.device, casters));
+                Some(ShadowCasting::OnDevice(uploaded.collect::<Result<_, _>>()?))
             }
             ShadowTechnique::Volumes { .. } => Some(ShadowCasting::Scanned(RefCell::default())),
             ShadowTechnique::Map { .. } => None,
@@ -219,20 +225,38 @@ impl ShadowPasses {
         let aspect = f64::from(frame.size.0) / f64::from(frame.size.1);
         let clip_from_world = frame.camera.clip_from_world(aspect);
         let casting = frame.casting.expect("what a plan with volumes uploads");
-        let endless = if parallel { casters.endless(light, -frame.camera.axes()[2]) } else { 0 };
+        let objects = frame.scene.objects();
+        let of_object = |object: &Object| {
+            let (away, casters) = (-frame.camera.axes()[2], &casters[object.mesh()]);
+            casters.endless(object.homogeneous(light), object.homogeneous(away.extend(0.0)).truncate())
+        };
+        let endless = if parallel { objects.iter().map(of_object).sum() } else { 0 };
         let area = frame.scene.bounds().map(|bounds| frame.camera.area(bounds, frame.size, 1));
-        let mut draw = |casters: &CastersOnDevice| {
-            pass.record(device, encoder, casters, light, clip_from_world, depth_stencil, endless, area)
+        let mut draw = |of_objects: Vec<&CastersOnDevice>| {
+            let placed = |(casters, object): (_, &Object)| PlacedCasters {
+                casters,
+                world_from_mesh: *object.scene_from_mesh(),
+                light: object.homogeneous(light),
+            };
+            let placed: Vec<_> = of_objects.into_iter().zip(objects).map(placed).collect();
+            pass.record(device, encoder, &placed, clip_from_world, depth_stencil, endless, area)
         };
         match casting {
-            ShadowCasting::OnDevice(casters) => draw(casters)?,
+            ShadowCasting::OnDevice(casters) => draw(objects.iter().map(|object| &casters[object.mesh()]).collect())?,
             ShadowCasting::Scanned(last) => {
-                let is_same = last.borrow().as_ref().is_some_and(|(of, _)| *of == light);
-                if !is_same {
-                    let scanned = CastersOnDevice::of_light(device, casters, light)?;
-                    *last.borrow_mut() = Some((light, scanned));
+                let mut last = last.borrow_mut();
+                for (number, object) in objects.iter().enumerate() {
+                    let light = object.homogeneous(light);
+                    if last.get(number).is_some_and(|(of, _)| *of == light) {
+                        continue;
+                    }
+                    let scanned = (light, CastersOnDevice::of_light(device, &casters[object.mesh()], light)?);
+                    match last.get_mut(number) {
+                        Some(last) => *last = scanned,
+                        None => last.push(scanned),
+                    }
                 }
-                draw(&Ref::map(last.borrow(), |last| &last.as_ref().expect("it was just made").1))?;
+                draw(last.iter().map(|(_, casters)| casters).collect())?;
             }
         }
         let pass = self.mask.get_or_init(|| ShadowMaskPass::new(device, format).expect(STENCIL));
@@ -249,7 +273,7 @@ impl ShadowPasses {
         let view = kept.as_ref().expect("it was just made").create_view(&Default::default());
         let pass = self.map.get_or_init(|| MapPass::new(device));
         let clip_from_world = map_camera(frame.scene, frame.plan.light).clip_from_world(1.0);
-        pass.record(device, encoder, (frame.vertices, frame.indices), clip_from_world, &view);
+        pass.record(encoder, frame, clip_from_world, &view);
         view
     }
 }
@@ -303,11 +327,14 @@ impl MapPass {
                 module: &module,
                 entry_point: Some("vs_shadow_map"),
                 compilation_options: Default::default(),
-                buffers: &[Some(wgpu::VertexBufferLayout {
-                    array_stride: 24,
-                    step_mode: wgpu::VertexStepMode::Vertex,
-                    attributes: &wgpu::vertex_attr_array![0 => Float32x3],
-                })],
+                buffers: &[
+                    Some(wgpu::VertexBufferLayout {
+                        array_stride: 24,
+                        step_mode: wgpu::VertexStepMode::Vertex,
+                        attributes: &wgpu::vertex_attr_array![0 => Float32x3],
+                    }),
+                    Some(INSTANCE_LAYOUT),
+                ],
             },
             primitive: Default::default(),
             depth_stencil: Some(wgpu::DepthStencilState {
@@ -330,12 +357,12 @@ impl MapPass {
 
     fn record(
         &self,
-        device: &wgpu::Device,
         encoder: &mut wgpu::CommandEncoder,
-        (vertices, indices): (&wgpu::Buffer, Option<&wgpu::Buffer>),
+        frame: &ShadowFrame<'_>,
         clip_from_world: DMat4,
         view: &wgpu::TextureView,
     ) {
+        let device = &frame.context.device;
         let uniform = uniform_buffer(device, bytemuck::bytes_of(&clip_from_world.as_mat4().to_cols_array_2d()));
         let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("shadow map"),
@@ -352,12 +379,15 @@ impl MapPass {
             ..Default::default()
         });
         // What is not blended casts.
-        if let Some(indices) = indices {
+        if let Some(indices) = frame.indices {
             pass.set_pipeline(&self.pipeline);
             pass.set_bind_group(0, &group, &[]);
-            pass.set_vertex_buffer(0, vertices.slice(..));
+            pass.set_vertex_buffer(0, frame.vertices.slice(..));
             pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
-            pass.draw_indexed(0..(indices.size() / 4) as u32, 0, 0..1);
+            for run in frame.instances.runs() {
+                pass.set_vertex_buffer(1, frame.instances.slice(run));
+                pass.draw_indexed(frame.solid[run.mesh].clone(), 0, 0..run.objects.len() as u32);
+            }
         }
     }
 }

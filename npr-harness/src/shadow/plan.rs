@@ -2,7 +2,8 @@
 
 use super::style::{ShadowMethod, ShadowStyle};
 use crate::error::HarnessError;
-use crate::scene::Scene;
+use crate::rays::Hit;
+use crate::scene::{Mesh, Scene};
 use glam::DVec4;
 use npr_mesh::AlphaMode;
 use npr_mesh::edges::{EdgeOptions, find};
@@ -30,8 +31,8 @@ pub struct ShadowPlan {
 pub enum ShadowTechnique {
     /// Shadow volumes, counted in a stencil buffer.
     Volumes {
-        /// The faces and edges that cast.
-        casters: Arc<ShadowCasters>,
+        /// Per mesh the faces and edges that cast.
+        casters: Vec<Arc<ShadowCasters>>,
         /// Who decides which faces and edges bound the volumes.
         method: VolumeMethod,
         /// Whether they are counted against depths of 32-bit floats, else of 24 bits.
@@ -53,16 +54,16 @@ pub enum VolumeMethod {
     OnCpu,
 }
 
-/// The key of the casters among what is derived of a scene.
+/// The key of the casters among what is derived of a mesh.
 #[derive(PartialEq)]
 struct CastersKey;
 
-/// The faces and edges of a scene that cast shadows.
-pub fn casters(scene: &Scene) -> Arc<ShadowCasters> {
-    let found = scene.derived.get(CastersKey, || {
-        let model = &scene.model;
+/// The faces and edges of a mesh that cast shadows.
+pub fn casters(mesh: &Mesh) -> Arc<ShadowCasters> {
+    let found = mesh.derived().get(CastersKey, || {
+        let model = mesh.model();
         if model.face_polygon.is_empty() {
-            return Ok::<_, Infallible>(shadow_casters(model, &scene.edges));
+            return Ok::<_, Infallible>(shadow_casters(model, mesh.edges()));
         }
         // With the diagonals of polygons, which may be warped.
         let edges = find(&model.positions, &model.faces, &[], &[], &EdgeOptions::default());
@@ -82,7 +83,10 @@ impl ShadowTechnique {
         float_depth: bool,
     ) -> Result<Self, HarnessError> {
         Ok(match style.method {
-            ShadowMethod::Volumes => Self::Volumes { casters: casters(scene), method, float_depth },
+            ShadowMethod::Volumes => {
+                let casters = scene.meshes().iter().map(|mesh| casters(mesh)).collect();
+                Self::Volumes { casters, method, float_depth }
+            }
             ShadowMethod::Map { side } => {
                 check_map_light(scene, light)?;
                 Self::Map { side }
@@ -91,9 +95,9 @@ impl ShadowTechnique {
     }
 }
 
-/// Whether a face casts a shadow.
-pub(crate) fn casts(scene: &Scene, face: u32) -> bool {
-    scene.model.materials[scene.model.face_material[face as usize] as usize].alpha_mode != AlphaMode::Blend
+/// Whether what a ray hits casts a shadow.
+pub(crate) fn casts(scene: &Scene, hit: &Hit) -> bool {
+    scene.material(hit.object, hit.face).alpha_mode != AlphaMode::Blend
 }
 
 /// Whether one picture of depths can hold all that a light shines on: not from within the model's sphere, nor from right

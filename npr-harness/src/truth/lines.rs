@@ -128,7 +128,7 @@ pub fn true_lines_of_steps(
 ) -> TrueLines {
     let planes = face_planes(scene);
     let eye = camera.homogeneous_eye();
-    let numbers = 0..(scene.edges.edges.len() + scene.edges.folds.len()) as u32;
+    let numbers = 0..(scene.single().edges().edges.len() + scene.single().edges().folds.len()) as u32;
     let lines: Vec<(u32, LineKind)> = numbers
         .filter_map(|number| Some((number, line_kind(scene, number, &planes, eye, crease_angle_rad)?)))
         .collect();
@@ -141,7 +141,7 @@ pub fn true_lines_of_steps(
         }
     };
     // Built before the threads ask for it, so that they do not wait for each other.
-    scene.rays();
+    scene.build_rays();
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let share = lines.len().div_ceil(threads).max(1);
     let segments = std::thread::scope(|scope| {
@@ -168,7 +168,7 @@ struct FacePlanes {
 }
 
 fn face_planes(scene: &Scene) -> FacePlanes {
-    let model = &scene.model;
+    let model = scene.single().model();
     let own: Vec<Plane> = model
         .faces
         .iter()
@@ -193,7 +193,7 @@ fn face_planes(scene: &Scene) -> FacePlanes {
         borrow_planes(scene, &mut planes);
     }
     let mut of_sides = planes.clone();
-    for face in scene.edges.folds.iter().flat_map(Edge::faces).map(|face| face as usize) {
+    for face in scene.single().edges().folds.iter().flat_map(Edge::faces).map(|face| face as usize) {
         if own[face].normal != DVec3::ZERO {
             of_sides[face] = own[face];
         }
@@ -204,8 +204,8 @@ fn face_planes(scene: &Scene) -> FacePlanes {
 /// Gives faces of zero area the plane of the neighbour over their longest edge, turned to be wound like the face.
 fn borrow_planes(scene: &Scene, planes: &mut [Plane]) {
     let mut lenders = HashMap::<u32, (f64, u32, bool)>::new();
-    for edge in scene.edges.edges.iter().filter(|edge| edge.kind() == EdgeKind::TwoFace) {
-        let [p, q] = edge.ends.map(|v| scene.model.positions[v as usize].as_dvec3());
+    for edge in scene.single().edges().edges.iter().filter(|edge| edge.kind() == EdgeKind::TwoFace) {
+        let [p, q] = edge.ends.map(|v| scene.single().model().positions[v as usize].as_dvec3());
         let length = p.distance(q);
         let [first, second] = edge.faces();
         for (face, other) in [(first, second), (second, first)] {
@@ -253,7 +253,7 @@ fn line_kind(scene: &Scene, number: u32, planes: &FacePlanes, eye: DVec4, crease
 
 /// An edge of the scene, or after those a fold.
 pub fn scene_edge(scene: &Scene, number: u32) -> &Edge {
-    let Edges { edges, folds, .. } = &scene.edges;
+    let Edges { edges, folds, .. } = scene.single().edges();
     edges.get(number as usize).unwrap_or_else(|| &folds[number as usize - edges.len()])
 }
 
@@ -270,7 +270,7 @@ fn wound_alike(edge: &Edge, planes: &[Plane], [first, second]: [u32; 2]) -> [Pla
 fn is_crease(scene: &Scene, number: u32, planes: &FacePlanes, crease_angle_rad: f64) -> bool {
     let edge = scene_edge(scene, number);
     let faces = edge.faces();
-    if faces[1] == NO_FACE || number as usize >= scene.edges.edges.len() {
+    if faces[1] == NO_FACE || number as usize >= scene.single().edges().edges.len() {
         return false;
     }
     let [plane0, plane1] = wound_alike(edge, &planes.of_polygons, faces);
@@ -290,14 +290,14 @@ struct Visibility<'a> {
 
 impl<'a> Visibility<'a> {
     fn new(scene: &'a Scene, camera: &'a Camera, size: (u32, u32)) -> Self {
-        let mut folded_faces: Vec<u32> = scene.edges.folds.iter().flat_map(Edge::faces).collect();
+        let mut folded_faces: Vec<u32> = scene.single().edges().folds.iter().flat_map(Edge::faces).collect();
         folded_faces.sort_unstable();
         Self { scene, camera, size_px: DVec2::new(size.0.into(), size.1.into()), folded_faces }
     }
 
     fn visible_pieces(&self, number: u32, kind: LineKind, least_step: f64) -> Vec<TrueSegment> {
         let edge = scene_edge(self.scene, number);
-        let ends = edge.ends.map(|v| self.scene.model.positions[v as usize].as_dvec3());
+        let ends = edge.ends.map(|v| self.scene.single().model().positions[v as usize].as_dvec3());
         let own = |face: u32| self.is_own(face, edge);
         let seen =
             |point| self.sees_past(point, own) && (least_step <= 0.0 || self.step_behind(point, own) >= least_step);
@@ -384,7 +384,7 @@ impl<'a> Visibility<'a> {
         let depth = self.in_view(point).z;
         let origin = self.origin_of_sight(point, depth);
         let range = (self.camera.near / depth, 1.0 - BEHIND);
-        !self.scene.rays().any(origin, point - origin, range, |hit| self.is_solid(hit) && !own(hit.face))
+        !self.scene.any(origin, point - origin, range, |hit| self.is_solid(hit) && !own(hit.face))
     }
 
     fn origin_of_sight(&self, point: DVec3, depth: f64) -> DVec3 {
@@ -392,8 +392,7 @@ impl<'a> Visibility<'a> {
     }
 
     fn is_solid(&self, hit: &Hit) -> bool {
-        let model = &self.scene.model;
-        let material = &model.materials[model.face_material[hit.face as usize] as usize];
+        let material = self.scene.material(hit.object, hit.face);
         (hit.front || material.double_sided) && material.alpha_mode != AlphaMode::Blend
     }
 
@@ -403,19 +402,19 @@ impl<'a> Visibility<'a> {
         let origin = self.origin_of_sight(point, depth);
         let range = (1.0 + BEHIND, f64::INFINITY);
         let is_next = |hit: &Hit| self.is_solid(hit) && !own(hit.face);
-        let next = self.scene.rays().closest(origin, point - origin, range, is_next);
+        let next = self.scene.closest(origin, point - origin, range, is_next);
         next.map_or(f64::INFINITY, |hit| (hit.t - 1.0) * depth)
     }
 
     fn same_polygon(&self, a: u32, b: u32) -> bool {
-        let of = &self.scene.model.face_polygon;
+        let of = &self.scene.single().model().face_polygon;
         a == b || (!of.is_empty() && of[a as usize] == of[b as usize])
     }
 
     /// Whether a face has the edge, or is of the polygon of one that has and not folded.
     fn is_own(&self, face: u32, edge: &Edge) -> bool {
-        let model = &self.scene.model;
-        let corners = model.faces[face as usize].map(|v| self.scene.edges.representative[v as usize]);
+        let model = self.scene.single().model();
+        let corners = model.faces[face as usize].map(|v| self.scene.single().edges().representative[v as usize]);
         edge.ends.iter().all(|end| corners.contains(end))
             || edge.faces().iter().any(|&own| {
                 own != NO_FACE && self.same_polygon(own, face) && self.folded_faces.binary_search(&face).is_err()

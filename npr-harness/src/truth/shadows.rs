@@ -96,7 +96,7 @@ pub fn eye_is_in_shadow(scene: &Scene, shot: &ShadowShot) -> bool {
     let light = casting_light(&[shot.light], scene, &shot.camera);
     let way = light.truncate() - shot.camera.eye * light.w;
     let range = (0.0, if light.w == 0.0 { f64::INFINITY } else { 1.0 });
-    scene.rays().any(shot.camera.eye, way, range, |hit| casts(scene, hit.face))
+    scene.any(shot.camera.eye, way, range, |hit| casts(scene, hit))
 }
 
 impl ShadowShot {
@@ -304,7 +304,8 @@ pub fn true_borders(
     let seen = cpu::seen(&PrimaryHits::new(scene, view), &plan, &CpuOptions::default());
     let fine_px = DVec2::new(fine.0.into(), fine.1.into());
     let plane = |face: u32| {
-        let [a, b, c] = scene.model.faces[face as usize].map(|v| scene.model.positions[v as usize].as_dvec3());
+        let [a, b, c] = scene.single().model().faces[face as usize]
+            .map(|v| scene.single().model().positions[v as usize].as_dvec3());
         ((b - a).cross(c - a).normalize_or_zero(), a)
     };
     // How far a sample lies from the plane of another's face.

@@ -45,6 +45,13 @@ impl Edge {
         self.packed.map(|packed| if packed & FACE == FACE { NO_FACE } else { packed & FACE })
     }
 
+    /// The same edge of vertices and faces that are counted from these numbers on.
+    pub(super) fn moved(&self, first_vertex: u32, first_face: u32) -> Self {
+        // Flags are above the faces' bits, and a missing face stays missing.
+        let face = |packed: u32| if packed & FACE == FACE { packed } else { packed + first_face };
+        Self { ends: self.ends.map(|vertex| vertex + first_vertex), packed: self.packed.map(face) }
+    }
+
     /// The number of faces at the edge.
     #[inline]
     pub fn kind(&self) -> EdgeKind {

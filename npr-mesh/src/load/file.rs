@@ -1,13 +1,16 @@
 //! What the loaders of all formats read and return.
 
-use crate::{Limits, LoadError, Model};
+use crate::{Limits, LoadError, Model, Object};
 use std::fs;
 use std::io::{self, Read};
 use std::path::Path;
 
-/// The result of a format's loader: normals may be missing, and there may be no faces.
+/// The result of a format's loader: normals may be missing, and there may be no object.
+#[derive(Default)]
 pub struct Parsed {
-    pub model: Model,
+    /// Each with faces.
+    pub meshes: Vec<Model>,
+    pub objects: Vec<Object>,
     /// In the order of occurrence, with repetitions.
     pub warnings: Vec<String>,
 }

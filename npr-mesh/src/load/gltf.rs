@@ -1,13 +1,13 @@
-//! Loads glTF 2.0, `.gltf` and `.glb`, and flattens it into one posed [`Model`](crate::Model).
+//! Loads glTF 2.0, `.gltf` and `.glb`: meshes, and the objects that place them.
 //!
 //! The `gltf` crate only converts the JSON prepared by [`parse`] to typed structures. Its validation is not used: it
 //! panics on a POSITION attribute with a missing accessor, accepts cycles of nodes and accessors beyond their
 //! buffers, and rejects files that can be drawn (a POSITION accessor without bounds). Every index is therefore
 //! checked here, and vertex data is read through [`accessor`], which checks bounds.
 //!
-//! The model consists of the meshes of the default scene (or of the first scene, or of all nodes if there is no
-//! scene) with node transforms, skins and morph targets in the pose that the file states, without animation; and of
-//! base colour, alpha mode, sidedness and vertex colours. Supported extensions: `KHR_texture_transform` (base colour
+//! The objects are the nodes with meshes of the default scene (or of the first scene, or all of them if there is no
+//! scene), with node transforms, skins and morph targets in the pose that the file states, without animation.
+//! Materials consist of base colour, alpha mode and sidedness, and there are vertex colours. Supported extensions: `KHR_texture_transform` (base colour
 //! texture), `KHR_mesh_quantization`, and `KHR_materials_unlit`, which has no effect here.
 
 mod accessor;
@@ -28,7 +28,7 @@ use std::path::Path;
 
 const EXTENSIONS: [&str; 3] = ["KHR_materials_unlit", QUANTIZATION, "KHR_texture_transform"];
 
-/// Loads a file. Missing normals are zero, and the model may be empty.
+/// Loads a file. Missing normals are zero, and there may be no objects.
 ///
 /// # Errors
 /// [`LoadError`] with the file and the fault.
@@ -44,12 +44,12 @@ pub(super) fn load(external: &External) -> Result<Parsed, LoadError> {
     let bytes = file.len() as u64 + of_buffers;
     let document = Document { path, limits, external, root, buffers, bytes, quantized };
     let nodes = scene::pose(&document)?;
-    let model = meshes::flatten(&document, &nodes, &mut warnings)?;
+    let (meshes, objects) = meshes::load(&document, &nodes, &mut warnings)?;
     warnings.extend(document.buffers.iter().enumerate().filter_map(|(number, bytes)| match bytes {
         Bytes::Missing(fault) => Some(format!("buffer {number} is left out, and no mesh needs it: {fault}")),
         _ => None,
     }));
-    Ok(Parsed { model, warnings })
+    Ok(Parsed { meshes, objects, warnings })
 }
 
 /// Checks the version (glTF 2.0, 3.2 "Asset") and the extensions (3.12 "Specifying Extensions").

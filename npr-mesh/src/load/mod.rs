@@ -8,11 +8,13 @@ mod file;
 #[cfg(feature = "gltf")]
 mod gltf;
 mod image_file;
+mod loaded;
 #[cfg(feature = "obj")]
 mod obj;
 mod options;
 mod warning;
 
+pub use loaded::Loaded;
 pub use options::LoadOptions;
 pub use warning::Warning;
 
@@ -22,15 +24,6 @@ use file::Parsed;
 use glam::Vec3;
 use std::path::Path;
 use std::{fs, io};
-
-/// A model, and the warnings of its loading.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Loaded {
-    /// The triangles; all normals are present.
-    pub model: Model,
-    /// Distinct warnings in the order of their first occurrence.
-    pub warnings: Vec<Warning>,
-}
 
 /// Loads a model file. The format is determined by the file extension (`.obj`, `.gltf`, `.glb`, in any case).
 ///
@@ -45,40 +38,43 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, LoadError> {
         }
     }
     let ending = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
-    let Parsed { mut model, warnings } = match ending.as_str() {
+    let Parsed { mut meshes, objects, warnings } = match ending.as_str() {
         #[cfg(feature = "obj")]
         "obj" => obj::load(&External::new(path, options))?,
         #[cfg(feature = "gltf")]
         "gltf" | "glb" => gltf::load(&External::new(path, options))?,
         _ => return Err(LoadError::UnknownFormat { path: path.to_owned() }),
     };
-    if model.faces.is_empty() {
+    if objects.is_empty() {
         let why = Warning::counted(warnings).into_iter().next().map(|warning| warning.text);
         return Err(LoadError::Empty { path: path.to_owned(), why });
     }
-    let mut of_model = Vec::new();
-    report(&model, &mut of_model);
     let mut warnings = Warning::counted(warnings);
-    warnings.extend(of_model.into_iter().map(Warning::from));
-    normals::fill_missing(&mut model, options.normal_crease_angle_rad);
-    Ok(Loaded { model, warnings })
+    warnings.extend(report(&meshes).into_iter().map(Warning::from));
+    meshes.iter_mut().for_each(|mesh| normals::fill_missing(mesh, options.normal_crease_angle_rad));
+    Ok(Loaded { meshes, objects, warnings })
 }
 
-/// Warns about missing normals and degenerate faces, for any format.
-fn report(model: &Model, warnings: &mut Vec<String>) {
-    let mut used = vec![false; model.positions.len()];
-    model.faces.iter().flatten().for_each(|&vertex| used[vertex as usize] = true);
-    let of_used = || model.normals.iter().zip(&used).filter(|(_, used)| **used);
-    let missing = of_used().filter(|(normal, _)| **normal == Vec3::ZERO || !normal.is_finite()).count();
-    match (missing, of_used().count()) {
-        (0, _) => {}
-        (missing, all) if missing == all => warnings.push("no normals: they are made from the faces".to_owned()),
-        (missing, all) => {
-            warnings.push(format!("{missing} of {all} vertices have no normal: it is made from the faces around"))
-        }
+/// Warns about missing normals and degenerate faces, for any format. Counts each mesh once.
+fn report(meshes: &[Model]) -> Vec<String> {
+    let [mut missing, mut vertices, mut flat, mut faces] = [0; 4];
+    for mesh in meshes {
+        let mut used = vec![false; mesh.positions.len()];
+        mesh.faces.iter().flatten().for_each(|&vertex| used[vertex as usize] = true);
+        let of_used = || mesh.normals.iter().zip(&used).filter(|(_, used)| **used);
+        missing += of_used().filter(|(normal, _)| **normal == Vec3::ZERO || !normal.is_finite()).count();
+        vertices += of_used().count();
+        flat += mesh.faces.iter().filter(|face| edges::has_zero_area(&mesh.positions, face)).count();
+        faces += mesh.faces.len();
     }
-    let flat = model.faces.iter().filter(|face| edges::has_zero_area(&model.positions, face)).count();
+    let mut warnings = Vec::new();
+    if missing > 0 && missing == vertices {
+        warnings.push("no normals: they are made from the faces".to_owned());
+    } else if missing > 0 {
+        warnings.push(format!("{missing} of {vertices} vertices have no normal: it is made from the faces around"));
+    }
     if flat > 0 {
-        warnings.push(format!("{flat} of {} faces have no area", model.faces.len()));
+        warnings.push(format!("{flat} of {faces} faces have no area"));
     }
+    warnings
 }

@@ -15,9 +15,9 @@ mod prepare;
 use super::external::{External, shortened};
 use super::file::{Parsed, read_file};
 use crate::triangulate::EAR_TESTS_OF_A_FILE;
-use crate::{LoadError, Material, Model};
+use crate::{LoadError, Material, Model, Object};
 use builder::Builder;
-use glam::Vec3;
+use glam::{DAffine3, Vec3};
 use mtl::{Library, Names, linear_from_srgb, move_materials};
 use prepare::prepare;
 use std::io::Read;
@@ -43,7 +43,7 @@ pub(super) fn load(external: &External) -> Result<Parsed, LoadError> {
     let mut prepared = prepare(bytes, path, limits)?;
     let mut warnings = std::mem::take(&mut prepared.warnings);
     if prepared.counts.triangles == 0 {
-        return Ok(Parsed { model: Model::default(), warnings });
+        return Ok(Parsed { warnings, ..Parsed::default() });
     }
 
     let mut library = Library::default();
@@ -127,7 +127,8 @@ pub(super) fn load(external: &External) -> Result<Parsed, LoadError> {
     for color in &mut model.colors {
         *color = linear_from_srgb(color.truncate().clamp(Vec3::ZERO, Vec3::ONE)).extend(color.w);
     }
-    Ok(Parsed { model, warnings })
+    let objects = vec![Object { name: String::new(), mesh: 0, world_from_mesh: DAffine3::IDENTITY }];
+    Ok(Parsed { meshes: vec![model], objects, warnings })
 }
 
 /// A single warning for all undefined materials.

@@ -17,8 +17,11 @@ pub struct LoadOptions {
     pub normal_crease_angle_rad: f32,
 }
 
+/// The default crease angle.
+pub(super) const CREASE_ANGLE_RAD: f32 = 45f32.to_radians();
+
 impl Default for LoadOptions {
     fn default() -> Self {
-        Self { limits: Limits::default(), asset_root: None, normal_crease_angle_rad: 45f32.to_radians() }
+        Self { limits: Limits::default(), asset_root: None, normal_crease_angle_rad: CREASE_ANGLE_RAD }
     }
 }

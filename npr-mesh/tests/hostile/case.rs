@@ -106,11 +106,11 @@ impl Case {
     fn compare(&self, result: Result<Loaded, LoadError>) -> Result<(), String> {
         match (result, &self.expect) {
             (Ok(loaded), Expect::Loads(faces, warnings)) => {
-                sound(&loaded.model)?;
-                if loaded.model.faces.len() != *faces {
-                    return Err(format!("{} faces, expected {faces}", loaded.model.faces.len()));
-                }
                 let lines: Vec<String> = loaded.warnings.iter().map(ToString::to_string).collect();
+                let found = sound(loaded)?.faces.len();
+                if found != *faces {
+                    return Err(format!("{found} faces, expected {faces}"));
+                }
                 let told: Vec<&String> = lines.iter().filter(|w| !w.starts_with("no normals: ")).collect();
                 let expected = |w: &&&String| warnings.iter().any(|part| w.contains(part));
                 let missing: Vec<_> = warnings.iter().filter(|part| !told.iter().any(|w| w.contains(*part))).collect();
@@ -135,18 +135,35 @@ impl Case {
                 Ok(())
             }
             (Ok(loaded), Expect::Fails(parts)) => {
-                Err(format!("{} faces, expected an error with {parts:?}", loaded.model.faces.len()))
+                Err(format!("{} objects, expected an error with {parts:?}", loaded.objects.len()))
             }
             (Err(error), Expect::Loads(faces, _)) => Err(format!("{error}, expected {faces} faces")),
         }
     }
 }
 
-/// Checks all guarantees for a loaded model.
-pub fn sound(model: &Model) -> Result<(), String> {
+fn check(holds: bool, what: &str) -> Result<(), String> {
+    if holds { Ok(()) } else { Err(what.to_owned()) }
+}
+
+/// Checks all guarantees for a loaded file, and returns it as one model.
+pub fn sound(loaded: Loaded) -> Result<Model, String> {
+    check(!loaded.objects.is_empty(), "no objects")?;
+    check(loaded.objects.iter().all(|o| o.mesh < loaded.meshes.len()), "a mesh is out of range")?;
+    check(loaded.objects.iter().all(|o| o.world_from_mesh.is_finite()), "a transform is not finite")?;
+    for (number, mesh) in loaded.meshes.iter().enumerate() {
+        check(!mesh.faces.is_empty(), "a mesh without faces")?;
+        check(loaded.objects.iter().any(|o| o.mesh == number), "a mesh without objects")?;
+        sound_model(mesh)?;
+    }
+    let model = loaded.into_model();
+    sound_model(&model)?;
+    Ok(model)
+}
+
+fn sound_model(model: &Model) -> Result<(), String> {
     let vertices = model.positions.len();
     let fits = |length: usize, of: usize| length == 0 || length == of;
-    let check = |holds: bool, what: &str| if holds { Ok(()) } else { Err(what.to_owned()) };
     check(model.faces.iter().flatten().all(|&v| (v as usize) < vertices), "a vertex is out of range")?;
     check(model.positions.iter().all(|p| p.is_finite()), "a position is not finite")?;
     check(model.normals.len() == vertices, "normals")?;

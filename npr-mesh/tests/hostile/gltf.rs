@@ -169,7 +169,12 @@ fn scenes() -> Vec<Case> {
         nodes("none", json!([]), fails(&["the scene's node 0 does not exist"])),
         nodes("rotation-zero", json!([{"mesh": 0, "rotation": [0, 0, 0, 0]}]), fails(&["node 0", "rotation"])),
         nodes("rotation-long", json!([{"mesh": 0, "rotation": [0, 0, 3e30, 3e30]}]), loads(2, &[])),
-        nodes("scale-zero", json!([{"mesh": 0, "scale": [0, 0, 0]}]), loads(2, &["2 of 2 faces have no area"])),
+        nodes("scale-zero", json!([{"mesh": 0, "scale": [0, 0, 0]}]), loads(2, &[])),
+        nodes(
+            "scale-zero-once",
+            json!([{"children": [1, 2]}, {"mesh": 0, "scale": [1, 0, 1]}, {"mesh": 0}]),
+            loads(4, &[]),
+        ),
         nodes("scale-mirrored", json!([{"mesh": 0, "scale": [-1, 1, 1]}]), loads(2, &[])),
         nodes("scale-1e-30", json!([{"mesh": 0, "scale": [1e-30, 1e-30, 1e-30]}]), loads(2, &[])),
         nodes("scale-1e30", json!([{"mesh": 0, "scale": [1e30, 1e30, 1e30]}]), loads(2, &[])),

@@ -92,7 +92,7 @@ pub fn cases() -> Vec<Case> {
             big(1000, 100, "instances-over-a-limit", fails(&["vertices from a file so small"])),
             Limits { repeated: 10_000, ..all },
         ),
-        primitives(json!({"attributes": {}}), 2000, 2000).case("primitives-too-many", fails(&["1000001 primitives"])),
+        primitives(json!({"attributes": {}}), 2000, 2000).case("primitives-too-many", fails(&["1002000 primitives"])),
         primitives(json!({"attributes": {"POSITION": 0}, "indices": 2}), 300, 300)
             .case("primitives-times-nodes", loads(180_000, &[])),
         targets(100).case("targets-100", loads(2, &["2 of 2 faces have no area"])),

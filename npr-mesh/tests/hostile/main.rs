@@ -125,7 +125,7 @@ fn broken_copies_give_a_sound_model_or_an_error() {
         std::fs::write(&path, &bytes).expect("written");
         let start = std::time::Instant::now();
         if let Ok(loaded) = npr_mesh::load(&path, &case.options)
-            && let Err(fault) = case::sound(&loaded.model)
+            && let Err(fault) = case::sound(loaded)
         {
             panic!("copy {number} of {}: {fault}: {}", case.name, bytes.escape_ascii());
         }

@@ -15,11 +15,15 @@ fn contours_of(model: &Model, options: &ContourOptions) -> ContourEdges {
 }
 
 fn smooth(crease_angle_rad: f32) -> ContourOptions {
-    ContourOptions { crease_angle_rad, material_borders: false }
+    ContourOptions { crease_angle_rad, ..ContourOptions::default() }
 }
 
 /// No creases: only silhouettes and boundaries are lines.
-const NO_CREASES: ContourOptions = ContourOptions { crease_angle_rad: std::f32::consts::PI, material_borders: false };
+const NO_CREASES: ContourOptions = ContourOptions {
+    crease_angle_rad: std::f32::consts::PI,
+    material_borders: false,
+    world_from_normal: glam::DMat3::IDENTITY,
+};
 
 fn point(eye: DVec3) -> DVec4 {
     eye.extend(1.0)
@@ -352,7 +356,10 @@ fn borders_of_materials_and_cut_outs_are_marked() {
     model.materials.push(Material { alpha_mode: AlphaMode::Mask { cutoff: 0.5 }, ..Material::default() });
     model.face_material[0] = 1;
     model.face_material[1] = 1;
-    let contours = contours_of(&model, &ContourOptions { crease_angle_rad: 3.0, material_borders: true });
+    let contours = contours_of(
+        &model,
+        &ContourOptions { crease_angle_rad: 3.0, material_borders: true, ..ContourOptions::default() },
+    );
     // The four edges around one side; none of them lies between two cut-out faces.
     assert_eq!(contours.always, 4);
     assert!(contours.traits[..4].iter().all(|&t| t == LineKind::MaterialBorder as u32 | TRAIT_ALWAYS));
@@ -476,7 +483,7 @@ proptest! {
             materials: vec![Default::default(); 2],
             ..Default::default()
         };
-        let options = ContourOptions { crease_angle_rad, material_borders };
+        let options = ContourOptions { crease_angle_rad, material_borders, ..ContourOptions::default() };
         let contours = contours_of(&model, &options);
         let count = contours.planes.len();
         prop_assert!(count <= 3 * model.faces.len());
@@ -587,4 +594,28 @@ fn a_non_orientable_surface_keeps_its_lines() {
             assert_eq!(lines.contains(&sorted(edge.ends)), expected);
         }
     }
+}
+
+/// A roof of 2 · atan(1 / 2) = 53°, and of 2 · atan(1 / 8) = 14° where it is four times as wide.
+#[test]
+fn angles_of_a_placed_model_are_those_of_its_shape() {
+    let model = Model {
+        positions: [[-2.0, 0.0, 0.0], [0.0, 1.0, 0.0], [2.0, 0.0, 0.0], [0.0, 1.0, 1.0]].map(Vec3::from).to_vec(),
+        normals: vec![Vec3::Y; 4],
+        faces: vec![[0, 3, 1], [1, 3, 2]],
+        ..Model::default()
+    };
+    let creases = |matrix: glam::DMat3| {
+        let world_from_normal = matrix.inverse().transpose();
+        let options = ContourOptions { world_from_normal, ..smooth(40f32.to_radians()) };
+        let contours = contours_of(&model, &options);
+        contours.traits.iter().filter(|&&traits| traits == LineKind::Crease as u32 | TRAIT_ALWAYS).count()
+    };
+    let scale = |x: f64, y: f64, z: f64| glam::DMat3::from_diagonal(glam::DVec3::new(x, y, z));
+    assert_eq!(creases(glam::DMat3::IDENTITY), 1);
+    assert_eq!(creases(scale(4.0, 1.0, 1.0)), 0);
+    assert_eq!(creases(scale(-3.0, -3.0, 3.0)), 1);
+    assert_eq!(creases(glam::DMat3::from_rotation_y(1.0) * scale(1.0, 1.0, 50.0)), 1);
+    // Sheared along the ridge the angle is another, but not much.
+    assert_eq!(creases(glam::DMat3::from_cols(glam::DVec3::X, glam::DVec3::Y, glam::DVec3::new(0.1, 0.0, 1.0))), 1);
 }

@@ -4,18 +4,18 @@
 use crate::device::{COLOR_FORMAT, Gpu, gpu};
 use crate::line_view;
 use glam::dcamera::rh::proj::directx as proj;
-use glam::{DMat4, DVec3, DVec4};
+use glam::{DAffine3, DMat4, DVec3, DVec4};
 use npr_mesh::edges::{EdgeOptions, find};
 use npr_mesh::{Model, embedded};
 use npr_outline::OutlineError;
 use npr_outline::fin_pass::FinPass;
 use npr_outline::fin_printed::{FinDepth, FinView, printed_fins};
-use npr_outline::line_pass::{COVERAGE_FORMAT, LinePass, LineSource, LineTargets};
+use npr_outline::line_pass::{COVERAGE_FORMAT, LineGroup, LinePass, LineSource, LineTargets};
 use npr_outline::line_style::LineStyle;
 use npr_outline::normal_format::NormalFormat;
 use npr_outline::segment::LineView;
 use npr_outline::shadow_mask::{MASK_FORMAT, ShadowMaskPass};
-use npr_outline::shadow_pass::{CastersOnDevice, ShadowPass};
+use npr_outline::shadow_pass::{CastersOnDevice, PlacedCasters, ShadowPass};
 use npr_outline::shadow_volume::shadow_casters;
 use wgpu::TextureFormat;
 
@@ -105,7 +105,8 @@ fn the_line_pass_refuses_other_textures_and_matrices() {
         let [painted, depth, inked, coverage] = views;
         let targets = LineTargets { painted, depth, inked, coverage };
         recorded(gpu, |encoder| {
-            pass.record(&gpu.device, encoder, LineSource::Records(&[]), &style, view, eye, &targets)
+            let lines = LineGroup { source: LineSource::Records(&[]), view: *view, eye };
+            pass.record(&gpu.device, encoder, &[lines], &style, &targets)
         })
     };
     let right = || formats.map(|format| texture(gpu, format, SIZE, 1));
@@ -171,7 +172,8 @@ fn the_shadow_pass_refuses_other_textures_matrices_and_areas() {
     let casters = CastersOnDevice::new(&gpu.device, &shadow_casters(&model, &edges_of(&model))).unwrap();
     let right = texture(gpu, STENCIL_FORMAT, SIZE, 1);
     let draw = |clip_from_world, view: &wgpu::TextureView, area| {
-        recorded(gpu, |encoder| pass.record(&gpu.device, encoder, &casters, DVec4::Y, clip_from_world, view, 0, area))
+        let placed = [PlacedCasters { casters: &casters, world_from_mesh: DAffine3::IDENTITY, light: DVec4::Y }];
+        recorded(gpu, |encoder| pass.record(&gpu.device, encoder, &placed, clip_from_world, view, 0, area))
     };
     let infinite = proj::perspective_infinite_reverse(1.0, 1.3, 0.1);
     assert_eq!(draw(infinite, &right, None), Ok(()));

@@ -12,10 +12,10 @@ use npr_harness::error::HarnessError;
 use npr_harness::executor::{Backend, Candidates, Executor, Picture, Rendered, Work};
 use npr_harness::picture_limits::{MEMORY_BYTES, MOST_SAMPLES, check_picture};
 use npr_harness::plan::Reason;
-use npr_harness::scene::Scene;
+use npr_harness::scene::{Mesh, Scene};
 use npr_harness::view::View;
 use npr_imagespace::artist::LineKind;
-use npr_mesh::{Warning, pn_triangles};
+use npr_mesh::{Loaded, Warning, pn_triangles};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -165,11 +165,17 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
     warn(&loaded.warnings);
     let start = Instant::now();
     let segments = checked("segments", f64::from(options.segments), 1.0, 1024.0, "1..=1024")? as u32;
-    let model = if segments > 1 { pn_triangles::tessellate(&loaded.model, segments)? } else { loaded.model };
-    let mut scene = Scene::new(model);
-    let of_edges: Vec<Warning> = scene.edges.warnings().into_iter().map(Warning::from).collect();
+    let Loaded { mut meshes, objects, warnings } = loaded;
+    if segments > 1 {
+        for mesh in &mut meshes {
+            *mesh = pn_triangles::tessellate(mesh, segments)?;
+        }
+    }
+    let mut scene = Scene::with_objects(meshes, objects);
+    let of_edges = scene.meshes().iter().flat_map(|mesh| mesh.edges().warnings());
+    let of_edges: Vec<Warning> = of_edges.map(Warning::from).collect();
     warn(&of_edges);
-    let warnings = [loaded.warnings, of_edges].concat();
+    let warnings = [warnings, of_edges].concat();
     scene.clip = options.clip.map(|plane| scene.plane_here(plane));
     for (material, kind) in &options.inner_lines {
         scene.set_line_kind(material, *kind)?;
@@ -202,7 +208,11 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
     bar.finish_and_clear();
     destination.write(&image)?;
     let drawn_ms = elapsed_ms(start);
-    let (_, counts) = plan.lines();
+    let (_, counts) = plan.lines(&scene);
+    let placed = |count: fn(&Mesh) -> usize| -> usize {
+        scene.objects().iter().map(|object| count(scene.mesh_of(object))).sum()
+    };
+    let (edges, folds) = (placed(|mesh| mesh.edges().edges.len()), placed(|mesh| mesh.edges().folds.len()));
     if options.json {
         let listed = |of: &[Reason]| of.iter().map(|r| json!({"pass": r.pass, "why": r.why})).collect::<Vec<_>>();
         let warnings: Vec<_> = warnings.iter().map(|w| json!({"text": w.text, "count": w.count})).collect();
@@ -211,7 +221,8 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
             json!({
                 "input": options.input, "output": options.output, "style": style.name,
                 "width": width, "height": height, "executor": executor.describe(),
-                "faces": scene.model.faces.len(), "edges": scene.edges.edges.len(), "folds": scene.edges.folds.len(),
+                "objects": scene.objects().len(), "meshes": scene.meshes().len(), "faces": scene.face_count(),
+                "edges": edges, "folds": folds,
                 "lines": {"silhouette": counts[0], "boundary": counts[1], "crease": counts[2], "material_border": counts[3]},
                 "device_ms": device_ms, "load_ms": loaded_ms, "prepare_ms": prepared_ms, "render_ms": drawn_ms,
                 "passes": listed(&plan.passes), "left_out": listed(&plan.left_out), "methods": listed(&plan.methods),
@@ -219,16 +230,16 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
             })
         ))?;
     } else {
-        let folds = match scene.edges.folds.len() {
+        let folds = match folds {
             0 => String::new(),
             folds => format!(" and {folds} folds of polygons"),
         };
         let mut summary = format!(
             "{}: {width} × {height} px, {} faces, {} lines of {} edges{folds}, {:.0} ms to wait for the device, {:.0} ms to load, {:.0} ms to prepare, {:.0} ms to render, on {}\n",
             options.output.display(),
-            scene.model.faces.len(),
+            scene.face_count(),
             counts.iter().sum::<usize>(),
-            scene.edges.edges.len(),
+            edges,
             device_ms,
             loaded_ms,
             prepared_ms,

@@ -43,11 +43,11 @@ pub fn true_intersections(scene: &Scene, camera: &Camera, size: (u32, u32), leas
 }
 
 fn corners(scene: &Scene, face: u32) -> [DVec3; 3] {
-    scene.model.faces[face as usize].map(|v| scene.model.positions[v as usize].as_dvec3())
+    scene.single().model().faces[face as usize].map(|v| scene.single().model().positions[v as usize].as_dvec3())
 }
 
 fn intersections(scene: &Scene) -> Vec<Intersection> {
-    let model = &scene.model;
+    let model = scene.single().model();
     let Some((low, high)) = model.bounds() else { return Vec::new() };
     if model.faces.len() > MOST_FACES_INTERSECTED {
         return Vec::new();
@@ -62,7 +62,7 @@ fn intersections(scene: &Scene) -> Vec<Intersection> {
         .collect();
     let mut order: Vec<u32> = (0..model.faces.len() as u32).collect();
     order.sort_by(|&a, &b| boxes[a as usize].0[axis].total_cmp(&boxes[b as usize].0[axis]));
-    let places = |face: u32| model.faces[face as usize].map(|v| scene.edges.representative[v as usize]);
+    let places = |face: u32| model.faces[face as usize].map(|v| scene.single().edges().representative[v as usize]);
     let (mut active, mut found): (Vec<u32>, _) = (Vec::new(), Vec::new());
     for face in order {
         let (low, high) = boxes[face as usize];

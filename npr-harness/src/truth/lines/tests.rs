@@ -356,7 +356,7 @@ fn accuracy_of_the_reference() {
     let mut scenes = vec![("still life", Scene::new(still_life()))];
     for name in ["stanford-bunny", "fandisk", "rocker-arm", "teapot"] {
         match load(&data.join(name).with_extension("obj"), &LoadOptions::default()) {
-            Ok(loaded) => scenes.push((name, Scene::new(loaded.model))),
+            Ok(loaded) => scenes.push((name, Scene::from(loaded))),
             Err(why) => println!("{name} left out: {why}"),
         }
     }

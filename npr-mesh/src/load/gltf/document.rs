@@ -37,6 +37,14 @@ pub fn malformed(path: &Path, fault: impl Into<String>) -> LoadError {
     LoadError::Malformed { path: path.to_owned(), fault: fault.into() }
 }
 
+/// A name in the file, or empty. Many objects may repeat one name, so a long one is cut.
+pub fn name(name: Option<&str>) -> String {
+    const MOST: usize = 100;
+    let name = name.unwrap_or_default();
+    let end = name.char_indices().nth(MOST).map_or(name.len(), |(end, _)| end);
+    name[..end].to_owned()
+}
+
 /// The content of a buffer.
 pub enum Bytes<'a> {
     /// The binary chunk of the file.

@@ -1,6 +1,6 @@
 //! Materials, their textures, and the texture coordinates that they use.
 
-use super::document::Document;
+use super::document::{self, Document};
 use super::files;
 use crate::load::external::shortened;
 use crate::load::image_file;
@@ -11,19 +11,22 @@ use gltf::json::validation::Checked;
 use gltf::json::{self, Index, material};
 use std::collections::HashMap;
 
-/// Materials and images, converted on first use by a primitive.
+/// Materials and images of the file, converted on first use by a primitive.
 #[derive(Default)]
 pub(super) struct Materials {
-    converted: HashMap<Option<usize>, (u32, UvSource)>,
+    /// With indices into `textures`.
+    converted: HashMap<Option<usize>, (Material, UvSource)>,
+    textures: Vec<Texture>,
     /// Textures by image and sampler settings.
-    textures: HashMap<(usize, [WrapKey; 2], bool), u32>,
+    slots: HashMap<(usize, [Wrap; 2], bool), u32>,
     /// By image the first texture, or `None` if the image cannot be decoded.
     images: HashMap<usize, Option<u32>>,
     /// The number of texels of all textures so far.
     texels: u64,
+    /// The materials and textures of the current mesh: from those of the file to those of its model.
+    materials_of_mesh: HashMap<Option<usize>, u32>,
+    textures_of_mesh: HashMap<u32, u32>,
 }
-
-type WrapKey = u8;
 
 /// The value of the `gltf` crate for the source of a texture without source. Such textures have images of other
 /// formats in extensions.
@@ -53,8 +56,14 @@ impl UvSource {
 }
 
 impl Materials {
-    /// The index of a material in the model. `None` is the default material of glTF, white and single-sided (glTF
-    /// 2.0, 3.9.6 "Default Material").
+    /// Begins another mesh, with a model of its own.
+    pub fn begin_mesh(&mut self) {
+        // Clearing would take as long as the largest mesh so far needs.
+        (self.materials_of_mesh, self.textures_of_mesh) = Default::default();
+    }
+
+    /// The index of a material in the model of the current mesh. `None` is the default material of glTF, white and
+    /// single-sided (glTF 2.0, 3.9.6 "Default Material").
     ///
     /// # Errors
     /// An invalid index, a number that is not finite, or an image that exceeds a limit.
@@ -66,9 +75,30 @@ impl Materials {
         warnings: &mut Vec<String>,
     ) -> Result<(u32, UvSource), LoadError> {
         let key = index.map(|i| i.value());
-        if let Some(&found) = self.converted.get(&key) {
-            return Ok(found);
+        if !self.converted.contains_key(&key) {
+            let converted = self.convert(document, index, warnings)?;
+            self.converted.insert(key, converted);
         }
+        let (material, uv) = &self.converted[&key];
+        let slot = *self.materials_of_mesh.entry(key).or_insert_with(|| {
+            let place = |texture: u32| {
+                *self.textures_of_mesh.entry(texture).or_insert_with(|| {
+                    model.textures.push(self.textures[texture as usize].clone());
+                    model.textures.len() as u32 - 1
+                })
+            };
+            model.materials.push(Material { texture: material.texture.map(place), ..material.clone() });
+            model.materials.len() as u32 - 1
+        });
+        Ok((slot, *uv))
+    }
+
+    fn convert(
+        &mut self,
+        document: &Document,
+        index: Option<Index<json::Material>>,
+        warnings: &mut Vec<String>,
+    ) -> Result<(Material, UvSource), LoadError> {
         let mut material = Material {
             name: String::new(),
             base_color: Vec4::ONE,
@@ -82,7 +112,7 @@ impl Materials {
             let fail = |fault: &str| document.malformed(format!("material {number}: {fault}"));
             let source = document.root.get(index).ok_or_else(|| fail("does not exist"))?;
             let pbr = &source.pbr_metallic_roughness;
-            material.name = source.name.clone().unwrap_or_default();
+            material.name = document::name(source.name.as_deref());
             material.base_color = Vec4::from_array(pbr.base_color_factor.0);
             material.alpha_mode = alpha_mode(source).ok_or_else(|| fail("unknown alpha mode"))?;
             material.double_sided = source.double_sided;
@@ -97,13 +127,10 @@ impl Materials {
             }
             if let Some(info) = &pbr.base_color_texture {
                 uv = uv_source(info).ok_or_else(|| fail("its texture transform is not finite"))?;
-                material.texture = self.texture(document, number, info, model, warnings)?;
+                material.texture = self.texture(document, number, info, warnings)?;
             }
         }
-        let slot = model.materials.len() as u32;
-        model.materials.push(material);
-        self.converted.insert(key, (slot, uv));
-        Ok((slot, uv))
+        Ok((material, uv))
     }
 
     fn texture(
@@ -111,7 +138,6 @@ impl Materials {
         document: &Document,
         material: usize,
         info: &Info,
-        model: &mut Model,
         warnings: &mut Vec<String>,
     ) -> Result<Option<u32>, LoadError> {
         let fail = |fault: String| document.malformed(format!("material {material}: {fault}"));
@@ -134,14 +160,14 @@ impl Materials {
             return Ok(None);
         }
 
-        let key = (image, wrap.map(|w| w as WrapKey), smooth);
-        if let Some(&slot) = self.textures.get(&key) {
+        let key = (image, wrap, smooth);
+        if let Some(&slot) = self.slots.get(&key) {
             return Ok(Some(slot));
         }
         let made = match self.images.get(&image) {
             Some(None) => return Ok(None),
             Some(Some(first)) => {
-                let first = &model.textures[*first as usize];
+                let first = &self.textures[*first as usize];
                 self.texels += u64::from(first.width) * u64::from(first.height);
                 if self.texels > document.limits.texels_in_all {
                     return Err(document.too_large("texels in all images", self.texels, document.limits.texels_in_all));
@@ -164,9 +190,9 @@ impl Materials {
                 }
             },
         };
-        let slot = model.textures.len() as u32;
-        model.textures.push(made);
-        self.textures.insert(key, slot);
+        let slot = self.textures.len() as u32;
+        self.textures.push(made);
+        self.slots.insert(key, slot);
         self.images.entry(image).or_insert(Some(slot));
         Ok(Some(slot))
     }
@@ -195,7 +221,7 @@ fn decode(document: &Document, number: usize, texels: &mut u64) -> Result<Textur
         },
         (None, None) => return Err(fail("neither a buffer view nor a URI".to_owned())),
     };
-    Ok(Texture { name, width, height, rgba8, wrap: [Wrap::Repeat; 2], smooth: true })
+    Ok(Texture { name, width, height, rgba8: rgba8.into(), wrap: [Wrap::Repeat; 2], smooth: true })
 }
 
 fn alpha_mode(material: &json::Material) -> Option<AlphaMode> {

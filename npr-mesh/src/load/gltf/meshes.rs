@@ -1,79 +1,102 @@
-//! Flattens mesh instances into one model.
+//! Loads meshes, and places them.
 
 use super::accessor::{Accessor, Integers, Purpose};
-use super::document::Document;
+use super::document::{self, Document};
 use super::materials::{Materials, UvSource};
-use super::pose::{self, Influences, Mirrored, Placement};
+use super::pose::{self, Influences};
 use super::scene::Nodes;
 use crate::edges::MOST_FACES;
-use crate::{LoadError, Model};
-use glam::{DMat4, Vec2, Vec3, Vec4};
+use crate::transform::Turn;
+use crate::{LoadError, Model, Object};
+use glam::{BVec3, DAffine3, DMat3, DMat4, Vec2, Vec3, Vec4};
 use gltf::json::mesh::{Mode, Primitive, Semantic};
 use gltf::json::validation::Checked;
-use gltf::json::{self, Index, Node};
+use gltf::json::{self, Index};
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
 /// The maximum of a channel of a vertex colour.
 const BRIGHTEST: f32 = 1000.0;
 
-/// All meshes of the shown nodes, in the order of the nodes.
+/// The meshes of the shown nodes, each once, and the nodes that place them. Without those that have no faces.
 ///
 /// # Errors
 /// [`LoadError`] for invalid data that a shown mesh refers to, and for exceeded limits.
-pub(super) fn flatten(document: &Document, nodes: &Nodes, warnings: &mut Vec<String>) -> Result<Model, LoadError> {
-    let mut flattener = Flattener {
+pub(super) fn load(
+    document: &Document,
+    nodes: &Nodes,
+    warnings: &mut Vec<String>,
+) -> Result<(Vec<Model>, Vec<Object>), LoadError> {
+    let mut loader = Loader {
         document,
+        meshes: Vec::new(),
         model: Model::default(),
         warnings,
         materials: Materials::default(),
         seen: vec![false; document.root.meshes.len()],
+        placed: [0; 2],
         instances: 0,
         displacements: 0,
     };
-    let mut meshes = 0;
+    let mut objects = Vec::new();
     let mut skins: HashMap<usize, Vec<DMat4>> = HashMap::new();
+    // By mesh and weights of a node, if they matter and differ from those of the mesh. `None` without faces.
+    let mut known: HashMap<(usize, Option<Vec<u32>>), Option<usize>> = HashMap::new();
     for &number in &nodes.shown {
         let node = &document.root.nodes[number];
-        let Some(mesh) = node.mesh else { continue };
+        let Some(index) = node.mesh else { continue };
         let fail = |fault: String| document.malformed(format!("node {number}: {fault}"));
-        let placement = match node.skin {
-            None => Placement::Rigid(nodes.world_from_node[number]),
+        let mesh =
+            document.root.get(index).ok_or_else(|| fail(format!("its mesh {} does not exist", index.value())))?;
+        loader.count_primitives(mesh)?;
+        let is_morphed = mesh.primitives.iter().any(|primitive| primitive.targets.is_some());
+        let of_node = node.weights.as_deref().filter(|_| is_morphed && node.weights != mesh.weights);
+        let weights = of_node.or(mesh.weights.as_deref()).unwrap_or(&[]);
+        let (slot, world_from_mesh) = match node.skin {
             Some(skin) => {
                 let joints = match skins.entry(skin.value()) {
                     Entry::Occupied(known) => known.into_mut(),
                     Entry::Vacant(slot) => slot.insert(pose::joint_matrices(document, nodes, skin).map_err(fail)?),
                 };
-                Placement::Skinned(joints)
+                (loader.mesh(index.value(), mesh, weights, Some(joints))?, DAffine3::IDENTITY)
+            }
+            None => {
+                let key = (index.value(), of_node.map(|weights| weights.iter().map(|w| w.to_bits()).collect()));
+                let slot = match known.entry(key) {
+                    Entry::Occupied(known) => {
+                        known.get().map_or(Ok(()), |slot| loader.count_again(slot))?;
+                        *known.get()
+                    }
+                    Entry::Vacant(slot) => *slot.insert(loader.mesh(index.value(), mesh, weights, None)?),
+                };
+                (slot, DAffine3::from_mat4(nodes.world_from_node[number]))
             }
         };
-        flattener.mesh(number, node, mesh, &placement)?;
-        let faces = flattener.model.faces.len();
-        flattener.model.face_mesh.resize(faces, meshes);
-        meshes += 1;
+        let Some(slot) = slot else { continue };
+        if let Some(vertex) = loader.vertex_out_of_range(slot, &world_from_mesh) {
+            let fault = format!("in world space the position of its mesh's vertex {vertex} is not finite");
+            return Err(fail(fault));
+        }
+        let name = node.name.as_deref().filter(|name| !name.is_empty()).or(mesh.name.as_deref());
+        objects.push(Object { name: document::name(name), mesh: slot, world_from_mesh });
     }
-    let mut model = flattener.model;
-    if meshes < 2 {
-        model.face_mesh.clear();
-    }
-    let vertices = model.positions.len();
-    if !model.uvs.is_empty() {
-        model.uvs.resize(vertices, Vec2::ZERO);
-    }
-    if !model.colors.is_empty() {
-        model.colors.resize(vertices, Vec4::ONE);
-    }
-    Ok(model)
+    let meshes = loader.meshes.into_iter().map(|(mesh, _)| mesh).collect();
+    Ok((meshes, objects))
 }
 
-struct Flattener<'a> {
+struct Loader<'a> {
     document: &'a Document<'a>,
-    /// Texture coordinates and colours may be shorter than the positions: they are filled up when some are added.
+    /// With their bounds.
+    meshes: Vec<(Model, (Vec3, Vec3))>,
+    /// The current mesh. Its texture coordinates and colours may be shorter than the positions: they are filled up when
+    /// some are added.
     model: Model,
     warnings: &'a mut Vec<String>,
     materials: Materials,
-    /// Meshes that were added before, whose warnings are not repeated.
+    /// Meshes that were loaded before, whose warnings are not repeated.
     seen: Vec<bool>,
+    /// The numbers of vertices and faces of all nodes before, each with its mesh.
+    placed: [usize; 2],
     /// The number of primitives so far, and of displacements and weights that were read for them.
     instances: u64,
     displacements: u64,
@@ -92,36 +115,70 @@ impl Part<'_> {
     }
 }
 
-impl Flattener<'_> {
-    fn mesh(
-        &mut self,
-        node_number: usize,
-        node: &Node,
-        index: Index<json::Mesh>,
-        placement: &Placement,
-    ) -> Result<(), LoadError> {
-        let number = index.value();
-        let mesh =
-            self.document.root.get(index).ok_or_else(|| {
-                self.document.malformed(format!("node {node_number}: its mesh {number} does not exist"))
-            })?;
-        let first_time = !std::mem::replace(&mut self.seen[number], true);
-        // The node's weights override those of the mesh.
-        let weights = node.weights.as_deref().or(mesh.weights.as_deref()).unwrap_or(&[]);
-        for (at, primitive) in mesh.primitives.iter().enumerate() {
-            let part = Part { name: format!("mesh {number} primitive {at}"), primitive, first_time };
-            self.primitive(&part, weights, placement)?;
-        }
+impl Loader<'_> {
+    fn count_primitives(&mut self, mesh: &json::Mesh) -> Result<(), LoadError> {
+        let limit = self.document.limits.instances;
+        self.instances += mesh.primitives.len() as u64;
+        if self.instances > limit { Err(self.document.too_large("primitives", self.instances, limit)) } else { Ok(()) }
+    }
+
+    /// Counts the vertices and faces of a mesh that another node places.
+    fn count_again(&mut self, slot: usize) -> Result<(), LoadError> {
+        let mesh = &self.meshes[slot].0;
+        let [vertices, faces] = [mesh.positions.len(), mesh.faces.len()];
+        self.fits_vertices(vertices as u64)?;
+        self.fits_faces(faces as u64)?;
+        self.placed = [self.placed[0] + vertices, self.placed[1] + faces];
         Ok(())
     }
 
-    fn primitive(&mut self, part: &Part, weights: &[f32], placement: &Placement) -> Result<(), LoadError> {
+    /// Loads a mesh, in its own space or posed by the joints of a skin. `None` if it has no faces.
+    fn mesh(
+        &mut self,
+        number: usize,
+        mesh: &json::Mesh,
+        weights: &[f32],
+        joints: Option<&[DMat4]>,
+    ) -> Result<Option<usize>, LoadError> {
+        let first_time = !std::mem::replace(&mut self.seen[number], true);
+        self.materials.begin_mesh();
+        for (at, primitive) in mesh.primitives.iter().enumerate() {
+            let part = Part { name: format!("mesh {number} primitive {at}"), primitive, first_time };
+            self.primitive(&part, weights, joints)?;
+        }
+        let mut model = std::mem::take(&mut self.model);
+        // Of many small meshes, spare capacity would take more memory than the data.
+        model.materials.shrink_to_fit();
+        model.textures.shrink_to_fit();
+        let vertices = model.positions.len();
+        // Meshes without faces count as well, since reading them takes time.
+        self.placed = [self.placed[0] + vertices, self.placed[1] + model.faces.len()];
+        if !model.uvs.is_empty() {
+            model.uvs.resize(vertices, Vec2::ZERO);
+        }
+        if !model.colors.is_empty() {
+            model.colors.resize(vertices, Vec4::ONE);
+        }
+        Ok(model.bounds().map(|bounds| {
+            self.meshes.push((model, bounds));
+            self.meshes.len() - 1
+        }))
+    }
+
+    /// A vertex of a face whose position in world space is not within the range of f32.
+    fn vertex_out_of_range(&self, slot: usize, world_from_mesh: &DAffine3) -> Option<u32> {
+        let (mesh, (low, high)) = &self.meshes[slot];
+        let is_finite = |p: Vec3| world_from_mesh.transform_point3(p.as_dvec3()).as_vec3().is_finite();
+        let corner = |i: u32| Vec3::select(BVec3::new(i & 1 > 0, i & 2 > 0, i & 4 > 0), *low, *high);
+        if (0..8).all(|i| is_finite(corner(i))) {
+            return None;
+        }
+        mesh.faces.iter().flatten().copied().find(|&vertex| !is_finite(mesh.positions[vertex as usize]))
+    }
+
+    fn primitive(&mut self, part: &Part, weights: &[f32], joints: Option<&[DMat4]>) -> Result<(), LoadError> {
         let document = self.document;
         let fail = |fault: String| document.malformed(format!("{}: {fault}", part.name));
-        self.instances += 1;
-        if self.instances > document.limits.instances {
-            return Err(document.too_large("primitives", self.instances, document.limits.instances));
-        }
         let mode = match part.primitive.mode {
             Checked::Valid(mode @ (Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)) => mode,
             Checked::Valid(mode) => {
@@ -139,7 +196,7 @@ impl Flattener<'_> {
         let accessor = Accessor::new(document, position_accessor, Purpose::Position)
             .map_err(|f| fail(format!("POSITION: {f}")))?;
         let first_vertex = self.model.positions.len();
-        let vertices = self.fits("vertices", first_vertex, accessor.count, document.limits.vertices)?;
+        let vertices = self.fits_vertices(accessor.count)?;
         let indices = match part.primitive.indices {
             Some(index) => {
                 Some(Accessor::new(document, index, Purpose::Indices).map_err(|f| fail(format!("indices: {f}")))?)
@@ -151,7 +208,7 @@ impl Flattener<'_> {
             Mode::Triangles => corners / 3,
             _ => corners.saturating_sub(2),
         };
-        self.fits("faces", self.model.faces.len(), face_count, document.limits.faces.min(MOST_FACES as u64))?;
+        self.fits_faces(face_count)?;
         if corners < 3 || (mode == Mode::Triangles && corners % 3 != 0) {
             self.warn(part, &format!("{corners} corners, which are no whole number of triangles"));
         }
@@ -168,12 +225,24 @@ impl Flattener<'_> {
             .read(part, Semantic::Normals, Purpose::Normal, vertices, |a| a.floats::<3>(Integers::AsStated))?
             .unwrap_or_default();
         pose::morph(document, part.primitive, weights, &mut positions, &mut normals).map_err(fail)?;
-        let influences = match placement {
-            Placement::Rigid(_) => None,
-            Placement::Skinned(_) => Influences::read(document, part.primitive, vertices).map_err(fail)?,
+        self.model.positions.extend(positions.into_iter().map(Vec3::from_array));
+        self.model.normals.extend(normals.into_iter().map(Vec3::from_array));
+        self.model.normals.resize(self.model.positions.len(), Vec3::ZERO);
+        let (positions, normals) = (&mut self.model.positions[first_vertex..], &mut self.model.normals[first_vertex..]);
+        // Missing normals, and those without a direction, are zero afterwards.
+        let mirrored = match joints {
+            None => {
+                let turn = Turn::new(&DMat3::IDENTITY);
+                normals.iter_mut().for_each(|normal| *normal = turn.normal(*normal));
+                Vec::new()
+            }
+            Some(joints) => {
+                let influences = Influences::read(document, part.primitive, vertices).map_err(fail)?;
+                let influences =
+                    influences.ok_or_else(|| fail("a skin, and neither JOINTS_0 nor WEIGHTS_0".to_owned()))?;
+                pose::skin(&influences, joints, positions, normals).map_err(fail)?
+            }
         };
-        let target = (&mut self.model.positions, &mut self.model.normals);
-        let mirrored = pose::transform(placement, influences.as_ref(), &positions, &normals, target).map_err(fail)?;
 
         let corners = match indices {
             None => None,
@@ -193,7 +262,17 @@ impl Flattener<'_> {
         }
     }
 
-    /// Checks that `more` additional elements are within the limits, and returns their number.
+    /// Checks that additional vertices are within the limits, and returns their number.
+    fn fits_vertices(&self, more: u64) -> Result<usize, LoadError> {
+        self.fits("vertices", self.placed[0] + self.model.positions.len(), more, self.document.limits.vertices)
+    }
+
+    /// The same for faces.
+    fn fits_faces(&self, more: u64) -> Result<usize, LoadError> {
+        let limit = self.document.limits.faces.min(MOST_FACES as u64);
+        self.fits("faces", self.placed[1] + self.model.faces.len(), more, limit)
+    }
+
     fn fits(&self, what: &'static str, so_far: usize, more: u64, limit: u64) -> Result<usize, LoadError> {
         let limit = limit.min(u32::MAX.into());
         let count = (so_far as u64).saturating_add(more);
@@ -283,8 +362,9 @@ impl Flattener<'_> {
         Ok(())
     }
 
-    /// Assembles the triangles of a primitive (glTF 2.0, 3.7.2.1 "Overview"). All corners are in range.
-    fn faces(&mut self, mode: Mode, first: usize, vertices: usize, corners: Option<&[u32]>, mirrored: &Mirrored) {
+    /// Assembles the triangles of a primitive (glTF 2.0, 3.7.2.1 "Overview"), reversed where the first vertex is
+    /// mirrored. All corners are in range.
+    fn faces(&mut self, mode: Mode, first: usize, vertices: usize, corners: Option<&[u32]>, mirrored: &[bool]) {
         let all: Vec<u32>;
         let corners = match corners {
             Some(corners) => corners,
@@ -295,7 +375,7 @@ impl Flattener<'_> {
         };
         let first = first as u32;
         let wound = |[a, b, c]: [u32; 3]| {
-            let [b, c] = if mirrored.face(a) { [c, b] } else { [b, c] };
+            let [b, c] = if mirrored.get(a as usize) == Some(&true) { [c, b] } else { [b, c] };
             [first + a, first + b, first + c]
         };
         let faces = &mut self.model.faces;

@@ -1,39 +1,13 @@
-//! Transforms vertices: morph targets, then the skin or the node (glTF 2.0, 3.7).
+//! Poses meshes: morph targets, then the skin (glTF 2.0, 3.7).
 
 use super::accessor::{Accessor, Integers, Purpose};
 use super::document::Document;
 use super::scene::Nodes;
-use glam::{DMat3, DMat4, DVec3, Vec3};
+use crate::transform::Turn;
+use glam::{DMat3, DMat4, Vec3};
 use gltf::json::mesh::{Primitive, Semantic};
 use gltf::json::validation::Checked;
 use gltf::json::{self, Index};
-
-/// The transform of a mesh to world space.
-pub(super) enum Placement<'a> {
-    /// One matrix for the whole mesh.
-    Rigid(DMat4),
-    /// The joint matrices of a skin, blended per vertex. The transform of the mesh's node is ignored (3.7.3.3
-    /// "Skinned Mesh Attributes").
-    Skinned(&'a [DMat4]),
-}
-
-/// The faces whose orientation a transform mirrors, so that their winding must be reversed (3.7.4 "Instantiation").
-pub(super) enum Mirrored {
-    /// All faces, or none.
-    All(bool),
-    /// By the first vertex of a face. Joint matrices may differ in orientation; the specification does not cover this
-    /// case.
-    ByVertex(Vec<bool>),
-}
-
-impl Mirrored {
-    pub fn face(&self, first_vertex: u32) -> bool {
-        match self {
-            Mirrored::All(all) => *all,
-            Mirrored::ByVertex(vertices) => vertices[first_vertex as usize],
-        }
-    }
-}
 
 /// The joint matrices: the world transform of each joint times its inverse bind matrix.
 ///
@@ -199,70 +173,27 @@ impl Influences {
     }
 }
 
-/// Transforms positions and normals (empty, or as many) to world space and appends them. Missing normals, and those
-/// without a direction, become zero.
+/// Transforms positions and normals to world space by the joint matrices of a skin; the transform of the mesh's node is
+/// ignored (3.7.3.3 "Skinned Mesh Attributes").
+///
+/// Returns for each vertex whether its matrix mirrors. The winding of a face is then reversed (3.7.4
+/// "Instantiation"), as stated by its first vertex: the specification does not cover joint matrices of different
+/// orientations.
 ///
 /// # Errors
 /// A vertex with a missing joint.
-pub(super) fn transform(
-    placement: &Placement,
-    influences: Option<&Influences>,
-    positions: &[[f32; 3]],
-    normals: &[[f32; 3]],
-    (to_positions, to_normals): (&mut Vec<Vec3>, &mut Vec<Vec3>),
-) -> Result<Mirrored, String> {
-    let end = to_positions.len() + positions.len();
-    to_positions.reserve(positions.len());
-    to_normals.reserve(positions.len());
-    let mirrored = match (placement, influences) {
-        (Placement::Skinned(joints), Some(influences)) => {
-            let mut mirrored = Vec::with_capacity(positions.len());
-            for (vertex, position) in positions.iter().enumerate() {
-                let matrix = influences.blend(vertex, joints)?;
-                let turn = Turn::new(&matrix);
-                to_positions.push(moved(&matrix, position));
-                to_normals.extend(normals.get(vertex).map(|normal| turn.normal(normal)));
-                mirrored.push(turn.mirrors);
-            }
-            Mirrored::ByVertex(mirrored)
-        }
-        (Placement::Rigid(matrix), _) => {
-            let turn = Turn::new(matrix);
-            to_positions.extend(positions.iter().map(|position| moved(matrix, position)));
-            to_normals.extend(normals.iter().map(|normal| turn.normal(normal)));
-            Mirrored::All(turn.mirrors)
-        }
-        (Placement::Skinned(_), None) => return Err("a skin, and neither JOINTS_0 nor WEIGHTS_0".to_owned()),
+pub(super) fn skin(
+    influences: &Influences,
+    joints: &[DMat4],
+    positions: &mut [Vec3],
+    normals: &mut [Vec3],
+) -> Result<Vec<bool>, String> {
+    let pose = |(vertex, (position, normal)): (usize, (&mut Vec3, &mut Vec3))| {
+        let matrix = influences.blend(vertex, joints)?;
+        let turn = Turn::new(&DMat3::from_mat4(matrix));
+        *position = matrix.transform_point3(position.as_dvec3()).as_vec3();
+        *normal = turn.normal(*normal);
+        Ok(turn.mirrors)
     };
-    to_normals.resize(end, Vec3::ZERO);
-    Ok(mirrored)
-}
-
-fn moved(matrix: &DMat4, position: &[f32; 3]) -> Vec3 {
-    matrix.transform_point3(DVec3::from_array(position.map(f64::from))).as_vec3()
-}
-
-/// The effect of a matrix on directions.
-struct Turn {
-    /// The inverse transpose times a positive number, or zero if the matrix is singular.
-    world_from_normal: DMat3,
-    mirrors: bool,
-}
-
-impl Turn {
-    fn new(matrix: &DMat4) -> Self {
-        let linear = DMat3::from_mat4(*matrix);
-        let [x, y, z] = [linear.x_axis, linear.y_axis, linear.z_axis];
-        // The columns of the inverse transpose times the determinant.
-        let cofactors = [y.cross(z), z.cross(x), x.cross(y)];
-        let determinant = x.dot(cofactors[0]);
-        let sign = if determinant == 0.0 || !determinant.is_finite() { 0.0 } else { determinant.signum() };
-        let [x, y, z] = cofactors.map(|c| c * sign);
-        Self { world_from_normal: DMat3::from_cols(x, y, z), mirrors: determinant < 0.0 }
-    }
-
-    fn normal(&self, normal: &[f32; 3]) -> Vec3 {
-        let turned = self.world_from_normal * DVec3::from_array(normal.map(f64::from));
-        turned.try_normalize().map_or(Vec3::ZERO, DVec3::as_vec3)
-    }
+    positions.iter_mut().zip(normals).enumerate().map(pose).collect()
 }

@@ -258,7 +258,7 @@ fn read_texture(file: &Path, wrap: Wrap, texels: &mut u64, external: &External) 
     let name = file.file_name().unwrap_or(file.as_os_str()).to_string_lossy().into_owned();
     let bytes = external.read(file)?;
     let (width, height, rgba8) = image_file::decode(&bytes, &shortened(&name), file, external.limits, texels)?;
-    Ok(Texture { name, width, height, rgba8, wrap: [wrap; 2], smooth: true })
+    Ok(Texture { name, width, height, rgba8: rgba8.into(), wrap: [wrap; 2], smooth: true })
 }
 
 pub(super) fn linear_from_srgb(encoded: Vec3) -> Vec3 {

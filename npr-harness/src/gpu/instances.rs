@@ -1,0 +1,121 @@
+//! Where objects are placed, on the device.
+
+use super::context::GpuContext;
+use crate::error::HarnessError;
+use crate::image_lines::plan::RegionPlan;
+use crate::scene::Scene;
+use npr_outline::shadow_pass::affine_rows;
+
+/// `Instance` of `surface.wgsl`: 64 bytes an object.
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+struct Instance {
+    /// The rows of the matrix from the mesh to the scene.
+    rows: [[f32; 4]; 3],
+    /// What is added to the regions of the mesh's faces, and what these are multiplied by before, 0 or 1.
+    regions: [u32; 2],
+    /// How much larger the mesh is placed, and log2 of that.
+    scale: [f32; 2],
+}
+
+pub(crate) const INSTANCE_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
+    array_stride: size_of::<Instance>() as u64,
+    step_mode: wgpu::VertexStepMode::Instance,
+    attributes: &wgpu::vertex_attr_array![
+        8 => Float32x4, 9 => Float32x4, 10 => Float32x4, 11 => Uint32x2, 12 => Float32x2
+    ],
+};
+
+/// Objects that are drawn together: of one mesh, and alike in material and handedness.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Run {
+    pub(crate) mesh: usize,
+    /// The number of their first material, and whether all faces have that.
+    pub(crate) material: (usize, bool),
+    pub(crate) mirrored: bool,
+    /// Their places in the buffer.
+    pub(crate) objects: std::ops::Range<usize>,
+}
+
+/// All objects of a scene, in the order of their runs.
+pub(crate) struct Instances {
+    instances: Vec<Instance>,
+    buffer: wgpu::Buffer,
+    runs: Vec<Run>,
+    /// Per object its place in the buffer.
+    places: Vec<u32>,
+}
+
+impl Instances {
+    pub(crate) fn new(context: &GpuContext, scene: &Scene, regions: Option<&RegionPlan>) -> Result<Self, HarnessError> {
+        let size = (scene.objects().len().max(1) * size_of::<Instance>()) as u64;
+        let limit = context.device.limits().max_buffer_size;
+        if size > limit {
+            return Err(HarnessError::BufferTooLarge { what: "objects", bytes: size, limit });
+        }
+        let buffer = context.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("objects"),
+            size,
+            usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let mut instances = Self { instances: Vec::new(), buffer, runs: Vec::new(), places: Vec::new() };
+        instances.update(context, scene, regions);
+        Ok(instances)
+    }
+
+    /// Uploads where the objects are if any has moved.
+    pub(crate) fn update(&mut self, context: &GpuContext, scene: &Scene, regions: Option<&RegionPlan>) {
+        let objects = scene.objects();
+        let key = |number: &u32| {
+            let object = &objects[*number as usize];
+            (object.mesh(), object.first_material(), object.is_mirrored())
+        };
+        let mut order: Vec<u32> = (0..objects.len() as u32).collect();
+        // Stable: of one mesh the objects keep their order.
+        order.sort_by_key(key);
+        let instance = |&number: &u32| {
+            let object = &objects[number as usize];
+            let (first, is_all) = regions.map_or((0, false), |regions| regions.of_objects[number as usize]);
+            let scale = object.scale();
+            Instance {
+                rows: affine_rows(object.scene_from_mesh()),
+                regions: [first, u32::from(!is_all)],
+                scale: [scale as f32, scale.log2() as f32],
+            }
+        };
+        let now: Vec<Instance> = order.iter().map(instance).collect();
+        if now == self.instances {
+            return;
+        }
+        context.queue.write_buffer(&self.buffer, 0, bytemuck::cast_slice(&now));
+        self.instances = now;
+        self.places = vec![0; objects.len()];
+        self.runs.clear();
+        for (place, number) in order.iter().enumerate() {
+            self.places[*number as usize] = place as u32;
+            let (mesh, material, mirrored) = key(number);
+            match self.runs.last_mut() {
+                Some(run) if (run.mesh, run.material, run.mirrored) == (mesh, material, mirrored) => {
+                    run.objects.end += 1;
+                }
+                _ => self.runs.push(Run { mesh, material, mirrored, objects: place..place + 1 }),
+            }
+        }
+    }
+
+    pub(crate) fn runs(&self) -> &[Run] {
+        &self.runs
+    }
+
+    pub(crate) fn slice(&self, run: &Run) -> wgpu::BufferSlice<'_> {
+        let size = size_of::<Instance>() as u64;
+        self.buffer.slice(run.objects.start as u64 * size..run.objects.end as u64 * size)
+    }
+
+    /// Of one object.
+    pub(crate) fn slice_of(&self, object: u32) -> wgpu::BufferSlice<'_> {
+        let (place, size) = (u64::from(self.places[object as usize]), size_of::<Instance>() as u64);
+        self.buffer.slice(place * size..(place + 1) * size)
+    }
+}

@@ -1,0 +1,144 @@
+//! A hierarchy over the boxes of objects, in f64, rebuilt when an object moves.
+
+use glam::DVec3;
+
+/// A binary tree over boxes, split at the median of the longest axis. 64 bytes a box.
+#[derive(Clone, Debug, Default)]
+pub(super) struct BoxHierarchy {
+    nodes: Vec<Node>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Node {
+    low: DVec3,
+    high: DVec3,
+    /// The number of the second child, the first being the next node; or in a leaf that of the box.
+    next: u32,
+    is_leaf: bool,
+}
+
+impl BoxHierarchy {
+    /// `boxes`: the number of each and its corners.
+    pub(super) fn new(mut boxes: Vec<(u32, (DVec3, DVec3))>) -> Self {
+        let mut hierarchy = Self { nodes: Vec::with_capacity(2 * boxes.len()) };
+        if !boxes.is_empty() {
+            hierarchy.add(&mut boxes);
+        }
+        hierarchy
+    }
+
+    fn add(&mut self, boxes: &mut [(u32, (DVec3, DVec3))]) {
+        let empty = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        let (low, high) = boxes.iter().fold(empty, |(l, h), (_, (low, high))| (l.min(*low), h.max(*high)));
+        let at = self.nodes.len();
+        self.nodes.push(Node { low, high, next: boxes[0].0, is_leaf: boxes.len() == 1 });
+        if boxes.len() == 1 {
+            return;
+        }
+        let axis = (high - low).max_position();
+        let middle = boxes.len() / 2;
+        // By number where middles are equal, so that the tree is always the same.
+        let key = |(number, (low, high)): &(u32, (DVec3, DVec3))| (low[axis] + high[axis], *number);
+        boxes.select_nth_unstable_by(middle, |a, b| {
+            let ((a, a_number), (b, b_number)) = (key(a), key(b));
+            a.total_cmp(&b).then(a_number.cmp(&b_number))
+        });
+        let (first, second) = boxes.split_at_mut(middle);
+        self.add(first);
+        self.nodes[at].next = self.nodes.len() as u32;
+        self.add(second);
+    }
+
+    /// Shows `visit` the boxes that a ray meets, in no particular order, with what matters of it: it returns the largest t
+    /// that still does.
+    pub(super) fn visit(
+        &self,
+        origin: DVec3,
+        direction: DVec3,
+        (t_min, mut t_max): (f64, f64),
+        mut visit: impl FnMut(u32, f64) -> f64,
+    ) {
+        let inverse = direction.recip();
+        let entry = |node: &Node| {
+            // A component of the direction may be 0: where the origin then lies on a side of the box the product is no
+            // number, which min and max pass over.
+            let (a, b) = ((node.low - origin) * inverse, (node.high - origin) * inverse);
+            let enter = a.x.min(b.x).max(a.y.min(b.y)).max(a.z.min(b.z));
+            let leave = a.x.max(b.x).min(a.y.max(b.y)).min(a.z.max(b.z));
+            // Boxes are of rounded corners, and so is the product.
+            let slack = 1e-12 * (enter.abs() + leave.abs());
+            (enter - slack, leave + slack)
+        };
+        let mut stack = Vec::with_capacity(64);
+        if !self.nodes.is_empty() {
+            stack.push(0u32);
+        }
+        while let Some(at) = stack.pop() {
+            let node = &self.nodes[at as usize];
+            let (enter, leave) = entry(node);
+            if enter > leave || leave < t_min || enter > t_max {
+                continue;
+            }
+            if node.is_leaf {
+                t_max = visit(node.next, t_max);
+                continue;
+            }
+            // The nearer one is visited first.
+            let (mut near, mut far) = (at + 1, node.next);
+            if entry(&self.nodes[far as usize]).0 < entry(&self.nodes[near as usize]).0 {
+                std::mem::swap(&mut near, &mut far);
+            }
+            stack.extend([far, near]);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_box_that_a_ray_meets_is_visited() {
+        let boxes: Vec<(u32, (DVec3, DVec3))> = (0..200u32)
+            .map(|i| {
+                let at = DVec3::new(f64::from(i * 37 % 100), f64::from(i * 61 % 89), f64::from(i * 17 % 53));
+                (i, (at, at + DVec3::new(3.0, 2.0, 5.0)))
+            })
+            .collect();
+        let hierarchy = BoxHierarchy::new(boxes.clone());
+        let mut met = 0;
+        for step in 0..500u32 {
+            let origin = DVec3::new(-10.0, f64::from(step % 90), f64::from(step * 7 % 50));
+            // Along an axis, too, where two of the three quotients are infinite.
+            let direction =
+                if step % 3 == 0 { DVec3::X } else { DVec3::new(1.0, 0.3, f64::from(step % 5) * 0.1 - 0.2) };
+            let mut visited = vec![false; boxes.len()];
+            hierarchy.visit(origin, direction, (0.0, f64::INFINITY), |number, t_max| {
+                visited[number as usize] = true;
+                t_max
+            });
+            for (number, (low, high)) in &boxes {
+                let middle = low.midpoint(*high);
+                let nearest = origin + direction * ((middle - origin).dot(direction) / direction.length_squared());
+                if nearest.cmpge(*low).all() && nearest.cmple(*high).all() {
+                    assert!(visited[*number as usize], "ray {step} meets box {number}");
+                    met += 1;
+                }
+            }
+        }
+        assert!(met > 1000, "{met}");
+    }
+
+    #[test]
+    fn boxes_behind_what_was_found_are_passed_over() {
+        let at = |x: f64| (DVec3::new(x, -1.0, -1.0), DVec3::new(x + 1.0, 1.0, 1.0));
+        let hierarchy = BoxHierarchy::new((0..64).map(|i| (i, at(f64::from(i) * 2.0))).collect());
+        let mut visited = Vec::new();
+        hierarchy.visit(DVec3::new(-5.0, 0.0, 0.0), DVec3::X, (0.0, f64::INFINITY), |number, _| {
+            visited.push(number);
+            6.0
+        });
+        assert_eq!(visited, [0]);
+        BoxHierarchy::new(Vec::new()).visit(DVec3::ZERO, DVec3::X, (0.0, 1.0), |_, _| panic!("there is no box"));
+    }
+}

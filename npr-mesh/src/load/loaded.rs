@@ -1,0 +1,111 @@
+//! What a file holds.
+
+use super::options::CREASE_ANGLE_RAD;
+use crate::{AlphaMode, Material, Model, Object, Texture, Warning, Wrap, normals};
+use glam::{DAffine3, Vec3};
+use std::collections::HashMap;
+
+/// What a file holds: meshes, each once, and the objects that place them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Loaded {
+    /// Each in its own space, with faces, and with the materials and textures that it uses. All normals are present.
+    pub meshes: Vec<Model>,
+    /// In the order of the file's nodes, depth first. At least one.
+    pub objects: Vec<Object>,
+    /// Distinct warnings in the order of their first occurrence.
+    pub warnings: Vec<Warning>,
+}
+
+impl Loaded {
+    /// All objects in one model in world space; a single object at the origin is not copied.
+    ///
+    /// Objects are appended in their order, [transformed](Model::transformed). If there are several,
+    /// [`Model::face_mesh`] is the index of the object, and equal materials and textures of different meshes are one.
+    /// A singular transform destroys normals; they are made from the transformed faces.
+    ///
+    /// # Panics
+    /// If an object has a mesh that does not exist. The loader makes no such object.
+    pub fn into_model(self) -> Model {
+        let Self { mut meshes, objects, .. } = self;
+        if let [object] = &objects[..] {
+            return placed(meshes.swap_remove(object.mesh), &object.world_from_mesh);
+        }
+        let mut uses = vec![0u32; meshes.len()];
+        objects.iter().for_each(|object| uses[object.mesh] += 1);
+        if meshes.iter().any(|mesh| !mesh.face_material.is_empty()) {
+            meshes.iter_mut().for_each(Model::fill_face_material);
+        }
+        let mut model = Model::default();
+        let mut merge = Merge::default();
+        meshes.iter_mut().zip(&uses).filter(|(_, uses)| **uses > 0).for_each(|(mesh, _)| merge.mesh(&mut model, mesh));
+        for (number, object) in objects.iter().enumerate() {
+            uses[object.mesh] -= 1;
+            let mesh = &mut meshes[object.mesh];
+            let mesh = if uses[object.mesh] == 0 { std::mem::take(mesh) } else { mesh.clone() };
+            let mesh = placed(mesh, &object.world_from_mesh);
+            model.append_geometry(&mesh);
+            model.face_material.extend_from_slice(&mesh.face_material);
+            model.face_mesh.resize(model.faces.len(), number as u32);
+        }
+        model
+    }
+}
+
+fn placed(mesh: Model, world_from_mesh: &DAffine3) -> Model {
+    if *world_from_mesh == DAffine3::IDENTITY {
+        return mesh;
+    }
+    let mut model = mesh.transformed(world_from_mesh);
+    if model.normals.contains(&Vec3::ZERO) {
+        normals::fill_missing(&mut model, CREASE_ANGLE_RAD);
+    }
+    model
+}
+
+/// Merges the materials and textures of meshes.
+#[derive(Default)]
+struct Merge {
+    textures: HashMap<TextureKey, u32>,
+    /// By material and the number of materials before it in its mesh that are equal, since equal materials of one
+    /// mesh remain distinct.
+    materials: HashMap<(MaterialKey, u32), u32>,
+}
+
+type TextureKey = (*const u8, [Wrap; 2], bool);
+type MaterialKey = (String, [u32; 4], Option<u32>, (bool, Option<u32>), bool);
+
+impl Merge {
+    /// Moves the materials and textures of a mesh to the model.
+    fn mesh(&mut self, model: &mut Model, mesh: &mut Model) {
+        let add_texture = |texture: Texture| {
+            let key = (texture.rgba8.as_ptr(), texture.wrap, texture.smooth);
+            *self.textures.entry(key).or_insert_with(|| {
+                model.textures.push(texture);
+                model.textures.len() as u32 - 1
+            })
+        };
+        let textures: Vec<u32> = mesh.textures.drain(..).map(add_texture).collect();
+        let mut equal: HashMap<MaterialKey, u32> = HashMap::new();
+        let add_material = |mut material: Material| {
+            material.texture = material.texture.map(|texture| textures[texture as usize]);
+            let before = equal.entry(key(&material)).or_default();
+            *before += 1;
+            *self.materials.entry((key(&material), *before)).or_insert_with(|| {
+                model.materials.push(material);
+                model.materials.len() as u32 - 1
+            })
+        };
+        let materials: Vec<u32> = mesh.materials.drain(..).map(add_material).collect();
+        mesh.face_material.iter_mut().for_each(|material| *material = materials[*material as usize]);
+    }
+}
+
+fn key(material: &Material) -> MaterialKey {
+    let alpha = match material.alpha_mode {
+        AlphaMode::Opaque => (false, None),
+        AlphaMode::Mask { cutoff } => (false, Some(cutoff.to_bits())),
+        AlphaMode::Blend => (true, None),
+    };
+    let color = material.base_color.to_array().map(f32::to_bits);
+    (material.name.clone(), color, material.texture, alpha, material.double_sided)
+}
