@@ -252,7 +252,8 @@ fn two_colored() -> Model {
     let mut model = squares_side_by_side();
     let rgba8 = [[200, 0, 0, 255], [0, 200, 0, 255]].concat();
     let wrap = [Wrap::Repeat, Wrap::Mirror];
-    model.textures = vec![Texture { name: "halves".into(), width: 2, height: 1, rgba8: rgba8.into(), wrap, smooth: false }];
+    model.textures =
+        vec![Texture { name: "halves".into(), width: 2, height: 1, rgba8: rgba8.into(), wrap, smooth: false }];
     model.materials[0].texture = Some(0);
     model.uvs.iter_mut().for_each(|uv| uv.x -= 1.0);
     model.face_mesh.clear();
@@ -407,12 +408,13 @@ fn the_fused_filter_finds_the_lines_of_real_models() {
     ];
     for file in models {
         let scene = Scene::from(npr_mesh::load(&folder.join(file), &Default::default()).expect("a good file"));
+        let flat = scene.flattened();
         for (yaw, pitch) in views {
             let framing = Framing { yaw_rad: yaw.to_radians(), pitch_rad: pitch.to_radians(), ..Framing::default() };
             let camera = Camera::framed(scene.corners(), f64::from(SIZE.0) / f64::from(SIZE.1), &framing);
             // 1 % of the model's size, and where surfaces pass through each other.
-            let of_edges = true_lines_of_steps(&scene, &camera, SIZE, CREASE_RAD, 0.02 * scene.radius());
-            let meetings = true_intersections(&scene, &camera, SIZE, CREASE_RAD);
+            let of_edges = true_lines_of_steps(&flat, &camera, SIZE, CREASE_RAD, 0.02 * scene.radius());
+            let meetings = true_intersections(&flat, &camera, SIZE, CREASE_RAD);
             let segments = [of_edges.segments, meetings.segments].concat();
             let truth = TrueLines { segments, ..of_edges };
             let found = accuracy(&truth, &drawn(&executor, &scene, &camera, ImageInk::default()), WITHIN_PX);

@@ -63,14 +63,25 @@ pub(super) struct InkUniform {
     up: [f32; 4],
     back: [f32; 4],
     region_max: u32,
-    padding: [u32; 3],
+    padding0: u32,
+    padding1: u32,
+    padding2: u32,
 }
 
 impl InkUniform {
     fn new(image: &ImagePlan, camera: &Camera) -> Self {
         let axis = |axis: DVec3| axis.as_vec3().extend(0.0).to_array();
         let [right, up, back] = camera.axes().map(axis);
-        Self { code: image.buffer_code(camera), right, up, back, region_max: image.regions.most, padding: [0; 3] }
+        Self {
+            code: image.buffer_code(camera),
+            right,
+            up,
+            back,
+            region_max: image.regions.most,
+            padding0: 0,
+            padding1: 0,
+            padding2: 0,
+        }
     }
 }
 

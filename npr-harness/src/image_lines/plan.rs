@@ -152,7 +152,8 @@ impl ImagePlan {
             _ => None,
         };
         let materials = scene.materials().len();
-        let line_kinds = if ink.artist { scene.line_kinds.clone() } else { vec![LineKind::Normals; materials] };
+        let mut line_kinds = if ink.artist { scene.line_kinds.clone() } else { Vec::new() };
+        line_kinds.resize(materials, LineKind::Normals);
         let most = ink.region_max();
         let regions = RegionPlan::new(scene, ink.regions, &line_kinds, crease_angle_rad, most)?;
         let own_surfaces = ink.scale != InkScale::One || view.samples > 1;

@@ -22,7 +22,7 @@ fn smooth(crease_angle_rad: f32) -> ContourOptions {
 const NO_CREASES: ContourOptions = ContourOptions {
     crease_angle_rad: std::f32::consts::PI,
     material_borders: false,
-    world_from_normal: glam::DMat3::IDENTITY,
+    world_from_normal: DMat3::IDENTITY,
 };
 
 fn point(eye: DVec3) -> DVec4 {
@@ -605,17 +605,17 @@ fn angles_of_a_placed_model_are_those_of_its_shape() {
         faces: vec![[0, 3, 1], [1, 3, 2]],
         ..Model::default()
     };
-    let creases = |matrix: glam::DMat3| {
+    let creases = |matrix: DMat3| {
         let world_from_normal = matrix.inverse().transpose();
         let options = ContourOptions { world_from_normal, ..smooth(40f32.to_radians()) };
         let contours = contours_of(&model, &options);
         contours.traits.iter().filter(|&&traits| traits == LineKind::Crease as u32 | TRAIT_ALWAYS).count()
     };
-    let scale = |x: f64, y: f64, z: f64| glam::DMat3::from_diagonal(glam::DVec3::new(x, y, z));
-    assert_eq!(creases(glam::DMat3::IDENTITY), 1);
+    let scale = |x: f64, y: f64, z: f64| DMat3::from_diagonal(DVec3::new(x, y, z));
+    assert_eq!(creases(DMat3::IDENTITY), 1);
     assert_eq!(creases(scale(4.0, 1.0, 1.0)), 0);
     assert_eq!(creases(scale(-3.0, -3.0, 3.0)), 1);
-    assert_eq!(creases(glam::DMat3::from_rotation_y(1.0) * scale(1.0, 1.0, 50.0)), 1);
+    assert_eq!(creases(DMat3::from_rotation_y(1.0) * scale(1.0, 1.0, 50.0)), 1);
     // Sheared along the ridge the angle is another, but not much.
-    assert_eq!(creases(glam::DMat3::from_cols(glam::DVec3::X, glam::DVec3::Y, glam::DVec3::new(0.1, 0.0, 1.0))), 1);
+    assert_eq!(creases(DMat3::from_cols(DVec3::X, DVec3::Y, DVec3::new(0.1, 0.0, 1.0))), 1);
 }

@@ -45,6 +45,10 @@ fn the_uniforms_lie_as_the_shader_has_them() {
         ("right", offset_of!(InkUniform, right)),
         ("up", offset_of!(InkUniform, up)),
         ("back", offset_of!(InkUniform, back)),
+        ("region_max", offset_of!(InkUniform, region_max)),
+        ("padding0", offset_of!(InkUniform, padding0)),
+        ("padding1", offset_of!(InkUniform, padding1)),
+        ("padding2", offset_of!(InkUniform, padding2)),
     ];
     assert_eq!(layout("SurfaceInk"), ours(&ink, size_of::<InkUniform>()));
     let hatch = [
