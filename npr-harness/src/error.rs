@@ -289,6 +289,9 @@ pub enum HarnessError {
         /// Those there are.
         known: String,
     },
+    /// A plan for the CPU, given to a device.
+    #[error("the plan is for the CPU: shadows are to be found by rays")]
+    RayPlan,
     /// An object that a transform would make flat.
     #[error("the transform of object {object} has no inverse")]
     SingularTransform {

@@ -169,8 +169,7 @@ impl Plan {
         let in_picture = self.paint.is_some() || drawn.is_some() && !in_lines;
         let Some(shadow) = style.shadow.as_ref().filter(|_| in_picture || in_lines) else { return Ok(None) };
         let light = casting_light(&style.lights, scene, &self.view.camera);
-        let (method, float_depth) = (capabilities.volumes(scene.objects().len()).0, capabilities.float_stencil);
-        let technique = ShadowTechnique::new(scene, shadow, light, method, float_depth)?;
+        let technique = ShadowTechnique::new(scene, shadow, light, capabilities)?;
         Ok(Some(ShadowPlan { light, terminator: shadow.terminator, technique, in_picture, in_lines }))
     }
 
@@ -205,7 +204,7 @@ impl Plan {
                 capabilities.check_size("the shadow map", (side, side))?;
                 add("shadow map", "depths of 32-bit floats");
             }
-            None => {}
+            Some(ShadowTechnique::Rays) | None => {}
         }
         if let Some(hatch) = self.hatch() {
             let side = hatch.tam()?.side;
@@ -264,10 +263,21 @@ impl Plan {
         let volumes = matches!(technique, Some(ShadowTechnique::Volumes { .. }));
         let map = matches!(technique, Some(ShadowTechnique::Map { .. }));
         let no_shadow = if style.shadow.is_some() { "the style shows nothing of it" } else { "no light casts shadows" };
-        let no_volumes = if map { "the style asks for a map" } else { no_shadow };
+        let rays = matches!(technique, Some(ShadowTechnique::Rays));
+        let by_rays = "the CPU follows rays to the light";
+        let no_volumes = match (rays, map) {
+            (true, _) => by_rays,
+            (_, true) => "the style asks for a map",
+            _ => no_shadow,
+        };
+        add(rays, "shadow rays", by_rays, if technique.is_some() { "a device has other means" } else { no_shadow });
         add(volumes, "geometry: depth, before all", "shadows fall on what is seen", no_volumes);
         add(volumes, "shadow volumes into a stencil", "a light casts shadows", no_volumes);
-        let no_map = if volumes { "volumes are exact" } else { no_shadow };
+        let no_map = match (rays, volumes) {
+            (true, _) => by_rays,
+            (_, true) => "volumes are exact",
+            _ => no_shadow,
+        };
         add(map, "shadow map", "a light casts shadows, and the style asks for a map", no_map);
 
         let painted = self.paint.is_some();

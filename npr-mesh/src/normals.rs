@@ -58,6 +58,11 @@ pub fn fill_missing(model: &mut Model, crease_angle_rad: f32) {
             fan.assign(model, &mut representative, &missing, around);
         }
     }
+    // Vertices were added one by one, for which the arrays may have doubled.
+    model.positions.shrink_to_fit();
+    model.normals.shrink_to_fit();
+    model.uvs.shrink_to_fit();
+    model.colors.shrink_to_fit();
 }
 
 /// Normalises the given normals. Returns per vertex whether its normal is missing; missing normals are set to +Y.

@@ -21,22 +21,31 @@ fn main() {
         edges::find(&model.positions, &model.faces, &model.face_polygon, &model.face_material, &Default::default());
     let contours = contour_edges(&model, &edges, &ContourOptions::default()).expect("the default options are valid");
     let eye = DVec4::new(1.9, 2.3, 3.1, 1.0);
-    let mut lines = Vec::with_capacity(contours.planes.len());
+    let mut lines = Vec::with_capacity(contours.edges.len());
     let [mut sum, mut scan] = [f64::INFINITY; 2];
     for _ in 0..200 {
         time_ms(&mut sum, || {
             // Eight sums side by side, so that adding does not wait for adding.
             let mut sums = [0f32; 8];
-            for planes in black_box(&contours.planes) {
-                for (sum, value) in sums.iter_mut().zip(planes.plane0.iter().chain(&planes.plane1)) {
+            for planes in black_box(&contours.planes).as_chunks::<2>().0 {
+                for (sum, value) in sums.iter_mut().zip(planes.as_flattened()) {
                     *sum += value;
                 }
             }
-            black_box(sums);
+            let faces = black_box(&contours.edges).iter().fold([0u32; 2], |[a, b], edge| {
+                let [first, second] = edge.faces();
+                [a ^ first, b ^ second]
+            });
+            black_box((sums, faces));
         });
         time_ms(&mut scan, || contours.scan(black_box(eye), &mut lines));
     }
-    println!("{} edges of 32 bytes, {} lines", contours.planes.len(), lines.len());
+    println!(
+        "{} faces of 16 bytes, {} edges of 16 bytes, {} lines",
+        contours.planes.len(),
+        contours.edges.len(),
+        lines.len()
+    );
     println!("  sum of the records {sum:8.4} ms  1.00");
     println!("  scan               {scan:8.4} ms  {:.2}", scan / sum);
 }

@@ -30,7 +30,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let mut path = String::new();
     for line in lines.into_iter().map(|line| line as usize) {
-        let ends = contours.ends[line].map(|end| model.positions[end as usize].as_dvec3());
+        let ends = contours.edges[line].ends.map(|end| model.positions[end as usize].as_dvec3());
         let normals = contours.normals(line).map(|normal| normal.as_dvec3());
         // Cut to the near plane and to the picture; none if nothing is left.
         if let Some(segment) = outline_project(ends, normals, 1.0, &view) {

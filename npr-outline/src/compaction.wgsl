@@ -3,7 +3,8 @@
 
 @group(0) @binding(0) var<uniform> view: OutlineView;
 @group(1) @binding(0) var<storage, read> planes: array<vec4<f32>>;
-@group(1) @binding(1) var<storage, read_write> lines: array<u32>;
+@group(1) @binding(1) var<storage, read> edges: array<vec4<u32>>;
+@group(1) @binding(2) var<storage, read_write> lines: array<u32>;
 
 struct DrawArguments {
     vertex_count: u32,
@@ -11,7 +12,7 @@ struct DrawArguments {
     first_vertex: u32,
     first_instance: u32,
 }
-@group(1) @binding(2) var<storage, read_write> arguments: DrawArguments;
+@group(1) @binding(3) var<storage, read_write> arguments: DrawArguments;
 
 var<workgroup> found: atomic<u32>;
 var<workgroup> base: u32;
@@ -21,7 +22,9 @@ fn compact(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocati
     let edge = id.y * view.row_stride + id.x;
     var is_line = edge < view.always_count;
     if !is_line && edge < view.edge_count {
-        is_line = outline_is_silhouette(planes[2u * edge], planes[2u * edge + 1u], view.local_eye);
+        let record = edges[edge];
+        let plane1 = edge_second_plane(planes[record.w & EDGE_FACE], record.w);
+        is_line = outline_is_silhouette(planes[record.z & EDGE_FACE], plane1, view.local_eye);
     }
     // One atomic addition to the global counter for each workgroup instead of one for each line.
     var slot = 0u;

@@ -15,8 +15,8 @@
 //!
 //! # The records
 //!
-//! A record is two planes, 32 bytes an edge. Edges that are lines for every eye (boundaries, non-manifold edges,
-//! creases) come first, so that a scan tests only the others.
+//! A plane is 16 bytes a face, and an edge with its ends, its two faces and its kind 16 bytes more. Edges that are lines
+//! for every eye (boundaries, non-manifold edges, creases) come first, so that a scan tests only the others.
 
 use crate::OutlineError;
 use glam::{DMat3, DVec3, DVec4, Vec3, Vec4};
@@ -45,11 +45,9 @@ impl LineKind {
 
 /// The planes of an edge's two faces: `n · p + d` with a unit normal `n`, relative to [`ContourEdges::origin`].
 ///
-/// The planes of faces that are wound oppositely to the first face of their connected component are negated, so that
-/// both have the same winding; at a boundary the second is the negated first, so that the edge is a silhouette for
+/// Both have the same winding; at a boundary the second is the negated first, so that the edge is a silhouette for
 /// every eye (the chapter's step 1b).
-#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EdgePlanes {
     /// The plane of the first face: nx, ny, nz, d.
     pub plane0: [f32; 4],
@@ -57,7 +55,49 @@ pub struct EdgePlanes {
     pub plane1: [f32; 4],
 }
 
-const _: () = assert!(size_of::<EdgePlanes>() == 32);
+/// An edge that can be a line, 16 bytes.
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub struct ContourEdge {
+    /// The two vertices in the winding order of the first face, reversed where its plane is negated.
+    pub ends: [u32; 2],
+    /// The two faces, at a boundary twice the first, and above their 30 bits: of the first the [`LineKind`] that the
+    /// edge has when it is not a silhouette, of the second [`SECOND_NEGATED`] and [`CUT_OUT`].
+    packed: [u32; 2],
+}
+
+const _: () = assert!(size_of::<ContourEdge>() == 16);
+
+/// The bits of a face's number.
+const FACE: u32 = (1 << 30) - 1;
+/// The plane of the second face is negated for this edge.
+const SECOND_NEGATED: u32 = 1 << 30;
+/// All faces of the edge are cut out by alpha, so that the line is visible only where they are.
+const CUT_OUT: u32 = 1 << 31;
+
+impl ContourEdge {
+    /// The two faces; at a boundary twice the first.
+    #[inline]
+    pub fn faces(&self) -> [u32; 2] {
+        self.packed.map(|packed| packed & FACE)
+    }
+
+    /// The kind of line that the edge is when it is not a silhouette: [`LineKind::Silhouette`] where it is none.
+    #[inline]
+    pub fn own_kind(&self) -> LineKind {
+        LineKind::ALL[(self.packed[0] >> 30) as usize]
+    }
+
+    /// Whether the edge is a line for every eye.
+    pub fn is_always(&self) -> bool {
+        self.own_kind() != LineKind::Silhouette
+    }
+
+    /// Whether all faces of the edge are cut out by alpha, so that the line is visible only where they are.
+    pub fn is_cut_out(&self) -> bool {
+        self.packed[1] & CUT_OUT != 0
+    }
+}
 
 /// Which edges are lines besides silhouettes and boundaries.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,24 +123,14 @@ impl Default for ContourOptions {
 pub struct ContourEdges {
     /// The origin of the planes' coordinates: the centre of the model's bounds, so that d keeps its precision in f32.
     pub origin: Vec3,
-    /// The two planes of each edge.
-    pub planes: Vec<EdgePlanes>,
-    /// The two vertices of each edge in the winding order of the first face, reversed where its plane is negated.
-    pub ends: Vec<[u32; 2]>,
-    /// For each edge the [`LineKind`] that it has when it is not a silhouette, as a number in the lower 8 bits, and
-    /// flags.
-    pub traits: Vec<u32>,
-    /// The first face of each edge.
-    pub first_face: Vec<u32>,
+    /// The plane of each face: nx, ny, nz, d. Those of faces that are wound oppositely to the first face of their
+    /// connected component are negated.
+    pub planes: Vec<[f32; 4]>,
+    /// The edges.
+    pub edges: Vec<ContourEdge>,
     /// The number of edges that are lines for every eye; they come first.
     pub always: usize,
 }
-
-/// In [`ContourEdges::traits`]: the edge is a line for every eye.
-pub const TRAIT_ALWAYS: u32 = 1 << 8;
-/// In [`ContourEdges::traits`]: all faces of the edge are cut out by alpha, so that the line is visible only where they
-/// are.
-pub const TRAIT_CUT_OUT: u32 = 1 << 9;
 
 /// Makes the records of a model's edges, those that are lines for every eye first.
 ///
@@ -175,46 +205,32 @@ pub fn contour_edges(model: &Model, edges: &Edges, options: &ContourOptions) -> 
             }
         }
     };
-    const NO_LINE: u8 = u8::MAX;
-    let lines: Vec<u8> = edges.edges.iter().map(|edge| line_of(edge).map_or(NO_LINE, |kind| kind as u8)).collect();
-    let always = lines.iter().filter(|&&line| line != NO_LINE).count();
-    let count = edges.edges.len() + edges.folds.len();
-    let mut contours = ContourEdges {
-        origin,
-        planes: bytemuck::zeroed_vec(count),
-        ends: vec![[0; 2]; count],
-        traits: vec![0; count],
-        first_face: vec![0; count],
-        always,
-    };
+    let lines: Vec<u8> = edges.edges.iter().map(|edge| line_of(edge).unwrap_or(LineKind::Silhouette) as u8).collect();
+    let is_always = |line: u8| line != LineKind::Silhouette as u8;
+    let always = lines.iter().filter(|&&line| is_always(line)).count();
+    let mut contour_edges: Vec<ContourEdge> = bytemuck::zeroed_vec(edges.edges.len() + edges.folds.len());
     let is_cut_out = |face: u32| face == NO_FACE || cut_out[model.face_material[face as usize] as usize];
     // Faces without material are opaque.
     let any_cut_out = !model.face_material.is_empty() && cut_out.contains(&true);
     let of_edges = edges.edges.iter().zip(lines).map(|(edge, line)| (edge, line, fits(edge)));
     // A polygon's triangles are wound consistently, and a fold is a line only where it is a silhouette.
-    let of_folds = edges.folds.iter().map(|fold| (fold, NO_LINE, true));
+    let of_folds = edges.folds.iter().map(|fold| (fold, LineKind::Silhouette as u8, true));
     let (mut next_always, mut next) = (0, always);
     for (edge, line, fits) in of_edges.chain(of_folds) {
-        let position = if line == NO_LINE { &mut next } else { &mut next_always };
+        let position = if is_always(line) { &mut next_always } else { &mut next };
         let [first, second] = edge.faces();
-        let mut flags = if line == NO_LINE { 0 } else { u32::from(line) | TRAIT_ALWAYS };
-        if any_cut_out && is_cut_out(first) && is_cut_out(second) {
-            flags |= TRAIT_CUT_OUT;
-        }
-        let plane0 = planes[first as usize];
-        let plane1 = match second {
-            NO_FACE => plane0.map(|x| -x),
-            _ if fits => planes[second as usize],
-            _ => planes[second as usize].map(|x| -x),
-        };
+        let is_single = second == NO_FACE;
+        let negated = if is_single || !fits { SECOND_NEGATED } else { 0 };
+        let cut_out = if any_cut_out && is_cut_out(first) && is_cut_out(second) { CUT_OUT } else { 0 };
+        let second = if is_single { first } else { second };
         let [from, to] = edge.ends;
-        contours.planes[*position] = EdgePlanes { plane0, plane1 };
-        contours.ends[*position] = if is_flipped(first) { [to, from] } else { [from, to] };
-        contours.traits[*position] = flags;
-        contours.first_face[*position] = first;
+        contour_edges[*position] = ContourEdge {
+            ends: if is_flipped(first) { [to, from] } else { [from, to] },
+            packed: [first | u32::from(line) << 30, second | negated | cut_out],
+        };
         *position += 1;
     }
-    Ok(contours)
+    Ok(ContourEdges { origin, planes, edges: contour_edges, always })
 }
 
 /// The normals of those triangles of folded polygons that have an area; the others keep their polygon's plane.
@@ -347,9 +363,8 @@ pub fn outline_is_silhouette(planes: &EdgePlanes, eye: Vec4) -> bool {
     (outline_facing(planes.plane0, eye) >= 0.0) != (outline_facing(planes.plane1, eye) >= 0.0)
 }
 
-/// The kind of line that an edge with these traits is for an eye, if it is a line. `eye` as for [`outline_facing`].
-fn outline_kind(traits: u32, planes: &EdgePlanes, eye: Vec4) -> LineKind {
-    let own = LineKind::ALL[(traits & 3) as usize];
+/// The kind of line that an edge is for an eye, if it is a line. `eye` as for [`outline_facing`].
+fn outline_kind(own: LineKind, planes: &EdgePlanes, eye: Vec4) -> LineKind {
     // A boundary's planes make it a silhouette for every eye, but its kind is that of a boundary.
     if own != LineKind::Boundary && outline_is_silhouette(planes, eye) { LineKind::Silhouette } else { own }
 }
@@ -357,7 +372,7 @@ fn outline_kind(traits: u32, planes: &EdgePlanes, eye: Vec4) -> LineKind {
 impl ContourEdges {
     /// The size of the largest buffer for finding these edges' lines on a device, bytes.
     pub fn device_bytes(&self, positions: &[Vec3]) -> u64 {
-        size_of_val(&self.planes[..]).max(size_of_val(positions)) as u64
+        size_of_val(&self.planes[..]).max(size_of_val(&self.edges[..])).max(size_of_val(positions)) as u64
     }
 
     /// The eye in the coordinates of the planes. `eye` is a world-space point with w = 1 or direction with w = 0.
@@ -373,36 +388,58 @@ impl ContourEdges {
         let eye = self.local_eye(eye);
         lines.clear();
         lines.extend(0..self.always as u32);
-        // Two passes over each block: the test without branches, which the compiler vectorises, then the hits. Only
-        // about one edge in fifty of a scanned model is a hit.
+        if self.always == self.edges.len() {
+            return;
+        }
+        // The side of each face once, without branches, which the compiler vectorises: a byte for each.
+        let is_front = |plane: &[f32; 4]| u8::from(outline_facing(*plane, eye) >= 0.0);
+        let front: Vec<u8> = self.planes.iter().map(is_front).collect();
+        // Two passes over each block: the comparison, then the hits. Only about one edge in fifty of a scanned model is
+        // a hit.
         const BLOCK: usize = 64;
-        for (block_number, block) in self.planes[self.always..].chunks(BLOCK).enumerate() {
-            let mut hits = 0u64;
-            for (bit, planes) in block.iter().enumerate() {
-                hits |= u64::from(outline_is_silhouette(planes, eye)) << bit;
+        for (block_number, block) in self.edges[self.always..].chunks(BLOCK).enumerate() {
+            let (mut hits, mut negated) = (0u64, 0u32);
+            for (bit, edge) in block.iter().enumerate() {
+                let [first, second] = edge.faces();
+                hits |= u64::from(front[first as usize] ^ front[second as usize]) << bit;
+                negated |= edge.packed[1];
             }
-            let first = (self.always + block_number * BLOCK) as u32;
+            let first = self.always + block_number * BLOCK;
+            if negated & SECOND_NEGATED != 0 {
+                // On surfaces without orientation. An eye in the plane is in front of it and of the negated plane.
+                let is_hit = |bit: usize| outline_is_silhouette(&self.edge_planes(first + bit), eye);
+                hits = (0..block.len()).map(|bit| u64::from(is_hit(bit)) << bit).sum();
+            }
             while hits != 0 {
-                lines.push(first + hits.trailing_zeros());
+                lines.push(first as u32 + hits.trailing_zeros());
                 hits &= hits - 1;
             }
         }
     }
 
+    /// The planes of an edge's faces.
+    #[inline]
+    pub fn edge_planes(&self, edge: usize) -> EdgePlanes {
+        let edge = &self.edges[edge];
+        let [plane0, plane1] = edge.faces().map(|face| self.planes[face as usize]);
+        let negated = edge.packed[1] & SECOND_NEGATED != 0;
+        EdgePlanes { plane0, plane1: if negated { plane1.map(|x| -x) } else { plane1 } }
+    }
+
     /// Unit normals of an edge's faces for the same winding; the second is zero at a boundary.
     pub fn normals(&self, edge: usize) -> [Vec3; 2] {
-        let EdgePlanes { plane0, plane1 } = self.planes[edge];
+        let EdgePlanes { plane0, plane1 } = self.edge_planes(edge);
         let normal = |plane: [f32; 4]| Vec3::new(plane[0], plane[1], plane[2]);
-        let boundary = self.traits[edge] & 3 == LineKind::Boundary as u32;
+        let boundary = self.edges[edge].own_kind() == LineKind::Boundary;
         [normal(plane0), if boundary { Vec3::ZERO } else { normal(plane1) }]
     }
 
     /// What kind of line an edge is for this eye (in the planes' own coordinates, [`ContourEdges::local_eye`]),
     /// or `None` if it is none.
     pub fn kind(&self, edge: usize, eye: Vec4) -> Option<LineKind> {
-        let (traits, planes) = (self.traits[edge], &self.planes[edge]);
-        let is_line = traits & TRAIT_ALWAYS != 0 || outline_is_silhouette(planes, eye);
-        is_line.then(|| outline_kind(traits, planes, eye))
+        let (own, planes) = (self.edges[edge].own_kind(), &self.edge_planes(edge));
+        let is_line = own != LineKind::Silhouette || outline_is_silhouette(planes, eye);
+        is_line.then(|| outline_kind(own, planes, eye))
     }
 }
 

@@ -13,9 +13,8 @@ fn outline_is_silhouette(plane0: vec4<f32>, plane1: vec4<f32>, eye: vec4<f32>) -
     return (outline_facing(plane0, eye) >= 0.0) != (outline_facing(plane1, eye) >= 0.0);
 }
 
-// The kind of line that an edge with these traits is for this eye.
-fn outline_kind(traits: u32, plane0: vec4<f32>, plane1: vec4<f32>, eye: vec4<f32>) -> u32 {
-    let own = traits & 3u;
+// The kind of line that an edge is for this eye. `own`: its kind when it is not a silhouette.
+fn outline_kind(own: u32, plane0: vec4<f32>, plane1: vec4<f32>, eye: vec4<f32>) -> u32 {
     if own != OUTLINE_BOUNDARY && outline_is_silhouette(plane0, plane1, eye) {
         return OUTLINE_SILHOUETTE;
     }

@@ -9,7 +9,7 @@
 //! texture to read, and as a target that starts as its copy.
 
 use crate::OutlineError;
-use crate::contour::{ContourEdges, TRAIT_ALWAYS, TRAIT_CUT_OUT};
+use crate::contour::ContourEdges;
 use crate::filled_buffer::filled_buffer;
 use crate::line_style::LineStyle;
 use crate::segment::LineView;
@@ -24,6 +24,7 @@ const LINE: (&str, &str) = ("segment.wgsl", include_str!("segment.wgsl"));
 const INK: (&str, &str) = ("line_ink.wgsl", include_str!("line_ink.wgsl"));
 const PASS: (&str, &str) = ("line_pass.wgsl", include_str!("line_pass.wgsl"));
 const PULLED: (&str, &str) = ("line_pulled.wgsl", include_str!("line_pulled.wgsl"));
+const EDGE_RECORD: (&str, &str) = ("edge_record.wgsl", include_str!("edge_record.wgsl"));
 const COMPACTION: (&str, &str) = ("compaction.wgsl", include_str!("compaction.wgsl"));
 
 /// The shader that draws records.
@@ -33,12 +34,12 @@ pub(crate) fn record_wgsl() -> String {
 
 /// The shader that draws edges by their numbers.
 pub(crate) fn pulled_wgsl() -> String {
-    assemble(&[CONTOUR, LINE, INK, PASS, PULLED])
+    assemble(&[CONTOUR, LINE, INK, PASS, EDGE_RECORD, PULLED])
 }
 
 /// The shader that finds the edges that are lines.
 pub(crate) fn compaction_wgsl() -> String {
-    assemble(&[CONTOUR, LINE, COMPACTION])
+    assemble(&[CONTOUR, LINE, EDGE_RECORD, COMPACTION])
 }
 
 /// The format of the depth target that keeps the greatest coverage.
@@ -68,7 +69,7 @@ const _: () = assert!(size_of::<OutlineUniform>() == 144);
 pub struct LineRecord {
     /// The first end, world space, in the winding order of the first face.
     pub end0: [f32; 3],
-    /// [`crate::LineKind`] in the two lowest bits, and the edge's traits.
+    /// [`crate::LineKind`] in the two lowest bits, and [`RECORD_CUT_OUT`].
     pub kind_traits: u32,
     /// The second end, world space.
     pub end1: [f32; 3],
@@ -79,6 +80,9 @@ pub struct LineRecord {
 }
 
 const _: () = assert!(size_of::<LineRecord>() == 52);
+
+/// In [`LineRecord::kind_traits`]: all faces of the edge are cut out by alpha.
+pub const RECORD_CUT_OUT: u32 = 1 << 9;
 
 /// Appends the records of the lines that a scan found. `eye` as for [`ContourEdges::scan`].
 pub fn line_records(
@@ -93,8 +97,8 @@ pub fn line_records(
         let edge = line as usize;
         let kind = contours.kind(edge, eye)?;
         let [normal0, normal1] = contours.normals(edge);
-        let [end0, end1] = contours.ends[edge].map(|v| positions[v as usize].to_array());
-        let kind_traits = kind as u32 | (contours.traits[edge] & (TRAIT_ALWAYS | TRAIT_CUT_OUT));
+        let [end0, end1] = contours.edges[edge].ends.map(|v| positions[v as usize].to_array());
+        let kind_traits = kind as u32 | if contours.edges[edge].is_cut_out() { RECORD_CUT_OUT } else { 0 };
         Some(LineRecord { end0, kind_traits, end1, normal0: normal0.to_array(), normal1: normal1.to_array() })
     }));
 }
@@ -222,7 +226,12 @@ impl LinePass {
             let compute = wgpu::ShaderStages::COMPUTE;
             let compaction_layout = layout(
                 "outline compaction",
-                &[buffer_entry(0, compute, read), buffer_entry(1, compute, write), buffer_entry(2, compute, write)],
+                &[
+                    buffer_entry(0, compute, read),
+                    buffer_entry(1, compute, read),
+                    buffer_entry(2, compute, write),
+                    buffer_entry(3, compute, write),
+                ],
             );
             let module = shader(device, "outline pulled lines", pulled_wgsl());
             let pulled_pipeline = pipeline(&module, ("vs_pulled", &EDGE_NUMBER_LAYOUT), Some(&pulled_layout));
@@ -250,7 +259,7 @@ impl LinePass {
         })
     }
 
-    /// Uploads a model's edges: 52 bytes an edge and 12 a position.
+    /// Uploads a model's edges: 20 bytes an edge, 16 a face and 12 a position.
     ///
     /// # Errors
     /// [`OutlineError::TooManyEdges`] where a buffer would be larger than the device allows.
@@ -276,13 +285,11 @@ impl LinePass {
         };
         let storage = wgpu::BufferUsages::STORAGE;
         let planes = buffer("outline planes", bytemuck::cast_slice(&contours.planes), storage);
-        let edges: Vec<[u32; 4]> =
-            contours.ends.iter().zip(&contours.traits).map(|(&[a, b], &traits)| [a, b, traits, 0]).collect();
-        let edges = buffer("outline edges", bytemuck::cast_slice(&edges), storage);
+        let edges = buffer("outline edges", bytemuck::cast_slice(&contours.edges), storage);
         let positions = buffer("outline positions", bytemuck::cast_slice(positions), storage);
         let lines = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("outline lines"),
-            size: 4 * contours.ends.len().max(1) as u64,
+            size: 4 * contours.edges.len().max(1) as u64,
             usage: storage | wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_SRC,
             mapped_at_creation: false,
         });
@@ -293,22 +300,16 @@ impl LinePass {
             bytemuck::cast_slice(&[4u32, 0, 0, 0]),
             storage | wgpu::BufferUsages::INDIRECT | copied,
         );
-        let group = |layout, buffers: [&wgpu::Buffer; 3]| {
-            device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some("outline edges"),
-                layout,
-                entries: &std::array::from_fn::<_, 3, _>(|i| wgpu::BindGroupEntry {
-                    binding: i as u32,
-                    resource: buffers[i].as_entire_binding(),
-                }),
-            })
+        let group = |layout, buffers: &[&wgpu::Buffer]| {
+            let resources: Vec<_> = buffers.iter().map(|buffer| buffer.as_entire_binding()).collect();
+            bind_group(device, "outline edges", layout, &resources)
         };
         Ok(EdgesOnDevice {
-            compaction_group: group(&pipelines.compaction_layout, [&planes, &lines, &arguments]),
-            pulled_group: group(&pipelines.pulled_layout, [&planes, &edges, &positions]),
+            compaction_group: group(&pipelines.compaction_layout, &[&planes, &edges, &lines, &arguments]),
+            pulled_group: group(&pipelines.pulled_layout, &[&planes, &edges, &positions]),
             lines,
             arguments,
-            edge_count: contours.ends.len() as u32,
+            edge_count: contours.edges.len() as u32,
             always_count: contours.always as u32,
             local_origin: contours.origin,
         })

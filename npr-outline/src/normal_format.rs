@@ -237,12 +237,12 @@ pub fn misclassified_share_of_planes(model: &Model, edges: &Edges, views: usize)
     let key = |[a, b]: [u32; 2], first_face: u32| (a.min(b), a.max(b), first_face);
     let judged = judged(edges).chain(&edges.folds);
     let judged: HashMap<_, &Edge> = judged.map(|edge| (key(edge.ends, edge.faces()[0]), edge)).collect();
+    let planes = |number: usize| contours.edge_planes(number);
     let records: Vec<_> = contours
-        .ends
+        .edges
         .iter()
-        .zip(&contours.first_face)
-        .zip(&contours.planes)
-        .filter_map(|((&ends, &first), planes)| Some((*judged.get(&key(ends, first))?, planes)))
+        .enumerate()
+        .filter_map(|(number, edge)| Some((*judged.get(&key(edge.ends, edge.faces()[0]))?, planes(number))))
         .collect();
     let (mut wrong, mut pairs) = (0usize, 0usize);
     for eye in eyes(model, views) {

@@ -20,9 +20,19 @@ mod tests {
             (crate::line_pass::record_wgsl(), &["contour.wgsl", "segment.wgsl", "line_ink.wgsl", "line_pass.wgsl"][..]),
             (
                 crate::line_pass::pulled_wgsl(),
-                &["contour.wgsl", "segment.wgsl", "line_ink.wgsl", "line_pass.wgsl", "line_pulled.wgsl"],
+                &[
+                    "contour.wgsl",
+                    "segment.wgsl",
+                    "line_ink.wgsl",
+                    "line_pass.wgsl",
+                    "edge_record.wgsl",
+                    "line_pulled.wgsl",
+                ],
             ),
-            (crate::line_pass::compaction_wgsl(), &["contour.wgsl", "segment.wgsl", "compaction.wgsl"]),
+            (
+                crate::line_pass::compaction_wgsl(),
+                &["contour.wgsl", "segment.wgsl", "edge_record.wgsl", "compaction.wgsl"],
+            ),
             (crate::fin_pass::wgsl(), &["normal_format.wgsl", "fin_printed.wgsl", "fin_pass.wgsl"]),
             (crate::shadow_pass::wgsl(), &["shadow_volume.wgsl", "shadow_pass.wgsl"]),
         ] {

@@ -67,10 +67,10 @@ impl CastersOnDevice {
     /// [`OutlineError::TooManyEdges`].
     pub fn new(device: &wgpu::Device, casters: &ShadowCasters) -> Result<Self, OutlineError> {
         let source = Source::All {
-            edges: upload(device, "volume edges", bytemuck::cast_slice(&casters.edges))?,
-            edge_count: casters.edges.len() as u32,
-            faces: upload(device, "volume faces", bytemuck::cast_slice(&casters.faces))?,
-            face_count: casters.faces.len() as u32,
+            edges: upload(device, "volume edges", bytemuck::cast_slice(&casters.edges().collect::<Vec<_>>()))?,
+            edge_count: casters.edges().len() as u32,
+            faces: upload(device, "volume faces", bytemuck::cast_slice(&casters.faces().collect::<Vec<_>>()))?,
+            face_count: casters.faces().len() as u32,
             open: casters.open,
         };
         Ok(Self { origin: casters.origin, source })
@@ -82,13 +82,11 @@ impl CastersOnDevice {
     /// # Errors
     /// [`OutlineError::TooManyEdges`].
     pub fn of_light(device: &wgpu::Device, casters: &ShadowCasters, light: DVec4) -> Result<Self, OutlineError> {
-        let (mut triangles, away) = casters.triangles(light);
-        let towards = triangles.len() as u32;
-        triangles.extend_from_slice(&away);
+        let (corners, towards) = casters.triangles(light);
         let source = Source::Triangles {
-            vertices: upload(device, "volumes", bytemuck::cast_slice(&triangles))?,
-            towards,
-            away: away.len() as u32,
+            vertices: upload(device, "volumes", bytemuck::cast_slice(&corners))?,
+            towards: towards as u32,
+            away: (corners.len() - towards) as u32,
         };
         Ok(Self { origin: casters.origin, source })
     }

@@ -84,18 +84,36 @@ pub struct VolumeFace {
 
 const _: () = assert!(size_of::<VolumeEdge>() == 64 && size_of::<VolumeFace>() == 64);
 
-/// The edges and faces of a model that can cast a shadow.
+/// The edges and faces of a model that can cast a shadow: 12 bytes a position, 29 a face and 16 an edge, from which the
+/// records of a device are made.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ShadowCasters {
     /// The origin of the planes' coordinates.
     pub origin: Vec3,
-    /// The edges that may sweep, at most three for each face.
-    pub edges: Vec<VolumeEdge>,
-    /// The faces that may cap, at most those of the model.
-    pub faces: Vec<VolumeFace>,
     /// Whether some face casts on whichever side the light is; then an edge may sweep twice.
     pub open: bool,
+    positions: Vec<Vec3>,
+    /// The faces that may cap, at most those of the model, each with its plane, and whether it casts on whichever side
+    /// the light is.
+    faces: Vec<[u32; 3]>,
+    planes: Vec<[f32; 4]>,
+    open_faces: Vec<bool>,
+    /// The edges that may sweep, at most three for each face.
+    edges: Vec<CastingEdge>,
 }
+
+/// An edge between casting faces, counted as [`ShadowCasters::faces`] has them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct CastingEdge {
+    /// In the direction in which the first face runs over it.
+    ends: [u32; 2],
+    first: u32,
+    /// The second face, [`SAME_DIRECTION`] added where it runs over the edge in the same direction; [`NO_FACE`] without.
+    second: u32,
+}
+
+/// Above the bits of a face's number.
+const SAME_DIRECTION: u32 = 1 << 30;
 
 /// Whether a face can cast a shadow.
 fn casts(model: &Model, edges: &Edges, face: usize) -> bool {
@@ -110,61 +128,46 @@ fn casts(model: &Model, edges: &Edges, face: usize) -> bool {
 /// empty, all faces are opaque.
 pub fn shadow_casters(model: &Model, edges: &Edges) -> ShadowCasters {
     let origin = model.bounds().map_or(Vec3::ZERO, |(low, high)| low.midpoint(high));
-    let corner = |v: u32| model.positions[v as usize];
     let casting: Vec<bool> = (0..model.faces.len()).map(|face| casts(model, edges, face)).collect();
-    let planes: Vec<[f32; 4]> = model.faces.iter().map(|&face| plane(face.map(corner), origin)).collect();
     let open = open_faces(edges, &casting);
-    let mut casters =
-        ShadowCasters { origin, open: (0..open.len()).any(|f| casting[f] && open[f]), ..Default::default() };
-    for (face, &[a, b, c]) in model.faces.iter().enumerate() {
-        if casting[face] {
-            casters.faces.push(VolumeFace {
-                a: corner(a).to_array(),
-                flags: if open[face] { VOLUME_OPEN } else { 0 },
-                b: corner(b).to_array(),
-                padding0: 0,
-                c: corner(c).to_array(),
-                padding1: 0,
-                plane: planes[face],
-            });
-        }
+    let count = casting.iter().filter(|casting| **casting).count();
+    let mut casters = ShadowCasters { origin, positions: model.positions.clone(), ..Default::default() };
+    casters.faces.reserve_exact(count);
+    casters.planes.reserve_exact(count);
+    casters.open_faces.reserve_exact(count);
+    // Per face of the model its number among those that cast.
+    let mut number = vec![NO_FACE; model.faces.len()];
+    for face in (0..model.faces.len()).filter(|&face| casting[face]) {
+        number[face] = casters.faces.len() as u32;
+        casters.faces.push(model.faces[face]);
+        casters.planes.push(plane(model.faces[face].map(|v| model.positions[v as usize]), origin));
+        casters.open_faces.push(open[face]);
     }
+    casters.open = casters.open_faces.contains(&true);
     let runs = |face: u32, [from, to]: [u32; 2]| {
         let corners = model.faces[face as usize].map(|v| edges.representative[v as usize]);
         (0..3).any(|side| [corners[side], corners[(side + 1) % 3]] == [from, to])
     };
-    let mut add = |[from, to]: [u32; 2], first: u32, second: Option<(u32, bool)>| {
-        let mut flags = if open[first as usize] { VOLUME_OPEN } else { 0 };
-        if let Some((second, same_way)) = second {
-            flags |= VOLUME_SECOND;
-            flags |= if same_way { VOLUME_SAME_DIRECTION } else { 0 };
-            flags |= if open[second as usize] { VOLUME_SECOND_OPEN } else { 0 };
-        }
-        casters.edges.push(VolumeEdge {
-            from: corner(from).to_array(),
-            flags,
-            to: corner(to).to_array(),
-            padding: 0,
-            plane0: planes[first as usize],
-            plane1: second.map_or([0.0; 4], |(second, _)| planes[second as usize]),
-        });
+    casters.edges.reserve(edges.edges.len());
+    let single = |face: u32, [from, to]: [u32; 2]| CastingEdge {
+        ends: if runs(face, [from, to]) { [from, to] } else { [to, from] },
+        first: number[face as usize],
+        second: NO_FACE,
     };
     let mut further = edges.further_faces.iter().peekable();
-    for (number, edge) in (0u32..).zip(&edges.edges) {
+    for (of_edge, edge) in (0u32..).zip(&edges.edges) {
         let [first, second] = edge.faces();
         let is_casting = |face: u32| face != NO_FACE && casting[face as usize];
         if edge.kind() == EdgeKind::TwoFace && is_casting(first) && is_casting(second) {
-            add(edge.ends, first, Some((second, edge.wound_oppositely())));
+            let same = if edge.wound_oppositely() { SAME_DIRECTION } else { 0 };
+            let [first, second] = [first, second].map(|face| number[face as usize]);
+            casters.edges.push(CastingEdge { ends: edge.ends, first, second: second | same });
         } else {
-            for face in [first, second].into_iter().filter(|&face| is_casting(face)) {
-                let [from, to] = edge.ends;
-                add(if runs(face, edge.ends) { [from, to] } else { [to, from] }, face, None);
-            }
+            casters.edges.extend([first, second].into_iter().filter(|&f| is_casting(f)).map(|f| single(f, edge.ends)));
         }
-        while let Some(&(_, face)) = further.next_if(|(of, _)| *of == number) {
+        while let Some(&(_, face)) = further.next_if(|(of, _)| *of == of_edge) {
             if is_casting(face) {
-                let [from, to] = edge.ends;
-                add(if runs(face, edge.ends) { [from, to] } else { [to, from] }, face, None);
+                casters.edges.push(single(face, edge.ends));
             }
         }
     }
@@ -231,13 +234,14 @@ fn outline_casting(plane: [f32; 4], open: bool, light: Vec4) -> i32 {
 
 /// The number of sweeps of an edge, −2..=2: from `from` to `to` if positive, else from `to` to `from`.
 ///
-/// `light`: relative to [`ShadowCasters::origin`], a point with w = 1 or the direction to the light with w = 0.
+/// `flags` and planes: as of [`VolumeEdge`]. `light`: relative to [`ShadowCasters::origin`], a point with w = 1 or the
+/// direction to the light with w = 0.
 #[inline]
-fn outline_sweeps(edge: &VolumeEdge, light: Vec4) -> i32 {
-    let mut sweeps = outline_casting(edge.plane0, edge.flags & VOLUME_OPEN != 0, light);
-    if edge.flags & VOLUME_SECOND != 0 {
-        let second = outline_casting(edge.plane1, edge.flags & VOLUME_SECOND_OPEN != 0, light);
-        sweeps += if edge.flags & VOLUME_SAME_DIRECTION != 0 { second } else { -second };
+fn outline_sweeps(flags: u32, plane0: [f32; 4], plane1: [f32; 4], light: Vec4) -> i32 {
+    let mut sweeps = outline_casting(plane0, flags & VOLUME_OPEN != 0, light);
+    if flags & VOLUME_SECOND != 0 {
+        let second = outline_casting(plane1, flags & VOLUME_SECOND_OPEN != 0, light);
+        sweeps += if flags & VOLUME_SAME_DIRECTION != 0 { second } else { -second };
     }
     sweeps
 }
@@ -265,52 +269,92 @@ impl ShadowCasters {
         (light - self.origin.as_dvec3().extend(0.0) * light.w).as_vec4()
     }
 
+    /// The records of the edges.
+    pub fn edges(&self) -> impl ExactSizeIterator<Item = VolumeEdge> + '_ {
+        self.edges.iter().map(|edge| {
+            let CastingEdge { ends, first, second } = *edge;
+            let mut flags = if self.open_faces[first as usize] { VOLUME_OPEN } else { 0 };
+            let mut plane1 = [0.0; 4];
+            if second != NO_FACE {
+                let face = (second & !SAME_DIRECTION) as usize;
+                plane1 = self.planes[face];
+                flags |= VOLUME_SECOND;
+                flags |= if second & SAME_DIRECTION != 0 { VOLUME_SAME_DIRECTION } else { 0 };
+                flags |= if self.open_faces[face] { VOLUME_SECOND_OPEN } else { 0 };
+            }
+            let [from, to] = ends.map(|v| self.positions[v as usize].to_array());
+            VolumeEdge { from, flags, to, padding: 0, plane0: self.planes[first as usize], plane1 }
+        })
+    }
+
+    /// The records of the faces.
+    pub fn faces(&self) -> impl ExactSizeIterator<Item = VolumeFace> + '_ {
+        self.faces.iter().zip(&self.planes).zip(&self.open_faces).map(|((face, &plane), &open)| {
+            let [a, b, c] = face.map(|v| self.positions[v as usize].to_array());
+            VolumeFace { a, flags: if open { VOLUME_OPEN } else { 0 }, b, padding0: 0, c, padding1: 0, plane }
+        })
+    }
+
     /// Gathers the edges that sweep and the faces that cap for a light. `edges` and `faces` are cleared first.
     ///
     /// `light`: world space, a point with w = 1 or the direction to the light with w = 0.
     pub fn scan(&self, light: DVec4, edges: &mut Vec<VolumeEdge>, faces: &mut Vec<VolumeFace>) {
         let light = self.local_light(light);
+        let sweeps = |edge: &VolumeEdge| outline_sweeps(edge.flags, edge.plane0, edge.plane1, light);
         edges.clear();
-        edges.extend(self.edges.iter().filter(|edge| outline_sweeps(edge, light) != 0));
+        edges.extend(self.edges().filter(|edge| sweeps(edge) != 0));
         faces.clear();
-        faces.extend(
-            self.faces.iter().filter(|face| outline_casting(face.plane, face.flags & VOLUME_OPEN != 0, light) != 0),
-        );
+        faces
+            .extend(self.faces().filter(|face| outline_casting(face.plane, face.flags & VOLUME_OPEN != 0, light) != 0));
     }
 
-    /// The triangles of a light's volumes, three corners each: first those of sides and of caps of faces
-    /// towards the light, wound counter-clockwise seen from outside; then the caps of faces away from the light with
-    /// their own winding, which count with the opposite sign. A corner is a position with w = 1, or with w = 0 one that
-    /// is swept to infinity ([`outline_swept`]).
+    /// The triangles of a light's volumes, three corners each, and how many corners there are of the first kind: first
+    /// those of sides and of caps of faces towards the light, wound counter-clockwise seen from outside; then the caps of
+    /// faces away from the light with their own winding, which count with the opposite sign. A corner is a position with
+    /// w = 1, or with w = 0 one that is swept to infinity ([`outline_swept`]).
     ///
-    /// At most 12 corners for each edge record and 6 for each face. `light`: as for [`ShadowCasters::scan`].
-    pub fn triangles(&self, light: DVec4) -> (Vec<[f32; 4]>, Vec<[f32; 4]>) {
+    /// At most 12 corners for each edge and 6 for each face. `light`: as for [`ShadowCasters::scan`].
+    pub fn triangles(&self, light: DVec4) -> (Vec<[f32; 4]>, usize) {
         let local = self.local_light(light);
-        let (mut towards, mut away) = (Vec::new(), Vec::new());
-        let near = |[x, y, z]: [f32; 3]| [x, y, z, 1.0];
-        let far = |[x, y, z]: [f32; 3]| [x, y, z, 0.0];
+        // How each face casts, once, since it is in three edges.
+        let planes = self.planes.iter().zip(&self.open_faces);
+        let casting: Vec<i8> = planes.map(|(&plane, &open)| outline_casting(plane, open, local) as i8).collect();
+        // As `outline_sweeps`.
+        let sweeps = |edge: &CastingEdge| match edge.second {
+            NO_FACE => casting[edge.first as usize],
+            second => {
+                let of_second = casting[(second & !SAME_DIRECTION) as usize];
+                casting[edge.first as usize] + if second & SAME_DIRECTION != 0 { of_second } else { -of_second }
+            }
+        };
+        let of_light = if light.w != 0.0 { 6 } else { 3 };
+        let swept: usize = self.edges.iter().map(|edge| usize::from(sweeps(edge).unsigned_abs())).sum();
+        let capping = |turn: i8| casting.iter().filter(|&&casting| casting == turn).count();
+        let towards = of_light * (swept + capping(1));
+        // In one piece, since it may be most of what a picture takes of memory.
+        let mut corners = Vec::with_capacity(towards + of_light * capping(-1));
+        let near = |v: u32| self.positions[v as usize].extend(1.0).to_array();
+        let far = |v: u32| self.positions[v as usize].extend(0.0).to_array();
         for edge in &self.edges {
-            let sweeps = outline_sweeps(edge, local);
-            let (from, to) = if sweeps > 0 { (edge.from, edge.to) } else { (edge.to, edge.from) };
-            for _ in 0..sweeps.abs() {
-                towards.extend([near(to), near(from), far(from)]);
+            let times = sweeps(edge);
+            let [a, b] = edge.ends;
+            let (from, to) = if times > 0 { (a, b) } else { (b, a) };
+            for _ in 0..times.unsigned_abs() {
+                corners.extend([near(to), near(from), far(from)]);
                 if light.w != 0.0 {
-                    towards.extend([near(to), far(from), far(to)]);
+                    corners.extend([near(to), far(from), far(to)]);
                 }
             }
         }
-        for VolumeFace { a, b, c, flags, plane, .. } in self.faces.iter().copied() {
-            let casting = outline_casting(plane, flags & VOLUME_OPEN != 0, local);
-            if casting == 0 {
-                continue;
-            }
-            let of = if casting > 0 { &mut towards } else { &mut away };
-            of.extend([a, b, c].map(near));
-            if light.w != 0.0 {
-                of.extend([a, c, b].map(far));
+        for turn in [1, -1] {
+            for (&[a, b, c], _) in self.faces.iter().zip(&casting).filter(|(_, casting)| **casting == turn) {
+                corners.extend([a, b, c].map(near));
+                if light.w != 0.0 {
+                    corners.extend([a, c, b].map(far));
+                }
             }
         }
-        (towards, away)
+        (corners, towards)
     }
 
     /// The number of volumes around the point at infinity in a direction: the number of casting faces that the ray from
@@ -324,14 +368,14 @@ impl ShadowCasters {
             return 0;
         }
         let local = self.local_light(light);
-        let is_hit = |face: &&VolumeFace| {
+        let is_hit = |face: &VolumeFace| {
             let [a, b, c] = [face.a, face.b, face.c].map(|corner| Vec3::from(corner).as_dvec3() - light.truncate());
             let sides = [(a, b), (b, c), (c, a)].map(|(p, q)| p.cross(q).dot(direction));
             let towards = (a.cross(b) + b.cross(c) + c.cross(a)).dot(a) * sides[0];
             (sides.iter().all(|&side| side > 0.0) || sides.iter().all(|&side| side < 0.0)) && towards > 0.0
         };
-        let casting = |face: &&VolumeFace| outline_casting(face.plane, face.flags & VOLUME_OPEN != 0, local) != 0;
-        self.faces.iter().filter(casting).filter(is_hit).count() as u32
+        let casting = |face: &VolumeFace| outline_casting(face.plane, face.flags & VOLUME_OPEN != 0, local) != 0;
+        self.faces().filter(casting).filter(is_hit).count() as u32
     }
 }
 

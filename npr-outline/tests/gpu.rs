@@ -103,7 +103,7 @@ fn lines_found_on_the_device_are_those_of_the_scan() {
             // A device may fuse products and sums, which moves an eye that lies in a face's plane to within rounding.
             let local_eye = contours.local_eye(eye);
             for &line in on_device.symmetric_difference(&on_cpu) {
-                let planes = contours.planes[line as usize];
+                let planes = contours.edge_planes(line as usize);
                 let margin = [planes.plane0, planes.plane1].map(|plane| outline_facing(plane, local_eye).abs());
                 assert!(margin[0].min(margin[1]) < 1e-5, "line {line} is off by {margin:?}");
                 borderline += 1;

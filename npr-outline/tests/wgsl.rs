@@ -11,6 +11,7 @@ const LINE: &str = include_str!("../src/segment.wgsl");
 const LINE_INK: &str = include_str!("../src/line_ink.wgsl");
 const LINE_PASS: &str = include_str!("../src/line_pass.wgsl");
 const LINE_PULLED: &str = include_str!("../src/line_pulled.wgsl");
+const EDGE_RECORD: &str = include_str!("../src/edge_record.wgsl");
 const COMPACTION: &str = include_str!("../src/compaction.wgsl");
 const NORMAL_FORMAT: &str = include_str!("../src/normal_format.wgsl");
 const FIN_PRINTED: &str = include_str!("../src/fin_printed.wgsl");
@@ -36,8 +37,11 @@ fn entry_points(parts: &[&str]) -> Vec<String> {
 #[test]
 fn modules_validate_as_the_passes_use_them() {
     assert_eq!(entry_points(&[CONTOUR, LINE, LINE_INK, LINE_PASS]), ["vs_record", "fs_ink"]);
-    assert_eq!(entry_points(&[CONTOUR, LINE, LINE_INK, LINE_PASS, LINE_PULLED]), ["vs_record", "fs_ink", "vs_pulled"]);
-    assert_eq!(entry_points(&[CONTOUR, LINE, COMPACTION]), ["compact"]);
+    assert_eq!(
+        entry_points(&[CONTOUR, LINE, LINE_INK, LINE_PASS, EDGE_RECORD, LINE_PULLED]),
+        ["vs_record", "fs_ink", "vs_pulled"]
+    );
+    assert_eq!(entry_points(&[CONTOUR, LINE, EDGE_RECORD, COMPACTION]), ["compact"]);
     assert_eq!(entry_points(&[NORMAL_FORMAT, FIN_PRINTED, FIN_PASS]), ["vs_fin", "vs_fin_oct", "fs_fin"]);
     assert_eq!(entry_points(&[SHADOW_VOLUME, SHADOW_PASS]), ["vs_side", "vs_cap", "vs_placed"]);
     assert_eq!(entry_points(&[SHADOW_MASK]), ["vs_shadow_mask", "fs_in_shadow", "fs_lit"]);
@@ -82,8 +86,6 @@ const TWINS: Twins<'_> = Twins {
                 ("n_face1", "vec3<f32>"),
             ],
         ),
-        // Its ends do not decide how often it sweeps.
-        ("VolumeEdge", &[("flags", "u32"), ("plane0", "vec4<f32>"), ("plane1", "vec4<f32>")]),
     ],
     exceptions: &[
         ("outline_cross", Except::Missing, "DVec2::perp_dot"),

@@ -5,7 +5,7 @@ use crate::cpu::frame::CpuFrame;
 use crate::scene::{Mesh, Object, Scene};
 use crate::view::View;
 use glam::{DVec2, DVec3};
-use npr_outline::contour::{ContourEdges, TRAIT_CUT_OUT};
+use npr_outline::contour::ContourEdges;
 use npr_outline::line_style::LineStyle;
 use npr_outline::segment::{ScreenSegment, outline_coverage, outline_is_visible, outline_project};
 
@@ -60,7 +60,7 @@ fn add_coverage(edges: &ObjectEdges<'_>, view: &View, shift_px: DVec2, frame: &C
         let Some(segment) = outline_project(ends, normals, width_px, &view) else { continue };
         // The depth samples move, the coverage does not: it is no sample, but a function of where the pixel is.
         let among_samples = ScreenSegment { ends_px: segment.ends_px.map(|end| end - shift_px), ..segment };
-        let cut_out = contours.traits[edge] & TRAIT_CUT_OUT != 0;
+        let cut_out = contours.edges[edge].is_cut_out();
         let reach = 0.5 * width_px + 1.0;
         let [p0, p1] = segment.ends_px;
         let (low, high) = ((p0.min(p1) - reach).floor(), (p0.max(p1) + reach).ceil());
@@ -93,7 +93,7 @@ pub(crate) fn placed_edge(
     contours: &ContourEdges,
     edge: usize,
 ) -> ([DVec3; 2], [DVec3; 2]) {
-    let [from, to] = contours.ends[edge].map(|v| object.point(mesh.model().positions[v as usize]));
+    let [from, to] = contours.edges[edge].ends.map(|v| object.point(mesh.model().positions[v as usize]));
     // A mirrored face's normal is on the side of its front, and its corners run the other way around it.
     let ends = if object.is_mirrored() { [to, from] } else { [from, to] };
     (ends, contours.normals(edge).map(|normal| object.normal(normal)))

@@ -139,7 +139,7 @@ impl ShadowFrame<'_> {
                 let texels = DVec2::splat(side.into());
                 px_from_clip(texels) * map_camera(self.scene, light).clip_from_world(1.0) * world_from_px
             }
-            ShadowTechnique::Volumes { .. } => DMat4::ZERO,
+            ShadowTechnique::Volumes { .. } | ShadowTechnique::Rays => DMat4::ZERO,
         };
         ShadowUniform {
             light: light.as_vec4().to_array(),
@@ -194,7 +194,7 @@ impl ShadowPasses {
                 Some(ShadowCasting::OnDevice(uploaded.collect::<Result<_, _>>()?))
             }
             ShadowTechnique::Volumes { .. } => Some(ShadowCasting::Scanned(RefCell::default())),
-            ShadowTechnique::Map { .. } => None,
+            ShadowTechnique::Map { .. } | ShadowTechnique::Rays => None,
         })
     }
 
@@ -215,6 +215,8 @@ impl ShadowPasses {
                 return Ok(ShadowOnDevice { uniform, mask: None, map: Some(map) });
             }
             ShadowTechnique::Volumes { casters, float_depth, .. } => (casters, *float_depth),
+            // A ray caster's plan.
+            ShadowTechnique::Rays => return Err(HarnessError::RayPlan),
         };
         let format = stencil_format(float_depth);
         let (depth_stencil, mask) = target.views(device, format, frame.size);

@@ -1,6 +1,7 @@
 //! The part of a plan that is about shadows.
 
 use super::style::{ShadowMethod, ShadowStyle};
+use crate::capabilities::Capabilities;
 use crate::error::HarnessError;
 use crate::rays::Hit;
 use crate::scene::{Mesh, Scene};
@@ -18,7 +19,7 @@ pub struct ShadowPlan {
     pub light: DVec4,
     /// Where N·L is not above this, shadows have no lines.
     pub terminator: f32,
-    /// How a device finds them; the CPU follows rays.
+    /// How they are found.
     pub technique: ShadowTechnique,
     /// Whether they are seen in the picture, by its colours or by lines that are found with them.
     pub in_picture: bool,
@@ -26,9 +27,11 @@ pub struct ShadowPlan {
     pub in_lines: bool,
 }
 
-/// How a device finds shadows.
+/// How shadows are found.
 #[derive(Clone, Debug)]
 pub enum ShadowTechnique {
+    /// The CPU follows rays to the light.
+    Rays,
     /// Shadow volumes, counted in a stencil buffer.
     Volumes {
         /// Per mesh the faces and edges that cast.
@@ -79,19 +82,18 @@ impl ShadowTechnique {
         scene: &Scene,
         style: &ShadowStyle,
         light: DVec4,
-        method: VolumeMethod,
-        float_depth: bool,
+        capabilities: &Capabilities,
     ) -> Result<Self, HarnessError> {
-        Ok(match style.method {
-            ShadowMethod::Volumes => {
-                let casters = scene.meshes().iter().map(|mesh| casters(mesh)).collect();
-                Self::Volumes { casters, method, float_depth }
-            }
-            ShadowMethod::Map { side } => {
-                check_map_light(scene, light)?;
-                Self::Map { side }
-            }
-        })
+        if let ShadowMethod::Map { side } = style.method {
+            check_map_light(scene, light)?;
+            return Ok(if capabilities.is_adapter() { Self::Map { side } } else { Self::Rays });
+        }
+        if !capabilities.is_adapter() {
+            return Ok(Self::Rays);
+        }
+        let (method, float_depth) = (capabilities.volumes(scene.objects().len()).0, capabilities.float_stencil);
+        let casters = scene.meshes().iter().map(|mesh| casters(mesh)).collect();
+        Ok(Self::Volumes { casters, method, float_depth })
     }
 }
 

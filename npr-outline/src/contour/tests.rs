@@ -39,7 +39,7 @@ fn lines_of_kind(contours: &ContourEdges, eye: DVec4, kind: LineKind) -> BTreeSe
     contours.scan(eye, &mut lines);
     let local = contours.local_eye(eye);
     let of_kind = lines.iter().filter(|&&line| contours.kind(line as usize, local) == Some(kind));
-    of_kind.map(|&line| contours.ends[line as usize]).map(sorted).collect()
+    of_kind.map(|&line| contours.edges[line as usize].ends).map(sorted).collect()
 }
 
 /// Whether every vertex has an even number of silhouettes.
@@ -54,7 +54,7 @@ fn all_loops_closed(contours: &ContourEdges, eye: DVec4) -> bool {
 #[test]
 fn a_cube_seen_from_a_corner_has_six_silhouettes_and_six_creases() {
     let contours = contours_of(&embedded::cube(), &ContourOptions::default());
-    assert_eq!((contours.ends.len(), contours.always), (12, 12));
+    assert_eq!((contours.edges.len(), contours.always), (12, 12));
     for eye in [point(DVec3::new(4.0, 5.0, 6.0)), DVec4::new(1.0, 1.0, 1.0, 0.0)] {
         assert_eq!(lines_of_kind(&contours, eye, LineKind::Silhouette).len(), 6);
         // Three of them towards the eye, three away from it.
@@ -245,7 +245,7 @@ fn a_fold_is_no_crease_however_sharp() {
         let contours = contours_of(&model, &smooth(crease_angle_rad));
         assert!(contours.always <= edges.edges.len());
         for fold in &edges.folds {
-            assert!(!contours.ends[..contours.always].contains(&fold.ends));
+            assert!(!contours.edges[..contours.always].iter().any(|edge| edge.ends == fold.ends));
         }
     }
     // The quads' own edges are creases or not by the normal of the whole quad.
@@ -323,7 +323,7 @@ fn a_scan_finds_exactly_the_edges_that_have_a_kind() {
             let mut lines = vec![7];
             contours.scan(eye, &mut lines);
             let expected: Vec<u32> =
-                (0..contours.ends.len()).filter(|&e| contours.kind(e, local).is_some()).map(|e| e as u32).collect();
+                (0..contours.edges.len()).filter(|&e| contours.kind(e, local).is_some()).map(|e| e as u32).collect();
             assert_eq!(lines, expected);
         }
     }
@@ -333,17 +333,17 @@ fn a_scan_finds_exactly_the_edges_that_have_a_kind() {
 fn planes_are_those_of_the_faces() {
     let model = embedded::teapot(4);
     let contours = contours_of(&model, &ContourOptions::default());
-    for edge in 0..contours.ends.len() {
-        let EdgePlanes { plane0, plane1 } = contours.planes[edge];
-        for end in contours.ends[edge].map(|v| model.positions[v as usize] - contours.origin) {
+    for edge in 0..contours.edges.len() {
+        let EdgePlanes { plane0, plane1 } = contours.edge_planes(edge);
+        for end in contours.edges[edge].ends.map(|v| model.positions[v as usize] - contours.origin) {
             for plane in [plane0, plane1] {
                 // Both ends lie in both planes.
                 assert!(outline_facing(plane, end.extend(1.0)).abs() < 1e-6);
             }
         }
         // The first face lies to the left of the edge, seen from its front.
-        let [a, b] = contours.ends[edge];
-        let face = model.faces[contours.first_face[edge] as usize];
+        let [a, b] = contours.edges[edge].ends;
+        let face = model.faces[contours.edges[edge].faces()[0] as usize];
         let at = |v: u32| model.positions[v as usize];
         let follows = |v: u32, w: u32| (0..3).any(|i| at(face[i]) == at(v) && at(face[(i + 1) % 3]) == at(w));
         assert!(follows(a, b));
@@ -362,10 +362,10 @@ fn borders_of_materials_and_cut_outs_are_marked() {
     );
     // The four edges around one side; none of them lies between two cut-out faces.
     assert_eq!(contours.always, 4);
-    assert!(contours.traits[..4].iter().all(|&t| t == LineKind::MaterialBorder as u32 | TRAIT_ALWAYS));
+    assert!(contours.edges[..4].iter().all(|edge| edge.own_kind() == LineKind::MaterialBorder));
     model.face_material.fill(1);
     let contours = contours_of(&model, &ContourOptions::default());
-    assert!(contours.traits.iter().all(|&t| t & TRAIT_CUT_OUT != 0));
+    assert!(contours.edges.iter().all(ContourEdge::is_cut_out));
 }
 
 #[test]
@@ -376,11 +376,11 @@ fn empty_arrays_mean_that_faces_have_no_polygon_and_no_material() {
     model.face_material.clear();
     let contours = contours_of(&model, &ContourOptions { material_borders: true, ..ContourOptions::default() });
     assert_eq!(contours.always, 12);
-    assert!(contours.traits.iter().all(|&t| t & TRAIT_CUT_OUT == 0));
+    assert!(!contours.edges.iter().any(ContourEdge::is_cut_out));
     // The diagonals of the six sides are edges then, which are no creases.
     model.face_polygon.clear();
     let contours = contours_of(&model, &ContourOptions::default());
-    assert_eq!((contours.always, contours.ends.len()), (12, 18));
+    assert_eq!((contours.always, contours.edges.len()), (12, 18));
     let bare = Model { positions: model.positions, faces: model.faces, ..Model::default() };
     assert_eq!(contours_of(&bare, &ContourOptions::default()), contours);
 }
@@ -396,7 +396,7 @@ fn an_edge_of_three_faces_is_a_line_for_every_eye() {
     for direction in crate::normal_format::fibonacci_sphere(50) {
         let mut lines = Vec::new();
         contours.scan(point(4.0 * direction), &mut lines);
-        assert!(lines.iter().any(|&line| contours.ends[line as usize].iter().all(|&v| v < 2)));
+        assert!(lines.iter().any(|&line| contours.edges[line as usize].ends.iter().all(|&v| v < 2)));
         assert_eq!(lines.len(), 7);
     }
 }
@@ -435,7 +435,7 @@ fn long_chains_and_large_polygons_end() {
         ..Default::default()
     };
     let contours = contours_of(&chain, &NO_CREASES);
-    assert!(contours.planes.iter().all(|p| p.plane0.iter().chain(&p.plane1).all(|x| x.is_finite())));
+    assert!(contours.planes.iter().flatten().all(|x| x.is_finite()));
     let around = |i: u32| {
         let angle = std::f64::consts::TAU * f64::from(i) / f64::from(count);
         DVec3::new(angle.cos(), angle.sin(), 0.0).as_vec3()
@@ -448,7 +448,7 @@ fn long_chains_and_large_polygons_end() {
         materials: vec![Default::default()],
         ..Default::default()
     };
-    assert_eq!(contours_of(&polygon, &NO_CREASES).planes.len(), count as usize);
+    assert_eq!(contours_of(&polygon, &NO_CREASES).edges.len(), count as usize);
     // Quadratic algorithms took more than a minute for each.
     assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
 }
@@ -485,19 +485,20 @@ proptest! {
         };
         let options = ContourOptions { crease_angle_rad, material_borders, ..ContourOptions::default() };
         let contours = contours_of(&model, &options);
-        let count = contours.planes.len();
+        let count = contours.edges.len();
         prop_assert!(count <= 3 * model.faces.len());
-        prop_assert_eq!((contours.ends.len(), contours.traits.len(), contours.first_face.len()), (count, count, count));
+        prop_assert_eq!(contours.planes.len(), model.faces.len());
         prop_assert!(contours.always <= count);
         prop_assert!(contours.origin.is_finite());
-        for (edge, planes) in contours.planes.iter().enumerate() {
+        for edge in 0..count {
+            let planes = contours.edge_planes(edge);
             for plane in [planes.plane0, planes.plane1] {
                 prop_assert!(plane.iter().all(|x| x.is_finite()), "{plane:?}");
                 let length = Vec3::new(plane[0], plane[1], plane[2]).length();
                 prop_assert!(length == 0.0 || (length - 1.0).abs() < 1e-5, "a normal of length {length}");
             }
-            prop_assert!(contours.ends[edge].iter().all(|&v| (v as usize) < model.positions.len()));
-            prop_assert!((contours.first_face[edge] as usize) < model.faces.len());
+            prop_assert!(contours.edges[edge].ends.iter().all(|&v| (v as usize) < model.positions.len()));
+            prop_assert!((contours.edges[edge].faces()[0] as usize) < model.faces.len());
         }
         let eye = DVec3::from(eye.map(f64::from)).extend(if parallel { 0.0 } else { 1.0 });
         let local = contours.local_eye(eye);
@@ -609,7 +610,7 @@ fn angles_of_a_placed_model_are_those_of_its_shape() {
         let world_from_normal = matrix.inverse().transpose();
         let options = ContourOptions { world_from_normal, ..smooth(40f32.to_radians()) };
         let contours = contours_of(&model, &options);
-        contours.traits.iter().filter(|&&traits| traits == LineKind::Crease as u32 | TRAIT_ALWAYS).count()
+        contours.edges.iter().filter(|edge| edge.own_kind() == LineKind::Crease).count()
     };
     let scale = |x: f64, y: f64, z: f64| DMat3::from_diagonal(DVec3::new(x, y, z));
     assert_eq!(creases(DMat3::IDENTITY), 1);

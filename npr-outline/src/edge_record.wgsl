@@ -1,0 +1,10 @@
+// An edge as `ContourEdge` has it: two vertices, and two faces with flags above their 30 bits.
+
+const EDGE_FACE: u32 = 0x3fffffffu;
+const EDGE_SECOND_NEGATED: u32 = 0x40000000u;
+const EDGE_CUT_OUT: u32 = 0x80000000u;
+
+// The plane of the second face, from that face's own.
+fn edge_second_plane(plane: vec4<f32>, packed_second: u32) -> vec4<f32> {
+    return select(plane, -plane, (packed_second & EDGE_SECOND_NEGATED) != 0u);
+}
