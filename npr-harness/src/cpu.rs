@@ -1,8 +1,8 @@
-//! The frame on the CPU: rays, f64, the reference.
+//! The reference renderer: ray casting on the CPU in f64.
 //!
-//! One ray through each pixel's centre finds what a rasteriser with exact arithmetic would find there; everything after
-//! that is written as the formulas read. Several samples a pixel supersample surfaces and lines along edges: that is the
-//! truth against which accuracy is measured.
+//! One ray through each pixel's centre finds the surface that a rasteriser with exact arithmetic would find there.
+//! Shading implements the formulas without optimisation. With several samples per pixel, surfaces and edge lines are
+//! supersampled; that picture is the ground truth for measurements of accuracy.
 
 pub mod frame;
 pub mod primary_hits;
@@ -32,26 +32,26 @@ use std::sync::atomic::{AtomicU32, Ordering};
 pub(crate) struct FrameContext<'a> {
     pub(crate) scene: &'a Scene,
     pub(crate) plan: &'a Plan,
-    /// Width and height of the grid that is sampled, px.
+    /// Width and height of the sample grid, px.
     size: (u32, u32),
-    /// Through its points.
+    /// Generates rays through its points.
     rays: PictureRays,
     textures: &'a [MipMapped],
     shift_px: DVec2,
-    /// What surfaces are hatched with.
+    /// The strokes that surfaces are hatched with.
     strokes: Option<Strokes<'a>>,
-    /// In px of the grid that is sampled.
+    /// In px of the sample grid.
     boundary_inset_px: f64,
 }
 
 /// Renders a frame.
 ///
-/// `progress` is called with the share that is done, 0..=1, from any thread.
+/// `progress` is called with the fraction done, 0..=1, from any thread.
 pub fn render(scene: &Scene, plan: &Plan, options: &CpuOptions, progress: &(dyn Fn(f64) + Sync)) -> CpuFrame {
     render_kept(&PrimaryHits::new(scene, plan.view), plan, options, progress)
 }
 
-/// As [`render`], with primary hits that may be known. `hits` must be of the plan's camera.
+/// As [`render`], with primary hits that may be cached. `hits` must be for the plan's camera.
 pub fn render_kept(
     hits: &PrimaryHits<'_>,
     plan: &Plan,
@@ -65,7 +65,7 @@ pub fn render_kept(
     frame
 }
 
-/// The frame before lines are found in it, and the texels for that.
+/// The frame before lines are found in the image, and the packed G-buffer for finding them.
 pub(crate) fn without_ink(
     hits: &PrimaryHits<'_>,
     plan: &Plan,
@@ -87,7 +87,8 @@ pub(crate) fn without_ink(
     let mut frame = if view.samples == 1 { fine } else { fine.resolved(view.samples) };
     if let Some(image) = &plan.image {
         frame.texels = if image.own_surfaces {
-            // One sample for each pixel of the ink, whatever the picture has: lines are as wide as on a device.
+            // One sample per pixel of the ink, independent of the picture's samples, so that lines are as wide as on
+            // the GPU.
             context.of_ink(image.size, options).trace(None, options.threads, false, true, &|_| {}).texels
         } else {
             shared_texels
@@ -96,20 +97,20 @@ pub(crate) fn without_ink(
     frame
 }
 
-/// What is seen through a pixel.
+/// The visible surface point at a pixel.
 #[derive(Clone, Copy)]
 pub(crate) struct Seen {
     /// The depth buffer's value.
     pub(crate) depth: f64,
-    /// What shadows make of it.
+    /// Its shadow state.
     pub(crate) shadow: ShadowAt,
-    /// Which face.
+    /// The index of its face.
     pub(crate) face: u32,
-    /// World space.
+    /// Its position in scene space.
     pub(crate) at: DVec3,
 }
 
-/// What is seen through each sample of the view, rows from the top; `None` for background.
+/// The visible surface point at each sample of the view, in rows from the top; `None` for background.
 pub(crate) fn seen(hits: &PrimaryHits<'_>, plan: &Plan, options: &CpuOptions) -> Vec<Option<Seen>> {
     let context = FrameContext::new(hits.scene, plan, options);
     let known = hits.hits(&plan.view, options, || context.first_hits(options.threads));
@@ -144,7 +145,7 @@ impl<'a> FrameContext<'a> {
         }
     }
 
-    /// The same for the pixels of the ink, where that has surfaces of its own.
+    /// The context for the pixels of the ink, if the ink has its own surface pass.
     fn of_ink(&self, size: (u32, u32), options: &CpuOptions) -> Self {
         let shift_px = options.shift_px * size_px(size) / size_px(self.plan.view.size);
         let rays = self.plan.view.camera.rays(size_px(size));
@@ -153,8 +154,8 @@ impl<'a> FrameContext<'a> {
 }
 
 impl FrameContext<'_> {
-    /// The solid surface that is seen through any point of the picture, px: where it is, and its display-referred
-    /// colour, as a pixel that had its centre there would show it. What is blended over it is left out.
+    /// The visible unblended surface at a point of the picture, px: its position and the display-referred colour of a
+    /// pixel centred there. Blended surfaces are ignored.
     pub(crate) fn seen_at(&mut self, point_px: DVec2) -> Option<(DVec3, DVec3)> {
         let corner = point_px.floor().max(DVec2::ZERO);
         self.shift_px = point_px - corner - 0.5;
@@ -163,8 +164,8 @@ impl FrameContext<'_> {
         Some((self.interpolate(&hit, hit.barycentric).at, self.paint(&hit, x, y).truncate()))
     }
 
-    /// Paints surfaces, if a `picture` is asked for, and makes what lines in the image are found in, if `texels` are;
-    /// lines are drawn afterwards. `hits`, if they are known, are those of [`Self::first_hits`].
+    /// Paints surfaces if `picture` is set, and fills the packed G-buffer for lines in the image if `texels` is set.
+    /// Lines are drawn afterwards. `hits` are those of [`Self::first_hits`], if known.
     fn trace(
         &self,
         hits: Option<&Hits>,
@@ -191,7 +192,7 @@ impl FrameContext<'_> {
         CpuFrame { width, height, color, depth, texels }
     }
 
-    /// What is seen through each pixel, but for what is blended over it.
+    /// The nearest unblended hit at each pixel.
     fn first_hits(&self, threads: usize) -> Hits {
         let (width, height) = self.size;
         let mut hits = vec![None; width as usize * height as usize];
@@ -203,10 +204,10 @@ impl FrameContext<'_> {
         Hits::new(hits)
     }
 
-    /// Does `work` for all rows, on several threads. Rows are handed out one by one, since the cost of a row depends on
-    /// what is in it. With one thread that is the caller's: some platforms have no other.
+    /// Runs `work` for all rows on several threads. Rows are handed out one by one, since their cost varies. A single
+    /// thread is the calling thread, because some platforms have no other.
     fn by_rows<Row>(&self, rows: impl Iterator<Item = Row> + Send, threads: usize, work: impl Fn(Row) + Sync) {
-        // Built before the threads ask for it, so that they do not wait for each other.
+        // Built before the threads need it, so that they do not wait for each other.
         self.scene.build_rays();
         let available = std::thread::available_parallelism().map_or(1, usize::from);
         let threads = if threads == 0 { available } else { threads };
@@ -248,12 +249,12 @@ impl FrameContext<'_> {
         }
     }
 
-    /// The point of the picture that stands for a pixel.
+    /// The sample point of a pixel.
     pub fn sample_point(&self, x: f64, y: f64) -> DVec2 {
         DVec2::new(x + 0.5, y + 0.5) + self.shift_px
     }
 
-    /// What is seen through a pixel, but for what is blended over it.
+    /// The nearest unblended hit at a pixel.
     fn first_solid(&self, x: u32, y: u32) -> Option<Hit> {
         let (origin, direction) = self.rays.through(self.sample_point(f64::from(x), f64::from(y)));
         let is_solid = |hit: &Hit| {

@@ -1,7 +1,7 @@
-//! The frame on wgpu.
+//! The GPU renderer, on wgpu.
 //!
-//! One geometry pass into colour and depth; blended surfaces after it; then lines, two passes over the lines' own
-//! pixels. Everything that does not change from frame to frame is uploaded once, into a [`GpuScene`].
+//! One geometry pass writes colour and depth; blended surfaces follow; then two passes over the pixels of edge lines.
+//! Data that do not change from frame to frame are uploaded once, into a [`GpuScene`].
 
 mod adapter;
 pub(crate) mod context;
@@ -43,14 +43,14 @@ use std::cell::{OnceCell, RefCell};
 use std::sync::Arc;
 use surface::{SurfaceFrame, SurfacePass, SurfaceTargets};
 
-/// Why a pass takes the format of this crate's pictures.
+/// Panic message for passes that fail only for formats other than Unorm.
 const UNORM: &str = "the pictures' format is Unorm";
 
-/// Renders frames. Pipelines are made when they are first needed, and kept.
+/// Renders frames. Pipelines are created on first use and kept.
 pub struct GpuRenderer<'a> {
     context: &'a GpuContext,
     surface: SurfacePass,
-    /// Without and with finding lines on the device.
+    /// Index 0: edges are classified on the CPU; index 1: on the GPU.
     lines: [OnceCell<LinePass>; 2],
     printed: OnceCell<FinPass>,
     ink: InkPasses,
@@ -60,7 +60,7 @@ pub struct GpuRenderer<'a> {
 }
 
 impl<'a> GpuRenderer<'a> {
-    /// Makes what does not depend on scene or plan.
+    /// Creates the resources that depend on neither scene nor plan.
     pub fn new(context: &'a GpuContext) -> Self {
         Self {
             context,
@@ -82,7 +82,8 @@ impl<'a> GpuRenderer<'a> {
         Plan::new(scene, style, view, &self.context.usable())
     }
 
-    /// Uploads what a plan needs of a scene. It serves plans of the same scene and style in other views.
+    /// Uploads the data of a scene that a plan needs. They also serve plans of the same scene and style for other
+    /// views.
     ///
     /// # Errors
     /// [`HarnessError::BufferTooLarge`], [`HarnessError::Outline`].
@@ -117,7 +118,7 @@ impl<'a> GpuRenderer<'a> {
         self.printed.get_or_init(new)
     }
 
-    /// Makes the targets of a view's pictures.
+    /// Creates the render targets for pictures of a view.
     ///
     /// # Errors
     /// [`HarnessError::TextureTooLarge`].
@@ -125,10 +126,10 @@ impl<'a> GpuRenderer<'a> {
         Targets::new(self.context, view)
     }
 
-    /// Submits a frame. It is done when [`GpuContext::wait`] returns.
+    /// Submits a frame. It is complete when [`GpuContext::wait`] returns.
     ///
-    /// - `uploaded`: of the same scene, and a plan of the same style;
-    /// - `targets`: of the size and samples of the plan's view.
+    /// - `uploaded`: uploaded for the same scene and a plan of the same style;
+    /// - `targets`: created for the size and samples of the plan's view.
     ///
     /// # Errors
     /// [`HarnessError::TooManyDraws`], and those of the techniques' passes.
@@ -176,7 +177,7 @@ impl<'a> GpuRenderer<'a> {
         }
         if let Some((image, ink)) = &ink {
             if let Some(depth) = &ink.depth {
-                // Only lines are drawn here: without lines of shadows there is no need for them.
+                // This pass only writes input for lines, so shadows are needed only if they have lines.
                 let in_lines = plan.shadow.as_ref().is_some_and(|shadow| shadow.in_lines);
                 let shadow = if in_lines { self.shadow(&mut encoder, &frame, ink.size, &ink.stencil)? } else { None };
                 let size_px = size_px(ink.size);
@@ -198,7 +199,7 @@ impl<'a> GpuRenderer<'a> {
         Ok(())
     }
 
-    /// Finds the shadows on the surfaces of a target of a size.
+    /// Computes the shadows on the surfaces of a target of the given size.
     fn shadow(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -226,7 +227,7 @@ impl<'a> GpuRenderer<'a> {
         self.shadows.record(encoder, &shadow_frame, stencil, &mut draw_depth).map(Some)
     }
 
-    /// Draws lines along edges over the canvas.
+    /// Draws edge lines over the canvas.
     fn edge_lines(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -245,7 +246,7 @@ impl<'a> GpuRenderer<'a> {
             coverage: &canvas.coverage_view,
         };
         canvas.begin_ink(encoder);
-        // What was uploaded decides, which is of the same plan.
+        // The uploaded data decide the method; they belong to the same plan.
         let uploaded = frame.uploaded.edges.as_ref();
         let method = if uploaded.is_some() { EdgeLineMethod::OnDevice } else { EdgeLineMethod::OnCpu };
         let mut scratch = self.scratch.borrow_mut();
@@ -286,8 +287,8 @@ impl<'a> GpuRenderer<'a> {
         Ok(())
     }
 
-    /// The lines, in no order, that the device found for the last frame of this upload, each as object and edge, or `None`
-    /// if they were found on the CPU.
+    /// The lines that the GPU found for the last frame of this upload, unordered, as (object, edge); `None` if they
+    /// were found on the CPU.
     ///
     /// # Errors
     /// [`HarnessError::Device`].
@@ -303,8 +304,8 @@ impl<'a> GpuRenderer<'a> {
         Ok(Some(found))
     }
 
-    /// What the last frame's surfaces left for lines in the image: normal, region and depth of each pixel of the ink,
-    /// packed as [`ImageInk::layout`](crate::image_lines::ImageInk::layout) says. `None` if no frame had such lines.
+    /// The packed G-buffer of the last frame: normal, region and depth of each pixel of the ink, in the layout of
+    /// [`ImageInk::layout`](crate::image_lines::ImageInk::layout). `None` if no frame had lines in the image.
     ///
     /// # Errors
     /// [`HarnessError::Device`].
@@ -312,7 +313,7 @@ impl<'a> GpuRenderer<'a> {
         targets.read_texels(self.context)
     }
 
-    /// Waits for a frame and fetches it.
+    /// Waits for a frame and reads it back.
     ///
     /// # Errors
     /// [`HarnessError::Device`].
@@ -321,28 +322,30 @@ impl<'a> GpuRenderer<'a> {
     }
 }
 
-/// Brings a record from the space of an object's mesh to that of the scene.
+/// Transforms a line record from mesh space to scene space.
 fn place_record(object: &Object, record: &mut LineRecord) {
     if *object.scene_from_mesh() == DAffine3::IDENTITY {
         return;
     }
     let [end0, end1] = [record.end0, record.end1].map(|end| object.point(end.into()).as_vec3().to_array());
-    // A mirrored face's corners run the other way around its normal.
+    // A reflection reverses the winding of a face relative to its normal.
     (record.end0, record.end1) = if object.is_mirrored() { (end1, end0) } else { (end0, end1) };
     for normal in [&mut record.normal0, &mut record.normal1] {
         *normal = object.normal((*normal).into()).as_vec3().to_array();
     }
 }
 
-/// Opens the adapter that [`GpuAdapter::find`] takes, with the limits of the environment ([`DeviceLimits::from_env`]).
+/// Opens the adapter that [`GpuAdapter::find`] returns, with the limits set in the environment
+/// ([`DeviceLimits::from_env`]).
 ///
 /// # Errors
-/// [`HarnessError::NoAdapter`] with what was looked at, [`HarnessError::NoDevice`], [`HarnessError::GpuLimits`].
+/// [`HarnessError::NoAdapter`] with a list of the adapters considered, [`HarnessError::NoDevice`],
+/// [`HarnessError::GpuLimits`].
 pub fn open() -> Result<GpuContext, HarnessError> {
     GpuAdapter::find()?.open(DeviceLimits::from_env()?)
 }
 
-/// Renders one picture: upload, draw, fetch.
+/// Renders one picture: upload, draw, read back.
 ///
 /// # Errors
 /// [`HarnessError`].

@@ -1,4 +1,27 @@
-//! Scene, style and frame, on wgpu and on the CPU, checked against each other.
+//! Renders models as inked cartoons, technical illustrations or hatchings, on a graphics device through wgpu or on the CPU,
+//! and checks the two against each other.
+//!
+//! # From a file to a picture
+//!
+//! 1. A [`scene::Scene`] is meshes and the objects that place them, from a file by `Scene::from(npr_mesh::load(…)?)` or from
+//!    models in memory. A mesh is prepared once, however often it is placed; [`scene::Scene::place`] moves an object.
+//! 2. A [`style::Style`] says how surfaces are shaded and hatched, whether a light casts shadows, and which lines are drawn:
+//!    one of [`style::styles`], or a TOML file by [`style::Style::read`].
+//! 3. A [`view::View`] is a [`camera::Camera`] and the size and samples of the picture.
+//! 4. A [`plan::Plan`] resolves all of that for the [`capabilities::Capabilities`] of an executor: passes, formats, methods,
+//!    memory, each with the reason for it. Executors follow the plan and never read the style.
+//! 5. An [`executor::Executor`] makes an [`picture::Image`]. [`gpu::GpuRenderer`] keeps pipelines and uploads for sequences;
+//!    [`cpu`] casts rays in f64 and is the reference.
+//!
+//! # The modules
+//!
+//! | for | modules |
+//! | --- | --- |
+//! | what is shown | [`scene`], [`camera`], [`view`], [`lights`], [`texture`], [`color`] |
+//! | how it looks | [`style`], and a module for each technique: [`shade`], [`hatch`], [`edge_lines`], [`printed_fins`], [`image_lines`], [`shadow`] |
+//! | rendering | [`plan`], [`capabilities`], [`picture_limits`], [`executor`], [`gpu`], [`cpu`], [`rays`], [`picture`] |
+//! | measuring | [`truth`], what is exactly right; [`compare`]; [`check`] |
+//! | the command | [`gallery`], [`inspect`], [`suggest`], [`error`] |
 //!
 //! # Features
 //!

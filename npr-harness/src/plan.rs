@@ -1,8 +1,8 @@
-//! Which passes a picture needs, and no more.
+//! Decides which passes a picture needs.
 //!
-//! A plan is made of a scene, a style, a view and what the executor can do, and holds everything resolved: an executor never
-//! asks the style. What is derived of the scene alone is found once and shared, so that planning a further view of the same
-//! scene costs little.
+//! A plan is made from a scene, a style, a view and the executor's capabilities. It holds all decisions, so an executor
+//! never reads the style. Data that depend on the scene alone are computed once and shared, so planning another view of
+//! the same scene is cheap.
 
 use crate::camera::Camera;
 use crate::capabilities::Capabilities;
@@ -29,7 +29,7 @@ use npr_toon::normal::NormalUse;
 use npr_toon::source::{Light, LightKind, combined_color};
 use std::fmt;
 
-/// A pass, or a method, and why it is taken or left out.
+/// A pass or a method, and why it is used or left out.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Reason {
     /// The pass.
@@ -45,63 +45,64 @@ pub struct PaintPlan {
     pub shade: Shade,
     /// How the three normals of a triangle are used.
     pub normals: NormalUse,
-    /// As many as the shade knows, in the space of the scene's positions.
+    /// The lights that the shade supports, in scene space.
     pub lights: Vec<Light>,
-    /// The colour of all of them.
+    /// The combined colour of the lights.
     pub light_color: DVec3,
-    /// The data of scene and view that the shade reads.
+    /// The data of scene and view that the shade uses.
     pub view: ShadeView,
-    /// Whether light takes more than normals at pixels and directions that are the same everywhere: positions, or light
-    /// that is computed at vertices.
+    /// Whether lighting needs more than per-pixel normals and constant light directions: positions, or lighting
+    /// computed at vertices.
     pub interpolates_light: bool,
-    /// What strokes need, where surfaces are hatched.
+    /// The data for strokes, if surfaces are hatched.
     pub hatch: Option<HatchPlan>,
 }
 
 /// The passes of a picture, decided once for both executors.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// Where the picture is taken from, and its size.
+    /// The camera, the size and the samples per pixel.
     pub view: View,
-    /// Display-referred colour of what no surface covers.
+    /// The display-referred background colour.
     pub paper: Vec3,
-    /// How surfaces are painted; `None` where they are left as paper.
+    /// How surfaces are painted; `None` if they are left as paper.
     pub paint: Option<PaintPlan>,
-    /// Whether surfaces are drawn into the picture, if only for their depth.
+    /// Whether surfaces are rasterised into the picture's targets, if only to fill the depth buffer.
     pub draws_surfaces: bool,
-    /// Whether texture coordinates, textures or vertex colours are read at all.
+    /// Whether texture coordinates, textures or vertex colours are read.
     pub looks_up: bool,
-    /// Whether some material is cut out by alpha.
+    /// Whether any material is alpha-tested.
     pub cut_out: bool,
-    /// Whether some material is blended over what is behind it.
+    /// Whether any material is alpha-blended.
     pub blended: bool,
-    /// Whether back faces are left out although their material is double-sided: they cannot be seen.
+    /// Whether back faces are culled although their material is double-sided, because they cannot be visible.
     pub cull_back: bool,
-    /// Fins as printed.
+    /// The printed fins.
     pub printed_fins: Option<PrintedFinPlan>,
     /// Lines along edges.
     pub edge_lines: Option<EdgeLinePlan>,
     /// Lines found in the image.
     pub image: Option<ImagePlan>,
-    /// Shadows, where something is seen of them.
+    /// Shadows, if any part of the picture shows them.
     pub shadow: Option<ShadowPlan>,
-    /// Whether tonal art maps of six tones are stored as half floats on a device, else as bytes.
+    /// Whether six-tone tonal art maps are stored as half floats on the GPU, else as bytes.
     pub half_float_maps: bool,
-    /// Passes, in order.
+    /// The passes, in order.
     pub passes: Vec<Reason>,
-    /// What was left out.
+    /// The passes that were left out.
     pub left_out: Vec<Reason>,
     /// By which methods an adapter makes passes; none for the CPU, which has one for each.
     pub methods: Vec<Reason>,
 }
 
 impl Plan {
-    /// Decides what a style needs for a scene in a view, and how an executor makes it.
+    /// Decides which passes a style needs for a scene in a view, and how an executor performs them.
     ///
     /// # Errors
-    /// What is wrong with the style, [`Style::validate`], with its lines, or with its map; [`HarnessError::ClippedEdges`],
-    /// [`HarnessError::ShadowMapLight`]; [`HarnessError::Size`] and [`HarnessError::PictureMemory`]; and what an adapter
-    /// cannot do: [`HarnessError::TextureTooLarge`], [`HarnessError::ParallelVolumes`].
+    /// Errors of the style ([`Style::validate`]), of its lines and of its tonal art map;
+    /// [`HarnessError::ClippedEdges`], [`HarnessError::ShadowMapLight`]; [`HarnessError::Size`] and
+    /// [`HarnessError::PictureMemory`]; and if the adapter lacks a capability: [`HarnessError::TextureTooLarge`],
+    /// [`HarnessError::ParallelVolumes`].
     pub fn new(scene: &Scene, style: &Style, view: &View, capabilities: &Capabilities) -> Result<Self, HarnessError> {
         style.validate()?;
         let view = View { samples: view.samples.max(1), ..*view };
@@ -169,11 +170,12 @@ impl Plan {
         let in_picture = self.paint.is_some() || drawn.is_some() && !in_lines;
         let Some(shadow) = style.shadow.as_ref().filter(|_| in_picture || in_lines) else { return Ok(None) };
         let light = casting_light(&style.lights, scene, &self.view.camera);
-        let technique = ShadowTechnique::new(scene, shadow, light, capabilities)?;
+        let of_device = || (capabilities.volumes(scene.objects().len()).0, capabilities.float_stencil);
+        let technique = ShadowTechnique::new(scene, shadow, light, capabilities.is_adapter().then(of_device))?;
         Ok(Some(ShadowPlan { light, terminator: shadow.terminator, technique, in_picture, in_lines }))
     }
 
-    /// By which methods an adapter makes the passes, and why; or why it cannot.
+    /// Chooses the methods by which an adapter performs the passes, or fails if it cannot.
     fn methods(&self, scene: &Scene, capabilities: &Capabilities) -> Result<Vec<Reason>, HarnessError> {
         capabilities.check_size("the picture", self.view.size)?;
         capabilities.check_size("the picture's samples", self.view.sampled_size())?;
@@ -222,7 +224,7 @@ impl Plan {
         Ok(methods)
     }
 
-    /// The same plan for an adapter whose driver refuses compute shaders after all.
+    /// The same plan for an adapter whose driver rejects compute shaders although it reported support for them.
     #[cfg(feature = "gpu")]
     pub(crate) fn without_compute(&self, no_compute: &'static str) -> Self {
         let mut plan = self.clone();
@@ -241,18 +243,18 @@ impl Plan {
         self.edge_lines.as_ref().is_some_and(|lines| lines.method == EdgeLineMethod::OnDevice)
     }
 
-    /// What strokes need, where surfaces are hatched.
+    /// The data for strokes, if surfaces are hatched.
     pub fn hatch(&self) -> Option<&HatchPlan> {
         self.paint.as_ref().and_then(|paint| paint.hatch.as_ref())
     }
 
-    /// The edges that are lines in the plan's view, each as object and edge, and how many there are of each [`LineKind`].
+    /// The edges that are lines in the plan's view, as (object, edge), and the number of lines of each [`LineKind`].
     pub fn lines(&self, scene: &Scene) -> (Vec<[u32; 2]>, [usize; LineKind::ALL.len()]) {
         let eye = self.view.camera.homogeneous_eye();
         self.edge_lines.as_ref().map_or_else(Default::default, |lines| lines.lines(scene, eye))
     }
 
-    /// Lists the passes, and those that are left out, with reasons.
+    /// Lists the passes that are used and those that are left out, with reasons.
     fn explain(&mut self, style: &Style, textured: bool) {
         let (mut passes, mut left_out) = (Vec::new(), Vec::new());
         let mut add = |taken: bool, pass, why: &str, why_not: &str| {
@@ -423,13 +425,13 @@ impl PaintPlan {
     }
 }
 
-/// The plane (n, d) of which n · p + d is the eye depth of a point p.
+/// The plane (n, d) such that n · p + d is the eye depth of a point p.
 fn eye_depth_plane(camera: &Camera) -> DVec4 {
     let back = camera.axes()[2];
     (-back).extend(back.dot(camera.eye))
 }
 
-/// Whether the eye, or the near plane, is within the model's box: then the back of a face can be seen.
+/// Whether the eye or the near plane lies within the model's bounding box, so that back faces may be visible.
 fn sees_the_inside(scene: &Scene, camera: &Camera) -> bool {
     let Some((low, high)) = scene.bounds() else { return false };
     let margin = scene.radius() * 1e-3 + 2.0 * camera.near;

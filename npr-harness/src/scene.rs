@@ -1,7 +1,7 @@
-//! What a picture shows: objects, which place meshes, and where their materials' lines come from.
+//! The scene to render: meshes, the objects that place them, their materials and their textures.
 //!
-//! A mesh is prepared once, however often it is placed. Moving an object rebuilds its matrices and, when a ray is next
-//! cast, the hierarchy over the objects, but nothing of a mesh's size.
+//! A mesh is prepared once and may be placed by any number of objects. Moving an object only rebuilds its matrices and,
+//! at the next ray cast, the hierarchy over the objects' boxes; no work is proportional to the mesh's size.
 
 mod hierarchy;
 mod mesh;
@@ -30,29 +30,29 @@ use std::sync::{Arc, OnceLock};
 pub struct Scene {
     meshes: Vec<Arc<Mesh>>,
     objects: Vec<Object>,
-    /// What the scene's positions are relative to, in the units of the file: 0, or the middle of all objects where that is
-    /// far from 0. It is subtracted in f64, so that nothing far away loses digits.
+    /// The origin of the scene's positions, in file units: 0, or the centre of the bounding box of all objects where
+    /// that is far from 0. It is subtracted in f64, so distant scenes lose no precision.
     pub origin: DVec3,
-    /// What the units of the file are multiplied by: 1, or a power of two, as [`Mesh::scale`].
+    /// The factor from file units to scene units: 1 or a power of two, as for [`Mesh::scale`].
     pub scale: f64,
-    /// The materials of all meshes, one mesh after the other, then those that objects have of their own.
+    /// The materials of all meshes, mesh by mesh, followed by the materials that objects override.
     materials: Vec<Material>,
-    /// Per mesh the number of its first material.
+    /// Per mesh: the index of its first material.
     first_materials: Vec<usize>,
-    /// Per material its colour without texture and vertex colour, display-referred.
+    /// Per material: its display-referred colour without texture and vertex colour.
     pub(crate) material_colors: Vec<DVec3>,
-    /// The images that the materials refer to, each once.
+    /// The textures that the materials refer to, without duplicates.
     textures: Vec<Texture>,
-    /// Cuts the scene: shown is where n · p + d >= 0 for the plane (n, d), for positions as they are here (see
-    /// [`Scene::plane_here`]). Lines along edges do not know of it; those found in the image do.
+    /// The clipping plane (n, d): only points with n · p + d >= 0, in scene space (see [`Scene::plane_here`]), are
+    /// visible. Lines found in the image respect it; lines along edges do not.
     pub clip: Option<DVec4>,
-    /// Per material where its inner lines come from, in styles that ask: [`ImageInk::artist`]. All from their normals
-    /// to begin with.
+    /// Per material: the source of its inner lines for styles that use it, [`ImageInk::artist`]. The initial value of
+    /// every material is its normals.
     ///
     /// [`ImageInk::artist`]: crate::image_lines::ImageInk::artist
     pub line_kinds: Vec<LineKind>,
     bounds: Option<(Vec3, Vec3)>,
-    /// Over the boxes of the objects; of a single one there is none.
+    /// The hierarchy over the objects' boxes; unused with a single object.
     hierarchy: OnceLock<BoxHierarchy>,
     mip_mapped: OnceLock<Vec<MipMapped>>,
 }
@@ -64,15 +64,16 @@ impl From<Loaded> for Scene {
 }
 
 impl Scene {
-    /// A model as the only object. Faces without material get [`Material::default`].
+    /// Places a model as the only object. Faces without a material get [`Material::default`].
     pub fn new(model: Model) -> Self {
         let world_from_mesh = DAffine3::IDENTITY;
         Self::with_objects(vec![model], vec![npr_mesh::Object { name: String::new(), mesh: 0, world_from_mesh }])
     }
 
-    /// Meshes as objects place them.
+    /// Builds a scene from meshes and the objects that place them.
     ///
-    /// A mesh that a transform makes flat is placed as a mesh of its own, since the transform has no inverse.
+    /// Where a transform is singular, the transformed mesh is stored as a separate mesh, because the transform has no
+    /// inverse.
     ///
     /// # Panics
     /// If an object has no mesh.
@@ -136,7 +137,7 @@ impl Scene {
         self.materials.push(material);
     }
 
-    /// Meshes of one file share their images.
+    /// Returns the index of a texture, adding it if it is new. Meshes from one file share their images.
     fn texture_number(&mut self, texture: &Texture) -> u32 {
         let is_same = |known: &Texture| {
             Arc::ptr_eq(&known.rgba8, &texture.rgba8)
@@ -149,7 +150,7 @@ impl Scene {
         }) as u32
     }
 
-    /// From the positions of a mesh as they are kept to those of the scene.
+    /// The transform from the stored positions of a mesh to scene space.
     fn scene_from_mesh(&self, mesh: usize, world_from_mesh: &DAffine3) -> DAffine3 {
         let (mesh, DAffine3 { matrix3, translation }) = (&self.meshes[mesh], *world_from_mesh);
         DAffine3 {
@@ -158,7 +159,7 @@ impl Scene {
         }
     }
 
-    /// Moves an object: `world_from_mesh` is in the units of the file. The scene's origin and scale stay.
+    /// Moves an object. `world_from_mesh` is in file units. The scene's origin and scale do not change.
     ///
     /// # Errors
     /// [`HarnessError::SingularTransform`].
@@ -174,11 +175,11 @@ impl Scene {
         Ok(())
     }
 
-    /// Gives all faces of an object a material of its own. Its texture, if it has one, is one of [`Scene::textures`].
+    /// Overrides the material of all faces of an object. Its texture, if any, must be one of [`Scene::textures`].
     ///
     /// # Errors
-    /// [`HarnessError::ObjectMaterial`] where that is blended or cut out and the mesh's is not, or the reverse, or where
-    /// there is no such texture.
+    /// [`HarnessError::ObjectMaterial`] if the alpha mode differs from that of the mesh's materials, or if there is no
+    /// such texture.
     pub fn set_material(&mut self, object: usize, material: Material) -> Result<(), HarnessError> {
         let of_mesh = &self.meshes[self.objects[object].mesh].model().materials;
         let kind = |material: &Material| std::mem::discriminant(&material.alpha_mode);
@@ -202,7 +203,7 @@ impl Scene {
         &self.objects
     }
 
-    /// To change an object's name or lines.
+    /// Mutable access to an object, for its name and lines.
     pub fn object_mut(&mut self, object: usize) -> &mut Object {
         &mut self.objects[object]
     }
@@ -232,7 +233,7 @@ impl Scene {
         self.objects.iter().map(|object| (object, &*self.meshes[object.mesh]))
     }
 
-    /// All materials: an object's faces have those from [`Scene::material_number`] on.
+    /// All materials. [`Scene::material_number`] gives the index for a face of an object.
     pub fn materials(&self) -> &[Material] {
         &self.materials
     }
@@ -242,13 +243,13 @@ impl Scene {
         &self.textures
     }
 
-    /// The numbers of a mesh's own materials.
+    /// The indices of a mesh's own materials.
     pub(crate) fn materials_of(&self, mesh: usize) -> Range<usize> {
         let first = self.first_materials[mesh];
         first..first + self.meshes[mesh].model().materials.len()
     }
 
-    /// The number of the material of an object's face.
+    /// The index of the material of an object's face.
     pub fn material_number(&self, object: u32, face: u32) -> usize {
         let (object, mesh) = self.placed(object);
         let own = if object.one_material { 0 } else { mesh.model().face_material[face as usize] as usize };
@@ -267,7 +268,7 @@ impl Scene {
         model.faces[face as usize].map(|v| object.point(model.positions[v as usize]))
     }
 
-    /// Faces as often as they are placed.
+    /// The number of faces, counting a mesh once per object that places it.
     pub fn face_count(&self) -> usize {
         self.placed_objects().map(|(_, mesh)| mesh.model().faces.len()).sum()
     }
@@ -277,7 +278,7 @@ impl Scene {
         self.placed_objects().all(|(_, mesh)| mesh.is_closed())
     }
 
-    /// Says where the inner lines of all materials of a name come from.
+    /// Sets the source of the inner lines for all materials of a name.
     ///
     /// # Errors
     /// [`HarnessError::UnknownMaterial`].
@@ -299,30 +300,32 @@ impl Scene {
         Err(HarnessError::UnknownMaterial { name: material.to_owned(), nearest, known })
     }
 
-    /// A place in the file's own space, in the space of the positions here.
+    /// Transforms a position from file space to scene space.
     pub fn place_here(&self, place: DVec3) -> DVec3 {
         (place - self.origin) * self.scale
     }
 
-    /// A plane (n, d) of the file's own space, n · p + d = 0, in the space of the positions here: the same plane, with
-    /// the same sides, and n made unit. n must not be zero.
+    /// Transforms the plane (n, d), n · p + d = 0, from file space to scene space and normalizes n. The sides of the
+    /// plane keep their signs. n must not be zero.
     pub fn plane_here(&self, plane: DVec4) -> DVec4 {
-        // Of any size: first by the largest component, so that no square leaves the range of f64.
+        // Dividing by the largest component first keeps all squares within the range of f64.
         let largest = plane.truncate().abs().max_element();
         let (normal, offset) = (plane.truncate() / largest, plane.w / largest);
         let length = normal.length();
         let (normal, offset) = (normal / length, offset / length);
-        // A plane that is so far away cuts off all or nothing, and its number is an f32 on a device.
+        // A plane at this distance clips everything or nothing. The clamp keeps the offset representable as f32 on the
+        // GPU.
         let offset = ((normal.dot(self.origin) + offset) * self.scale).clamp(-FARTHEST, FARTHEST);
         normal.extend(offset)
     }
 
-    /// Whether a point is on the side that is shown.
+    /// Whether a point is on the visible side of the clipping plane.
     pub fn keeps(&self, point: DVec3) -> bool {
         self.clip.is_none_or(|plane| plane.dot(point.extend(1.0)) >= 0.0)
     }
 
-    /// Builds what rays are cast with, if it is not built yet. Several threads that cast rays would wait for it.
+    /// Builds the ray-casting hierarchies if they are not built yet. Threads that cast rays would otherwise block on
+    /// the build.
     pub fn build_rays(&self) {
         self.meshes.iter().for_each(|mesh| {
             mesh.rays();
@@ -330,8 +333,8 @@ impl Scene {
         self.hierarchy();
     }
 
-    /// Does `work` while other threads build what rays are cast with. On two cores a picture of 1.1 million faces whose
-    /// plan is made so takes 0.94 of the time, one of 4.4 million 0.89.
+    /// Runs `work` while another thread builds the ray-casting hierarchies. On two cores, planning a picture this way
+    /// takes 0.94 of the time with 1.1 million faces and 0.89 with 4.4 million.
     pub fn while_building_rays<R>(&self, work: impl FnOnce() -> R) -> R {
         if std::thread::available_parallelism().map_or(1, usize::from) == 1 {
             return work();
@@ -350,7 +353,8 @@ impl Scene {
         })
     }
 
-    /// Shows `visit` the objects whose boxes a ray meets. It returns the largest t that still matters.
+    /// Calls `visit` with each object whose box the ray intersects and the current largest t; `visit` returns the new
+    /// largest t.
     fn objects_on_ray(
         &self,
         origin: DVec3,
@@ -366,8 +370,8 @@ impl Scene {
         }
     }
 
-    /// The nearest hit with t in `t_range` (both ends included) that `accept` takes; of several at equal t the one on the
-    /// first object, and of that the one on the lowest-numbered face. Otherwise as [`RayCaster::closest`].
+    /// The nearest hit with t in `t_range` (both ends included) that `accept` accepts. Among hits of equal t, the first
+    /// object wins, and within an object the face with the lowest index. Otherwise as [`RayCaster::closest`].
     ///
     /// [`RayCaster::closest`]: crate::rays::RayCaster::closest
     pub fn closest(
@@ -393,7 +397,7 @@ impl Scene {
         nearest
     }
 
-    /// Every hit with t in `t_range` (both ends included) that `accept` takes, by ascending t, then by object and face.
+    /// All hits with t in `t_range` (both ends included) that `accept` accepts, sorted by t, then object, then face.
     pub fn all(
         &self,
         origin: DVec3,
@@ -415,7 +419,7 @@ impl Scene {
         hits
     }
 
-    /// Whether there is a hit with t in `t_range` (both ends included) that `accept` takes.
+    /// Whether there is a hit with t in `t_range` (both ends included) that `accept` accepts.
     pub fn any(
         &self,
         origin: DVec3,
@@ -428,7 +432,7 @@ impl Scene {
             let (object, mesh) = self.placed(number);
             let (origin, direction) = object.ray(origin, direction);
             found |= mesh.rays().any(origin, direction, t_range, |hit| accept(&Hit { object: number, ..*hit }));
-            // Nothing further matters.
+            // Ends the traversal.
             if found { f64::NEG_INFINITY } else { t_max }
         });
         found
@@ -444,7 +448,7 @@ impl Scene {
         self.meshes.iter().any(|mesh| mesh.has_blend())
     }
 
-    /// The positions of all corners of faces, each once for each object.
+    /// The positions of all vertices used by faces, each once per object.
     pub fn corners(&self) -> impl Iterator<Item = Vec3> + Clone + '_ {
         self.placed_objects().flat_map(|(object, mesh)| mesh.corners().map(|at| object.point(at).as_vec3()))
     }
@@ -455,36 +459,36 @@ impl Scene {
         Some((low.as_vec3(), high.as_vec3()))
     }
 
-    /// The box around the boxes of all objects; `None` without faces.
+    /// The bounding box of all objects' boxes; `None` without faces.
     pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
         self.bounds
     }
 
-    /// The range of eye depth in which the scene lies, before the camera.
+    /// The range of eye depth that the scene occupies in front of the camera.
     pub(crate) fn depth_range(&self, camera: &Camera) -> (f64, f64) {
         let back = camera.axes()[2];
         let (low, high) = self.bounds().map_or((DVec3::ZERO, DVec3::ZERO), |(l, h)| (l.as_dvec3(), h.as_dvec3()));
         let depth = |corner: DVec3| (camera.eye - corner).dot(back);
         let nearest = depth(DVec3::select(back.cmpgt(DVec3::ZERO), high, low));
         let farthest = depth(DVec3::select(back.cmpgt(DVec3::ZERO), low, high));
-        // A thousandth to spare, so that nothing of the scene is clamped to the range's ends.
+        // A margin of a thousandth, so that no part of the scene is clamped to the ends of the range.
         let spare = 1e-3 * (farthest - nearest);
         let near = (nearest - spare).max(camera.near * 0.999);
         (near, (farthest + spare).max(near * 1.001))
     }
 
-    /// The middle of the bounding box.
+    /// The centre of the bounding box.
     pub fn middle(&self) -> DVec3 {
         self.bounds().map_or(DVec3::ZERO, |(low, high)| low.as_dvec3().midpoint(high.as_dvec3()))
     }
 
-    /// The half of the bounding box's diagonal.
+    /// Half the diagonal of the bounding box.
     pub fn radius(&self) -> f64 {
         self.bounds().map_or(0.0, |(low, high)| f64::from((high - low).length()) / 2.0)
     }
 
-    /// The same scene as one object whose transform is the identity, for what measures and does not render. A scene that is
-    /// so already is returned as it is.
+    /// The scene as a single object with an identity transform, for measurements. Returns `self` if it already has that
+    /// form.
     pub fn flattened(&self) -> Cow<'_, Self> {
         if let [object] = &self.objects[..]
             && *object.scene_from_mesh() == DAffine3::IDENTITY
@@ -498,12 +502,12 @@ impl Scene {
             let mut model = mesh.model().clone().transformed(object.scene_from_mesh());
             for (number, material) in model.materials.iter_mut().enumerate() {
                 let number = object.first_material + if object.one_material { 0 } else { number };
-                // As `append` expects it: numbers of the part's own textures.
+                // `append` expects indices into the appended model's own textures.
                 let texture = if object.one_material { None } else { material.texture };
                 *material = Material { texture, ..self.materials[number].clone() };
                 line_kinds.push(self.line_kinds[number]);
             }
-            // Objects that touch are not joined.
+            // Edges are found per object, so vertices of touching objects are not merged.
             edges.append(&mesh::find_edges(&model), flat.positions.len() as u32, flat.faces.len() as u32);
             flat.append(&model);
         }
@@ -515,5 +519,5 @@ impl Scene {
     }
 }
 
-/// Nothing of a scene is so far away that more would show. Its square is well within f32.
+/// The largest distance of a clipping plane from the scene's origin, in scene units. Its square is well within f32.
 pub(crate) const FARTHEST: f64 = 1e15;

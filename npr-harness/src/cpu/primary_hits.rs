@@ -1,4 +1,4 @@
-//! Primary visibility: what is seen first through each pixel, which all styles that show a scene in one view share.
+//! Primary visibility: the first surface at each pixel, shared by all styles that render a scene in one view.
 
 use super::frame::CpuOptions;
 use crate::rays::Hit;
@@ -8,11 +8,11 @@ use glam::DVec2;
 use npr_mesh::AlphaMode;
 use std::sync::{Arc, Mutex};
 
-/// Primary hits of a scene in a view, kept for the pictures that follow.
+/// A cache of the primary hits of a scene in a view.
 pub struct PrimaryHits<'a> {
     /// The scene.
     pub scene: &'a Scene,
-    /// The camera, the size and the samples.
+    /// The camera, the size and the samples per pixel.
     pub view: View,
     most: usize,
     found: Mutex<Vec<Found>>,
@@ -24,24 +24,24 @@ struct Found {
     hits: Hits,
 }
 
-/// A hit per pixel, rows from the top.
+/// A hit per pixel, in rows from the top.
 pub(crate) type Hits = Arc<Vec<Option<Hit>>>;
 
 impl<'a> PrimaryHits<'a> {
-    /// For one picture: nothing is kept.
+    /// Creates a cache for one picture, which stores nothing.
     pub fn new(scene: &'a Scene, view: View) -> Self {
         Self::kept(scene, view, 0)
     }
 
-    /// Keeps what is found for up to `most` places of the pixels' samples ([`CpuOptions::shift_px`]): 56 bytes a pixel
-    /// and place.
+    /// Creates a cache that stores the hits for up to `most` sample offsets ([`CpuOptions::shift_px`]), 56 bytes per
+    /// pixel and offset.
     pub fn kept(scene: &'a Scene, view: View, most: usize) -> Self {
         // Which faces alpha cuts out depends on the style.
         let cut_out = scene.materials().iter().any(|m| matches!(m.alpha_mode, AlphaMode::Mask { .. }));
         Self { scene, view, most: if cut_out { 0 } else { most }, found: Mutex::new(Vec::new()) }
     }
 
-    /// What was found for a view of the same camera, or is by `find`; `None` where nothing is kept.
+    /// Returns the cached hits of a view of the same camera, or computes them with `find`; `None` if nothing is cached.
     pub(super) fn hits(&self, view: &View, options: &CpuOptions, find: impl FnOnce() -> Hits) -> Option<Hits> {
         if view.size != self.view.size || view.samples > 1 || self.most == 0 {
             return None;

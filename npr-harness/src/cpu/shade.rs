@@ -1,4 +1,4 @@
-//! What light makes of a hit's own colour. The twin of `shade/lights.wgsl`.
+//! Shading of a hit. The GPU version is `shade/lights.wgsl`.
 
 use super::FrameContext;
 use super::surface::Footprint;
@@ -13,7 +13,7 @@ use npr_toon::source::toon_to_light;
 use npr_toon::{toon_n_dot_l, toon_n_dot_l_interpolated};
 
 impl FrameContext<'_> {
-    /// The display-referred colour of a hit whose own is `base`.
+    /// The shaded display-referred colour of a hit; `base` is its unshaded colour.
     pub(super) fn shaded(&self, hit: &Hit, base: DVec3, x: u32, y: u32) -> DVec3 {
         let Some(paint) = &self.plan.paint else { return self.plan.paper.as_dvec3() };
         let model = paint.shade.model();
@@ -24,7 +24,8 @@ impl FrameContext<'_> {
         }
         let widths = |of: &dyn Fn(DVec2) -> DVec2| {
             let Footprint { along_x, along_y, .. } = self.footprint(hit, x, y);
-            // The whole block of pixels as in shadow, or not: a shadow's border is no border of bands.
+            // Every pixel of the 2×2 block uses this hit's shadow state, so a shadow border is not a border between
+            // bands.
             let at = |weights| of(self.light(paint, model, hit, weights, shadow.dark)) - of(light);
             let (dx, dy) = (at(along_x), at(along_y));
             DVec2::new(toon_border_width(dx.x, dy.x), toon_border_width(dx.y, dy.y))
@@ -36,8 +37,8 @@ impl FrameContext<'_> {
         model.color(&Shading { base, light_color: paint.light_color, light, normal: &normal, widths: &widths })
     }
 
-    /// What a shade is looked up with: the diffuse term and its second number. In a cast shadow as if the surface were
-    /// turned away from the light as far as it is turned towards it.
+    /// The lookup coordinates of a shade: the diffuse term and the second coordinate. In a cast shadow the diffuse term
+    /// is negated if positive, as if the surface faced away from the light by the same angle.
     fn light(&self, paint: &PaintPlan, model: &dyn ShadeModel, hit: &Hit, weights: [f64; 3], in_shadow: bool) -> DVec2 {
         let found = match paint.normals {
             NormalUse::PerPixel => {
@@ -75,7 +76,7 @@ impl FrameContext<'_> {
         DVec2::new(diffuse, model.second(point, to_light, &paint.lights, &paint.view))
     }
 
-    /// The display-referred colour of a hatched hit whose own is `base`.
+    /// The display-referred colour of a hatched hit; `base` is its unshaded colour.
     #[expect(clippy::too_many_arguments, reason = "private, and called once")]
     fn hatched(
         &self,
@@ -89,7 +90,7 @@ impl FrameContext<'_> {
         y: u32,
         strokes: &Strokes<'_>,
     ) -> DVec3 {
-        // Strokes lie in the space of the mesh, so that they move with it.
+        // Strokes lie in mesh space, so they move with the mesh.
         let (object, mesh) = self.scene.placed(hit.object);
         let corners = mesh.model().faces[hit.face as usize];
         let sum = |of: &[Vec3], weights: [f64; 3]| -> DVec3 {
@@ -100,7 +101,7 @@ impl FrameContext<'_> {
         };
         let Footprint { along_x, dx, along_y, dy } = self.footprint(hit, x, y);
         let at = position(hit.barycentric);
-        // On the back of a face light at its front's vertices says nothing.
+        // The light at the vertices is that of the front face, so it does not apply to the back.
         let diffuse_of_corners =
             || hit.front.then(|| self.corners(hit).map(|corner| self.light_at(paint, model, &corner).x));
         let hatching = Hatching {
@@ -120,7 +121,7 @@ impl FrameContext<'_> {
     }
 }
 
-/// Of unit vectors at the corners, interpolated and multiplied as they are.
+/// Interpolates the unit vectors at the corners and uses them without renormalizing.
 fn light_interpolated(paint: &PaintPlan, model: &dyn ShadeModel, corners: &[LitPoint; 3], weights: [f64; 3]) -> DVec2 {
     let Some(first) = paint.lights.first() else { return DVec2::ZERO };
     let mean = |of: &dyn Fn(&LitPoint) -> DVec3| -> DVec3 {

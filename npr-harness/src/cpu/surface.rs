@@ -10,14 +10,14 @@ use npr_imagespace::artist::LineKind;
 use npr_mesh::{AlphaMode, Material};
 use npr_toon::painter::toon_material;
 
-/// What is interpolated over a face.
+/// The attributes that are interpolated over a face.
 pub(super) struct Surface {
     pub(super) normal: DVec3,
     pub(super) at: DVec3,
 }
 
-/// Weights of a face's corners at the two pixels beside a pixel with which a 2×2 block of fragments takes its
-/// differences, each with the sign that makes the difference a derivative.
+/// Barycentric weights at the two neighbouring pixels with which a 2×2 block of fragments takes its differences, each
+/// with the sign that turns the difference into a derivative.
 pub(super) struct Footprint {
     pub(super) along_x: [f64; 3],
     pub(super) dx: f64,
@@ -45,11 +45,11 @@ impl FrameContext<'_> {
         }
     }
 
-    /// The weights of a face's corners where the ray through a point of the picture meets the face's plane. Outside the
-    /// face too: that is what a rasteriser extrapolates to for its derivatives.
+    /// The barycentric weights where the ray through a point of the picture meets the face's plane. They may lie
+    /// outside the face, as in a rasteriser, which extrapolates for its derivatives.
     fn extrapolated(&self, hit: &Hit, point_px: DVec2) -> [f64; 3] {
         let (origin, direction) = self.rays.through(point_px);
-        // In the space of the mesh, which the weights do not depend on.
+        // Barycentric weights are the same in mesh space.
         let (object, mesh) = self.scene.placed(hit.object);
         let (origin, direction) = object.ray(origin, direction);
         let model = mesh.model();
@@ -62,7 +62,7 @@ impl FrameContext<'_> {
         [1.0 - v - w, v, w]
     }
 
-    /// Whether a hit is so near to a boundary, on the screen, that the face is taken to end before it.
+    /// Whether a hit lies within the boundary inset on the screen, where the face is treated as absent.
     pub(super) fn is_inset(&self, hit: &Hit, x: u32, y: u32) -> bool {
         if self.boundary_inset_px <= 0.0 {
             return false;
@@ -74,7 +74,7 @@ impl FrameContext<'_> {
         let (x, y) = (f64::from(x), f64::from(y));
         let beside = [(x + 1.0, y), (x, y + 1.0)].map(|(x, y)| self.extrapolated(hit, self.sample_point(x, y)));
         (0..3).filter(|side| boundaries >> side & 1 != 0).any(|side| {
-            // The weight of the corner opposite to a side is 0 on it and nearly linear on the screen.
+            // The weight of the corner opposite a side is 0 on that side and nearly linear on the screen.
             let opposite = (side + 2) % 3;
             let weight = hit.barycentric[opposite];
             let per_px = DVec2::new(beside[0][opposite] - weight, beside[1][opposite] - weight).length();
@@ -109,8 +109,8 @@ impl FrameContext<'_> {
         Surface { normal: if hit.front { normal } else { -normal }, at }
     }
 
-    /// Linear colour and alpha: material × texture × vertex colour, without what says where lines are. Where the shade
-    /// has it so, the texture alone or the rest alone.
+    /// Linear colour and alpha: material × texture × vertex colour, excluding a texture or vertex colour that encodes
+    /// lines. For shades that use the texture's alpha as a blend factor, see [`toon_material`].
     fn base_color(&self, hit: &Hit, x: u32, y: u32) -> DVec4 {
         let mut color = self.material(hit).base_color.as_dvec4();
         let kind = self.line_kind(hit);
@@ -127,7 +127,7 @@ impl FrameContext<'_> {
         }
     }
 
-    /// Linear; white where there is none.
+    /// The linear vertex colour; white if there is none.
     pub(super) fn vertex_color(&self, hit: &Hit) -> DVec4 {
         let model = self.scene.placed(hit.object).1.model();
         if model.colors.is_empty() {
@@ -137,7 +137,7 @@ impl FrameContext<'_> {
         (0..3).map(|i| model.colors[corners[i] as usize].as_dvec4() * hit.barycentric[i]).sum()
     }
 
-    /// Linear, filtered; white where there is none.
+    /// The linear filtered texture colour; white if there is none.
     pub(super) fn texture_color(&self, hit: &Hit, x: u32, y: u32) -> DVec4 {
         let Some(texture) = self.material(hit).texture else { return DVec4::ONE };
         let texture = &self.textures[texture as usize];
@@ -148,7 +148,7 @@ impl FrameContext<'_> {
         texture.sample(uv, texture.level(uv_dx, uv_dy))
     }
 
-    /// Where a material's inner lines come from.
+    /// The source of the inner lines of the hit's material.
     pub(super) fn line_kind(&self, hit: &Hit) -> LineKind {
         let material = self.scene.material_number(hit.object, hit.face);
         self.plan.image.as_ref().map_or(LineKind::Normals, |image| image.line_kinds[material])
@@ -165,7 +165,7 @@ impl FrameContext<'_> {
             let linear = self.base_color(hit, x, y);
             (encode_rgb(linear.truncate()), linear.w)
         };
-        // As a target holds it before it is blended.
+        // Clamped, as a render target clamps it before blending.
         let lit = self.shaded(hit, base, x, y).clamp(DVec3::ZERO, DVec3::ONE);
         let opacity = match material.alpha_mode {
             AlphaMode::Blend => alpha.clamp(0.0, 1.0),
@@ -174,7 +174,7 @@ impl FrameContext<'_> {
         lit.extend(opacity)
     }
 
-    /// What shadows make of a hit; none falls on what is blended.
+    /// The shadow state of a hit. Blended surfaces receive no shadows.
     pub(super) fn shadow_at(&self, hit: &Hit) -> ShadowAt {
         let Some(shadow) = self.plan.shadow.as_ref().filter(|_| !self.is_blended(hit)) else {
             return ShadowAt::default();
@@ -183,7 +183,7 @@ impl FrameContext<'_> {
         shadow_at(shadow, self.scene, hit, surface.at, surface.normal)
     }
 
-    /// What a geometry pass writes for a pixel, for lines in the image.
+    /// The packed G-buffer value of a pixel, for lines in the image.
     pub(super) fn texel(&self, hit: Option<&Hit>, x: u32, y: u32) -> [u32; 2] {
         let Some(image) = &self.plan.image else { return [0; 2] };
         let Some(hit) = hit else { return texel(image, None) };

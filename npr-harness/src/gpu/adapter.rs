@@ -1,11 +1,11 @@
-//! Which adapter is taken, and what is asked of it.
+//! Selection of the adapter, and the features and limits requested from it.
 
 use super::context::{GpuContext, describe};
 use crate::capabilities::{Capabilities, ExecutorKind};
 use crate::error::HarnessError;
 use crate::picture_limits::MEMORY_BYTES;
 
-/// An adapter that can make pictures, not opened yet.
+/// An adapter that meets the requirements, not opened yet.
 pub struct GpuAdapter {
     adapter: wgpu::Adapter,
 }
@@ -13,15 +13,15 @@ pub struct GpuAdapter {
 /// The limits that a device is opened with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum DeviceLimits {
-    /// All that the adapter has.
+    /// All limits of the adapter.
     #[default]
     Adapter,
-    /// What every WebGL2 device has: textures of 2048 px, no storage buffers, no compute shaders.
+    /// The limits of every WebGL2 device: textures of 2048 px, no storage buffers, no compute shaders.
     Webgl2,
 }
 
 impl DeviceLimits {
-    /// Reads `NPR_GPU_LIMITS`: `adapter` (also when it is not set) or `webgl2`.
+    /// Reads the environment variable `NPR_GPU_LIMITS`: `adapter` (the default) or `webgl2`.
     ///
     /// # Errors
     /// [`HarnessError::GpuLimits`] for anything else.
@@ -36,11 +36,11 @@ impl DeviceLimits {
 }
 
 impl GpuAdapter {
-    /// Finds a hardware adapter, else a software one; of each kind Vulkan's, Metal's or DirectX's before OpenGL's, which is
-    /// not looked at where the others have hardware. `WGPU_BACKEND` restricts which interfaces there are.
+    /// Finds a hardware adapter, else a software one. Among each kind, Vulkan, Metal and DirectX are preferred over
+    /// OpenGL, which is only tried if the others offer no hardware adapter. `WGPU_BACKEND` restricts the APIs.
     ///
     /// # Errors
-    /// [`HarnessError::NoAdapter`] with what was looked at.
+    /// [`HarnessError::NoAdapter`] with a list of the adapters considered.
     pub fn find() -> Result<Self, HarnessError> {
         let (mut seen, mut software) = (Vec::new(), None);
         for backends in [wgpu::Backends::PRIMARY, wgpu::Backends::GL] {
@@ -52,7 +52,7 @@ impl GpuAdapter {
             let mut adapters = pollster::block_on(wgpu::Instance::new(descriptor).enumerate_adapters(backends));
             seen.extend(adapters.iter().map(|adapter| describe(&adapter.get_info())));
             adapters.retain(is_enough);
-            // Of equals the one that the system names first.
+            // Among adapters of equal rank, the first that the system lists wins.
             let Some(adapter) = adapters.into_iter().min_by_key(|adapter| rank(&adapter.get_info())) else { continue };
             if adapter.get_info().device_type != wgpu::DeviceType::Cpu {
                 return Ok(Self { adapter });
@@ -62,22 +62,22 @@ impl GpuAdapter {
         software.map(|adapter| Self { adapter }).ok_or(HarnessError::NoAdapter { seen })
     }
 
-    /// Whether the adapter is the processor itself.
+    /// Whether the adapter runs on the CPU.
     pub fn is_software(&self) -> bool {
         self.adapter.get_info().device_type == wgpu::DeviceType::Cpu
     }
 
-    /// What the adapter is, in a line.
+    /// A one-line description of the adapter.
     pub fn describe(&self) -> String {
         describe(&self.adapter.get_info())
     }
 
-    /// Opens a device on it.
+    /// Opens a device on the adapter.
     ///
     /// # Errors
     /// [`HarnessError::NoDevice`].
     pub fn open(&self, limits: DeviceLimits) -> Result<GpuContext, HarnessError> {
-        // Timestamps for measurements, the other two for shadows.
+        // Timestamps are for measurements, the other two features for shadow volumes.
         let wanted = wgpu::Features::TIMESTAMP_QUERY
             | wgpu::Features::DEPTH32FLOAT_STENCIL8
             | wgpu::Features::DEPTH_CLIP_CONTROL;
@@ -98,7 +98,7 @@ impl GpuAdapter {
     }
 }
 
-/// What an adapter can do, with the device that was opened on it, whose limits and features may be less.
+/// The capabilities of an opened device; its limits and features may be fewer than the adapter's.
 fn capabilities(adapter: &wgpu::Adapter, device: &wgpu::Device) -> Capabilities {
     use wgpu::DownlevelFlags;
     let info = adapter.get_info();
@@ -125,7 +125,7 @@ fn capabilities(adapter: &wgpu::Adapter, device: &wgpu::Device) -> Capabilities 
     }
 }
 
-/// What every picture needs of an adapter.
+/// Whether an adapter meets the requirements of every picture.
 fn is_enough(adapter: &wgpu::Adapter) -> bool {
     let depth = adapter.get_texture_format_features(wgpu::TextureFormat::Depth32Float).allowed_usages;
     depth.contains(wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING)

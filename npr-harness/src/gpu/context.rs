@@ -1,45 +1,46 @@
-//! An adapter, a device, and what went wrong on it.
+//! An open device and its error reporting.
 
 use crate::capabilities::Capabilities;
 use crate::error::HarnessError;
 use std::sync::{Arc, Mutex, OnceLock};
 
-/// Why compute shaders are not used that were promised.
+/// The reason given where compute shaders are not used although the driver reports support.
 pub(crate) const REFUSED: &str = "the driver refused the compute shaders that it had promised";
 
 /// A device to render on.
 pub struct GpuContext {
-    /// Makes resources.
+    /// Creates resources.
     pub device: wgpu::Device,
-    /// Takes work.
+    /// Accepts submitted work.
     pub queue: wgpu::Queue,
-    /// What it is.
+    /// The adapter's name, backend and driver.
     pub info: wgpu::AdapterInfo,
-    /// What it can do, as the driver promises.
+    /// The capabilities that the driver reports.
     pub capabilities: Capabilities,
-    /// Set once the driver has refused compute shaders that it had promised.
+    /// Set once the driver has rejected compute shaders although it reports support.
     refused: OnceLock<()>,
     faults: Arc<Mutex<Faults>>,
 }
 
-/// What a device reported since it was last asked.
+/// The errors that a device has reported since the last check.
 #[derive(Default)]
 struct Faults {
-    /// Why it is there no more; that remains.
+    /// The reason why the device was lost; never cleared.
     lost: Option<String>,
-    /// [`HarnessError::OutOfMemory`] or [`HarnessError::Device`]: a `wgpu::Error` cannot be sent between threads on wasm32.
+    /// The first [`HarnessError::OutOfMemory`] or [`HarnessError::Device`]; converted because a `wgpu::Error` is not
+    /// `Send` on wasm32.
     first: Option<HarnessError>,
 }
 
 impl GpuContext {
-    /// What an adapter gave.
+    /// Wraps an opened device.
     pub(super) fn of(
         info: wgpu::AdapterInfo,
         capabilities: Capabilities,
         device: wgpu::Device,
         queue: wgpu::Queue,
     ) -> Self {
-        // Without these, wgpu ends the process.
+        // Without these handlers, wgpu aborts the process on an error.
         let faults = Arc::new(Mutex::new(Faults::default()));
         let sink = Arc::clone(&faults);
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
@@ -60,13 +61,13 @@ impl GpuContext {
         Self { device, queue, info, capabilities, refused: OnceLock::new(), faults }
     }
 
-    /// What is made use of: all that was promised and not refused.
+    /// The capabilities that are used: those reported, minus those that the driver rejected.
     pub(crate) fn usable(&self) -> Capabilities {
         let capabilities = self.capabilities.clone();
         if self.refused.get().is_some() { capabilities.without_compute(REFUSED) } else { capabilities }
     }
 
-    /// A picture was made without compute shaders that could not be made with them.
+    /// Records that a picture succeeded only without compute shaders.
     pub(crate) fn note_refusal(&self) {
         self.refused.get_or_init(|| ());
     }
@@ -76,16 +77,16 @@ impl GpuContext {
         self.capabilities.is_software()
     }
 
-    /// What the adapter is, in a line.
+    /// A one-line description of the adapter.
     pub fn describe(&self) -> String {
         describe(&self.info)
     }
 
-    /// Waits for all that was submitted.
+    /// Waits for all submitted work.
     ///
     /// # Errors
-    /// [`HarnessError::Lost`]; [`HarnessError::OutOfMemory`] or [`HarnessError::Device`], the first fault that the device reported
-    /// since the last call.
+    /// [`HarnessError::Lost`]; or the first [`HarnessError::OutOfMemory`] or [`HarnessError::Device`] that the device
+    /// has reported since the last call.
     pub fn wait(&self) -> Result<(), HarnessError> {
         let polled = self.device.poll(wgpu::PollType::wait_indefinitely());
         let mut faults = self.faults.lock().map_err(|_| HarnessError::Device { fault: "a fault was lost".into() })?;
@@ -100,11 +101,11 @@ impl GpuContext {
 }
 
 impl GpuContext {
-    /// Waits for a buffer with `MAP_READ` and all that was submitted before, and returns its bytes.
+    /// Waits for all previously submitted work, maps a buffer with usage `MAP_READ` and returns its bytes.
     pub(crate) fn map(&self, buffer: &wgpu::Buffer) -> Result<Vec<u8>, HarnessError> {
         let (sender, receiver) = std::sync::mpsc::channel();
         buffer.map_async(wgpu::MapMode::Read, .., move |result| {
-            // The receiver is gone only if waiting failed, and then that is the error.
+            // The receiver is dropped only if waiting failed, and that failure is the error returned.
             let _ = sender.send(result);
         });
         self.wait()?;
@@ -114,7 +115,7 @@ impl GpuContext {
         Ok(mapped.to_vec())
     }
 
-    /// The bytes of a buffer with `COPY_SRC`.
+    /// Reads back a buffer with usage `COPY_SRC`.
     pub(crate) fn read_buffer(&self, buffer: &wgpu::Buffer) -> Result<Vec<u8>, HarnessError> {
         let copy = self.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("copy"),

@@ -1,4 +1,4 @@
-//! Where objects are placed, on the device.
+//! The per-object instance buffer.
 
 use super::context::GpuContext;
 use crate::error::HarnessError;
@@ -6,15 +6,15 @@ use crate::image_lines::plan::RegionPlan;
 use crate::scene::Scene;
 use npr_outline::shadow_pass::affine_rows;
 
-/// `Instance` of `surface.wgsl`: 64 bytes an object.
+/// `Instance` of `surface.wgsl`: 64 bytes per object.
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 struct Instance {
-    /// The rows of the matrix from the mesh to the scene.
+    /// The rows of the matrix from mesh space to scene space.
     rows: [[f32; 4]; 3],
-    /// What is added to the regions of the mesh's faces, and what these are multiplied by before, 0 or 1.
+    /// The offset added to the regions of the mesh's faces, and the factor applied to them before, 0 or 1.
     regions: [u32; 2],
-    /// How much larger the mesh is placed, and log2 of that.
+    /// The scale of the object's transform, and its log2.
     scale: [f32; 2],
 }
 
@@ -26,23 +26,23 @@ pub(crate) const INSTANCE_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::Vert
     ],
 };
 
-/// Objects that are drawn together: of one mesh, and alike in material and handedness.
+/// Objects drawn by one call: same mesh, same material and same handedness.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Run {
     pub(crate) mesh: usize,
-    /// The number of their first material, and whether all faces have that.
+    /// The index of their first material, and whether all faces use it.
     pub(crate) material: (usize, bool),
     pub(crate) mirrored: bool,
-    /// Their places in the buffer.
+    /// Their range in the instance buffer.
     pub(crate) objects: std::ops::Range<usize>,
 }
 
-/// All objects of a scene, in the order of their runs.
+/// The instance data of all objects of a scene, in the order of their runs.
 pub(crate) struct Instances {
     instances: Vec<Instance>,
     buffer: wgpu::Buffer,
     runs: Vec<Run>,
-    /// Per object its place in the buffer.
+    /// Per object: its index in the instance buffer.
     places: Vec<u32>,
 }
 
@@ -64,7 +64,7 @@ impl Instances {
         Ok(instances)
     }
 
-    /// Uploads where the objects are if any has moved.
+    /// Uploads the transforms if any object has moved.
     pub(crate) fn update(&mut self, context: &GpuContext, scene: &Scene, regions: Option<&RegionPlan>) {
         let objects = scene.objects();
         let key = |number: &u32| {
@@ -72,7 +72,7 @@ impl Instances {
             (object.mesh(), object.first_material(), object.is_mirrored())
         };
         let mut order: Vec<u32> = (0..objects.len() as u32).collect();
-        // Stable: of one mesh the objects keep their order.
+        // The sort is stable, so objects of one mesh keep their order.
         order.sort_by_key(key);
         let instance = |&number: &u32| {
             let object = &objects[number as usize];
@@ -113,7 +113,7 @@ impl Instances {
         self.buffer.slice(run.objects.start as u64 * size..run.objects.end as u64 * size)
     }
 
-    /// Of one object.
+    /// The slice of one object.
     pub(crate) fn slice_of(&self, object: u32) -> wgpu::BufferSlice<'_> {
         let (place, size) = (u64::from(self.places[object as usize]), size_of::<Instance>() as u64);
         self.buffer.slice(place * size..(place + 1) * size)

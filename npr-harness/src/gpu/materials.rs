@@ -1,4 +1,4 @@
-//! Materials on the device.
+//! Materials on the GPU.
 
 use super::context::GpuContext;
 use crate::error::HarnessError;
@@ -23,14 +23,14 @@ pub(super) struct MaterialUniform {
     pub(super) padding: [u32; 2],
 }
 
-/// What surfaces are made of. A bind group of its own for each material would take what a device's driver keeps for each,
-/// which with 40,000 of them is gigabytes.
+/// The material uniforms and textures. They share one bind group per texture and use dynamic offsets: with one bind
+/// group per material, the driver's own memory would reach gigabytes for 40,000 materials.
 pub(super) struct Materials {
-    /// Per material the first one that looks the same.
+    /// Per material: the first material with the same appearance.
     pub(super) duplicates: Vec<usize>,
-    /// Per texture, and last for none, with all materials in the uniform buffer.
+    /// One bind group per texture and a last one without texture, each with the uniforms of all materials.
     groups: Vec<wgpu::BindGroup>,
-    /// Per material its group, and where it lies in the uniform buffer, bytes.
+    /// Per material: the index of its group and its offset in the uniform buffer, bytes.
     places: Vec<(usize, u32)>,
 }
 
@@ -44,21 +44,21 @@ impl Materials {
         materials(context, layout, scene, plan)
     }
 
-    /// Binds a material's for the following draws.
+    /// Binds a material for the following draws.
     pub(super) fn bind(&self, pass: &mut wgpu::RenderPass<'_>, material: usize) {
         let (group, offset) = self.places[material];
         pass.set_bind_group(1, &self.groups[group], &[offset]);
     }
 }
 
-/// Whether a material's colour differs from pixel to pixel, or its alpha decides.
+/// Whether a material's colour varies over a face or its alpha is tested.
 pub(super) fn is_looked_up(scene: &Scene, material: usize) -> bool {
     let m = &scene.materials()[material];
     let colored = || scene.meshes().iter().any(|mesh| !mesh.model().colors.is_empty());
     m.texture.is_some() || matches!(m.alpha_mode, AlphaMode::Mask { .. }) || colored()
 }
 
-/// `uniforms`: of all materials, each where an offset says that is given when the group is bound.
+/// `uniforms` holds the uniforms of all materials; the dynamic offset selects one.
 fn material_group(
     device: &wgpu::Device,
     layout: &wgpu::BindGroupLayout,
@@ -110,7 +110,7 @@ fn materials(
     let of_model: &[Texture] = if plan.looks_up { scene.textures() } else { &[] };
     let upload = |texture| upload_texture(context, texture);
     let textures: Vec<_> = of_model.iter().chain([&white]).map(upload).collect::<Result<_, _>>()?;
-    // A uniform's dynamic offset is a multiple of this.
+    // Dynamic offsets must be multiples of the device's alignment.
     let stride = size_of::<MaterialUniform>()
         .next_multiple_of(context.device.limits().min_uniform_buffer_offset_alignment as usize);
     let mut uniforms: Vec<u8> = Vec::new();
@@ -134,7 +134,7 @@ fn materials(
             padding: [0; 2],
         };
         let bytes: [u8; size_of::<MaterialUniform>()] = bytemuck::cast(uniform);
-        // What a draw's pipeline depends on besides.
+        // Further properties on which the pipeline of a draw depends.
         let line_kind = plan.image.as_ref().and_then(|image| image.line_kinds.get(number)).map(|&kind| kind as u32);
         let is_blended = material.alpha_mode == AlphaMode::Blend;
         let key = (bytes, material.texture, material.double_sided, is_looked_up(scene, number), is_blended, line_kind);
@@ -161,7 +161,7 @@ fn materials(
     Ok(Materials { duplicates, groups: textures.iter().map(group).collect(), places })
 }
 
-/// A texture with its mip levels, what it is read with, its size and its number of levels.
+/// A texture with its mip levels, its sampler, its size and its number of levels.
 type Uploaded = (wgpu::TextureView, wgpu::Sampler, [f32; 2], u32);
 
 fn upload_texture(context: &GpuContext, texture: &Texture) -> Result<Uploaded, HarnessError> {
@@ -169,7 +169,7 @@ fn upload_texture(context: &GpuContext, texture: &Texture) -> Result<Uploaded, H
     context.capabilities.check_size("a texture of the model", (texture.width, texture.height))?;
     let (width, height) = (texture.width, texture.height);
     let mut bytes = Vec::new();
-    // A texture's levels halve, rounding down, exactly as those of `MipMapped` do.
+    // The sizes of the levels are halved and rounded down, exactly as in `MipMapped`.
     for (_, _, level) in &levels {
         bytes.extend_from_slice(level);
     }

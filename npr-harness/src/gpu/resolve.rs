@@ -1,4 +1,4 @@
-//! The mean of several samples a pixel.
+//! The resolve pass: averages the samples of each pixel.
 
 use super::targets::COLOR_FORMAT;
 use std::cell::RefCell;
@@ -6,14 +6,14 @@ use std::collections::HashMap;
 
 const RESOLVE_WGSL: &str = include_str!("resolve.wgsl");
 
-/// The pass, made for each number of samples when it is first needed.
+/// The pipelines of the pass, created for each number of samples on first use.
 #[derive(Default)]
 pub(super) struct ResolvePass {
     pipelines: RefCell<HashMap<u32, wgpu::RenderPipeline>>,
 }
 
 impl ResolvePass {
-    /// Averages `fine`, of `samples` times the size of `picture` along each axis, into it.
+    /// Averages `fine` into `picture`; `fine` is `samples` times as large along each axis.
     pub(super) fn record(
         &self,
         device: &wgpu::Device,

@@ -1,6 +1,7 @@
-// The mean of the samples of each pixel, in display space, as coverage is blended there. `CpuFrame::resolved` of `cpu/frame.rs`.
+// The mean of the samples of each pixel, in display space, where coverage is blended too. CPU version:
+// `CpuFrame::resolved` in `cpu/frame.rs`.
 
-// Along each axis of a pixel.
+// The number of samples along each axis of a pixel.
 override resolve_samples: u32 = 1u;
 
 @group(0) @binding(0) var fine: texture_2d<f32>;

@@ -1,4 +1,4 @@
-//! A scene on the device.
+//! A scene on the GPU.
 
 use super::context::GpuContext;
 use super::instances::Instances;
@@ -20,46 +20,46 @@ use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// On a software adapter, see [`HarnessError::TooManyDraws`].
+/// The maximum number of draws per pass on a software adapter; see [`HarnessError::TooManyDraws`].
 const SOFTWARE_DRAWS: usize = 2048;
 
-/// Faces of a mesh of one material, or of several materials with the same appearance, drawn by one call.
+/// Faces of a mesh that have the same material, or materials of the same appearance, drawn by one call.
 pub(super) struct Batch {
-    /// The first of them, as the mesh counts them.
+    /// The index in the mesh of the first of these materials.
     pub(super) material: usize,
     pub(super) indices: Range<u32>,
 }
 
-/// What of a scene stays the same from frame to frame.
+/// The GPU data of a scene that do not change from frame to frame.
 pub struct GpuScene {
-    /// Position and normal, interleaved; those of one mesh after those of the other.
+    /// Interleaved positions and normals, mesh by mesh.
     pub(crate) vertices: wgpu::Buffer,
-    /// Texture coordinate and colour, where any surface looks one up.
+    /// Texture coordinates and vertex colours, if any surface reads them.
     pub(super) lookups: Option<wgpu::Buffer>,
-    /// Per vertex its region, where lines are found in the image.
+    /// Per vertex: its region, if lines are found in the image.
     pub(super) regions: Option<wgpu::Buffer>,
-    /// Faces that are not blended, by mesh and material.
+    /// The indices of unblended faces, sorted by mesh and material.
     pub(crate) indices: Option<wgpu::Buffer>,
-    /// Per mesh.
+    /// Per mesh: its batches.
     pub(super) batches: Vec<Vec<Batch>>,
-    /// Per mesh where its faces lie among the indices.
+    /// Per mesh: its range in the index buffer.
     pub(crate) solid: Vec<Range<u32>>,
-    /// Per mesh the number of its first vertex.
+    /// Per mesh: the index of its first vertex.
     pub(super) first_vertices: Vec<u32>,
-    /// Faces that are blended, as object and face; sorted anew for each view.
+    /// Blended faces, as (object, face); re-sorted for each view.
     pub(super) blended_faces: Vec<[u32; 2]>,
-    /// Where the objects are.
+    /// The instance data of the objects.
     pub(crate) instances: RefCell<Instances>,
     pub(super) materials: Materials,
-    /// How many draws a pass may take.
+    /// The maximum number of draws per pass.
     pub(super) most_draws: usize,
-    /// Per object its edges, where lines are found on the device.
+    /// Per object: its edges, if they are classified on the GPU.
     pub(super) edges: Option<Vec<EdgesOnDevice>>,
-    /// Per mesh fins for all edges, where the printed form is drawn.
+    /// Per mesh: fins for all edges, if printed fins are drawn.
     pub(super) fins: Option<Vec<FinsOnDevice>>,
-    /// What casts shadows, where volumes are drawn.
+    /// The shadow casters, if shadow volumes are drawn.
     pub(super) casting: Option<ShadowCasting>,
-    /// Per vertex the data that positions strokes, and their tonal art map, where surfaces are hatched.
+    /// The per-vertex data that position strokes, and the tonal art map, if surfaces are hatched.
     pub(super) hatch: Option<(wgpu::Buffer, HatchTextures)>,
 }
 
@@ -79,7 +79,7 @@ impl GpuScene {
         };
         let splits: Vec<Option<Split>> = scene.meshes().iter().enumerate().map(split).collect();
         let meshes = || scene.meshes().iter().map(|mesh| mesh.model()).zip(&splits);
-        // Of each mesh all vertices, and again those that stand in several regions.
+        // All vertices of each mesh, followed by copies of those that belong to several regions.
         let sources = |model: &Model, split: &Option<Split>| {
             let more = split.as_ref().map_or(Vec::new(), |split| split.more.clone());
             (0..model.positions.len()).chain(more.into_iter().map(|vertex| vertex as usize))
@@ -162,16 +162,16 @@ impl GpuScene {
     }
 }
 
-/// Faces whose vertices are each in one region.
+/// A vertex list in which each vertex belongs to one region.
 struct Split {
-    /// Of all vertices, the added ones included.
+    /// The regions of all vertices, including the added ones.
     regions: Vec<u32>,
-    /// The vertices that are added, by what they repeat.
+    /// For each added vertex, the vertex that it duplicates.
     more: Vec<u32>,
     faces: Vec<[u32; 3]>,
 }
 
-/// Gives each vertex the region of its first face, and the others' faces vertices of their own.
+/// Assigns each vertex the region of its first face, and duplicates it for faces of other regions.
 fn split_by_region(faces: &[[u32; 3]], face_region: &[u32], vertices: usize) -> Split {
     let mut split = Split { regions: vec![0; vertices], more: Vec::new(), faces: Vec::with_capacity(faces.len()) };
     let mut added = HashMap::new();
@@ -197,10 +197,10 @@ fn split_by_region(faces: &[[u32; 3]], face_region: &[u32], vertices: usize) -> 
     split
 }
 
-/// Adds a mesh's faces that are not blended to the indices, sorted by material, and returns their batches.
+/// Adds a mesh's unblended faces to the index buffer, sorted by material, and returns their batches.
 ///
-/// - `faces`: their vertices, counted from the mesh's first;
-/// - `duplicates`: per material of the mesh the number, in the scene, of the first that looks the same.
+/// - `faces`: their vertices, relative to the mesh's first;
+/// - `duplicates`: per material of the mesh, the scene index of the first material with the same appearance.
 fn add_batches(
     mesh: &Mesh,
     faces: &[[u32; 3]],
@@ -212,10 +212,11 @@ fn add_batches(
     let material = |face: u32| model.face_material[face as usize] as usize;
     let mut solid: Vec<u32> =
         (0..faces.len() as u32).filter(|&f| model.materials[material(f)].alpha_mode != AlphaMode::Blend).collect();
-    // Stable, so that the faces of a material keep the order of the file, whose neighbours share vertices.
+    // The sort is stable: the faces of a material keep the order of the file, in which neighbours share vertices.
     solid.sort_by_key(|&face| duplicates[material(face)]);
-    // Behind a face with the same corners, drawn before, none passes the depth test; a file with half a million of them
-    // is to be drawn all the same. Where alpha cuts out, the first may leave the second to be seen.
+    // A duplicate face never passes the depth test after the face with the same corners, so it is dropped; some files
+    // have half a million of them. Alpha-tested duplicates are kept, because the first face may be discarded where the
+    // second is visible.
     if !edges.further_faces.is_empty() || edges.skipped.iter().any(|&skipped| skipped) {
         let mut seen = HashSet::new();
         solid.retain(|&face| {
@@ -238,7 +239,7 @@ fn add_batches(
     batches
 }
 
-/// The faces of all objects that are blended over what is behind them.
+/// The blended faces of all objects.
 fn blended_faces(scene: &Scene) -> Vec<[u32; 2]> {
     let of_object = |(number, (_, mesh)): (u32, (&Object, &Mesh))| {
         let faces = if mesh.has_blend() { mesh.model().faces.len() as u32 } else { 0 };

@@ -1,4 +1,4 @@
-//! The shader of surfaces: what it is made of, and the light that it is given.
+//! Assembles the surface shader and its light uniforms.
 
 use super::context::GpuContext;
 use super::uniform::uniform_buffer;
@@ -35,7 +35,7 @@ fn parts(shade: &ShadeOnDevice, hatched: bool) -> Parts {
     parts
 }
 
-/// The text of a shader, which says at its head, and before each part, what it is made of.
+/// Concatenates the parts of a shader, with a list of them at its head and a name before each part.
 pub(super) fn assemble(parts: &Parts) -> String {
     let names: Vec<_> = parts.iter().map(|(name, _)| *name).collect();
     let mut text = format!("// Made of: {}.\n", names.join("; "));
@@ -48,27 +48,27 @@ pub(super) fn assemble(parts: &Parts) -> String {
     text
 }
 
-/// The whole shader of surfaces with a shade.
+/// The complete surface shader for a shade.
 ///
 /// # Errors
-/// A rule that the shade's numbers break.
+/// An error if a number of the shade is out of range.
 pub fn surface_wgsl(shade: &Shade) -> Result<String, HarnessError> {
     let hatched = matches!(shade, Shade::Hatch(_));
     Ok(assemble(&parts(&shade.model().on_device(&ShadeView::default())?, hatched)))
 }
 
-/// What of the light and the shade is known when a pipeline is made.
+/// The properties of light and shade that are fixed when a pipeline is created.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct ShaderKey {
-    /// Names of the shader's parts.
+    /// The parts of the shader, by name.
     pub(super) parts: Parts,
-    /// Values of its overrides.
+    /// The values of its override constants.
     pub(super) constants: Vec<(&'static str, f64)>,
-    /// Whether light is computed at the vertices alone.
+    /// Whether light is computed only at the vertices.
     pub(super) at_vertices: bool,
 }
 
-/// The light and the shade of a picture on the device. What the shade does not look at is not there.
+/// The GPU resources for the light and the shade of a picture, limited to those that the shade uses.
 pub(super) struct LightOnDevice {
     pub(super) key: ShaderKey,
     pub(super) lights: wgpu::Buffer,
@@ -92,7 +92,7 @@ impl LightOnDevice {
             None => None,
         };
         let at_vertices = paint.is_some_and(|paint| paint.normals == NormalUse::PerVertex);
-        // Unchecked: two lights that cancel out have no direction, which is no error here.
+        // Unchecked, because two lights that cancel out have no direction, which is not an error here.
         let placed = PainterUniform::unchecked(lights, shade.light_scale);
         let uniform = |contents: &[u8]| uniform_buffer(&context.device, contents);
         Ok(Self {
@@ -104,7 +104,7 @@ impl LightOnDevice {
     }
 }
 
-/// The overrides of `lights.wgsl`.
+/// The override constants of `lights.wgsl`.
 fn light_constants(paint: Option<&PaintPlan>, lights: &[Light]) -> [(&'static str, f64); 4] {
     let positional =
         |number: usize| flag(matches!(lights.get(number).map(|light| light.place), Some(LightKind::Positional { .. })));
@@ -136,7 +136,7 @@ fn upload_image(
     }
     let texture = context.device.create_texture_with_data(
         &context.queue,
-        // Display-referred, as all of a style's colours.
+        // Display-referred, like all colours of a style.
         &image_texture(width, height),
         wgpu::util::TextureDataOrder::LayerMajor,
         bytemuck::cast_slice(texels),
@@ -157,7 +157,7 @@ fn image_texture(width: u32, height: u32) -> wgpu::TextureDescriptor<'static> {
     }
 }
 
-/// What is bound where a shade has nothing of its own.
+/// Placeholder resources, bound where a shade has none of its own.
 pub(super) struct Blank {
     pub(super) uniform: wgpu::Buffer,
     pub(super) image: wgpu::TextureView,

@@ -37,9 +37,9 @@ struct SurfaceUniform {
 }
 
 impl SurfaceUniform {
-    /// For targets of a size: what is said per px is per px of these.
+    /// For targets of a size; quantities per px refer to the pixels of these targets.
     fn new(scene: &Scene, camera: &Camera, size_px: DVec2) -> Self {
-        // To the eye from what a pixel shows, which is against its ray: a linear function of the pixel.
+        // The vector from the surface towards the eye, opposite to the pixel's ray: a linear function of the pixel.
         let against = |x, y| -camera.ray(DVec2::new(x, y), size_px).1;
         let to_eye = against(0.0, 0.0);
         let column = |vector: DVec3| vector.as_vec3().extend(0.0).to_array();
@@ -90,15 +90,15 @@ impl InkUniform {
 enum Paint {
     /// No colour is written.
     Nothing,
-    /// By light that is the same for all of a face but for its normals.
+    /// Shaded by light whose direction is constant; only the normal varies.
     Painted,
-    /// By any other.
+    /// Shaded by light that varies over a face.
     Lit,
-    /// With strokes.
+    /// Hatched with strokes.
     Hatched,
 }
 
-/// What a fragment writes for lines in the image.
+/// The G-buffer output of a fragment, for lines in the image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 struct Inking {
     layout: TexelLayout,
@@ -115,18 +115,18 @@ struct Drawn<'a> {
     mirrored: bool,
 }
 
-/// What the pass draws into: depth, and what of the others is there.
+/// The render targets of the pass: depth, and optionally colour and G-buffer texels.
 #[derive(Clone, Copy)]
 pub(super) struct SurfaceTargets<'a> {
     pub(super) color: Option<&'a wgpu::TextureView>,
     pub(super) texels: Option<&'a wgpu::TextureView>,
     pub(super) depth: &'a wgpu::TextureView,
     pub(super) size_px: DVec2,
-    /// How many of these pixels, along each axis, are one of the picture.
+    /// The number of these pixels per picture pixel, along each axis.
     pub(super) samples: u32,
 }
 
-/// What distinguishes one pipeline from another.
+/// The properties that distinguish one pipeline from another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 struct Variant {
     paint: Paint,
@@ -135,18 +135,18 @@ struct Variant {
     cull_back: bool,
     mirrored: bool,
     blended: bool,
-    /// The shader's number in [`SurfacePass::shaders`].
+    /// The index of the shader in [`SurfacePass::shaders`].
     shader: usize,
     shadow: ShadowVariant,
-    /// Of the depth buffer.
+    /// The format of the depth buffer.
     depth: wgpu::TextureFormat,
-    /// Whether there is a picture to paint, even if it is left as it is.
+    /// Whether there is a colour target, even if it is not written.
     colored: bool,
     clipped: bool,
     inking: Option<Inking>,
 }
 
-/// Where a fragment's shadow comes from, and what lines in the image see of it: the overrides of `shadow.wgsl`.
+/// The source of a fragment's shadow, and how lines in the image use it: the override constants of `shadow.wgsl`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 struct ShadowVariant {
     source: u32,
@@ -170,7 +170,7 @@ impl ShadowVariant {
 
 /// The pipelines of the geometry pass.
 pub(super) struct SurfacePass {
-    /// Made when first needed.
+    /// Created on first use.
     shaders: RefCell<Vec<(ShaderKey, wgpu::ShaderModule)>>,
     view_layout: wgpu::BindGroupLayout,
     material_layout: wgpu::BindGroupLayout,
@@ -181,7 +181,7 @@ pub(super) struct SurfacePass {
     pipelines: RefCell<HashMap<Variant, wgpu::RenderPipeline>>,
 }
 
-/// A picture's surfaces, whatever they are drawn into.
+/// The data of a picture's surfaces that do not depend on the targets.
 #[derive(Clone, Copy)]
 pub(super) struct SurfaceFrame<'a> {
     pub(super) device: &'a wgpu::Device,
@@ -272,13 +272,13 @@ impl SurfacePass {
         &self.material_layout
     }
 
-    /// The number of a shader, which is made if it is not there.
+    /// The index of a shader, which is created if it does not exist.
     fn shader(&self, device: &wgpu::Device, key: &ShaderKey) -> usize {
         let mut shaders = self.shaders.borrow_mut();
         if let Some(known) = shaders.iter().position(|(known, _)| known == key) {
             return known;
         }
-        // Those that differ by their overrides share a module.
+        // Shaders that differ only in their override constants share a module.
         let same = shaders.iter().find(|(known, _)| known.parts == key.parts).map(|(_, module)| module.clone());
         let module = same.unwrap_or_else(|| {
             device.create_shader_module(wgpu::ShaderModuleDescriptor {
@@ -290,7 +290,7 @@ impl SurfacePass {
         shaders.len() - 1
     }
 
-    /// Draws surfaces into targets. `shadow`: what was found of shadows on these.
+    /// Draws surfaces into targets. `shadow` holds the shadows computed for these targets.
     pub(super) fn record(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -384,7 +384,7 @@ impl SurfacePass {
         let mut draw = |pass: &mut wgpu::RenderPass<'_>, drawn: Drawn<'_>, colored: bool, blended: bool| {
             let material = &scene.materials()[drawn.material];
             let double_sided = material.double_sided;
-            // A blended surface is no surface to lines in the image.
+            // Blended surfaces are ignored by lines in the image.
             let inking = plan.image.as_ref().filter(|_| targets.texels.is_some() && !blended).map(|image| {
                 let line_kind = image.line_kinds[drawn.material];
                 Inking {
@@ -404,7 +404,7 @@ impl SurfacePass {
                 mirrored: drawn.mirrored,
                 blended,
                 shader,
-                // No shadow is known of what is blended: it is not what the stencil was counted against.
+                // Blended surfaces receive no shadows: the stencil was counted against the surfaces behind them.
                 shadow: if blended { ShadowVariant::default() } else { ShadowVariant::new(plan, shadow) },
                 depth: targets.depth.texture().format(),
                 colored,
@@ -424,11 +424,12 @@ impl SurfacePass {
             pass.set_vertex_buffer(4, drawn.instances);
             pass.draw_indexed(drawn.indices, 0, 0..drawn.count);
         };
-        // WebGL2 has one write mask and one blend state for all targets of a pass. So a picture that is left as paper is
-        // cleared by itself where texels are drawn, and blended surfaces, which have no texels, have a pass of their own.
+        // WebGL2 has one write mask and one blend state for all targets of a pass. Therefore an unpainted picture is
+        // cleared in a separate pass if texels are drawn, and blended surfaces, which write no texels, have a separate
+        // pass.
         let colored = targets.color.is_some() && (paint != Paint::Nothing || targets.texels.is_none());
         let color = targets.color.map(|view| attachment(view, paper));
-        // Zeros are background.
+        // Zero texels denote background.
         let texels = targets.texels.map(|view| attachment(view, wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT)));
         if !colored && color.is_some() {
             let color_attachments = std::slice::from_ref(&color);
@@ -485,7 +486,7 @@ impl SurfacePass {
             (Paint::Nothing, true, false) => ("vs_textured", "fs_cut_out"),
             (Paint::Painted, false, false) => ("vs_plain", "fs_painted"),
             (Paint::Painted, true, false) => ("vs_textured", "fs_painted_textured"),
-            // A shadow asks for the normal at the pixel.
+            // Shadows need the normal at the pixel.
             (Paint::Lit, false, false) if key.at_vertices && variant.shadow.source == 0 => {
                 ("vs_lit_vertex", "fs_lit_vertex")
             }
@@ -559,7 +560,7 @@ impl SurfacePass {
             ])
             .collect();
         let targets = [colored.then_some(target), texels];
-        // The vertex stage computes light, too.
+        // The vertex stage needs the constants too, because it computes light.
         let options = || wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() };
         device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some("surface"),
@@ -598,7 +599,8 @@ impl SurfacePass {
     }
 }
 
-/// Begins a pass over colour and texels, if they are there, and depth, with all bound that no material has of its own.
+/// Begins a pass over depth and, if present, colour and texels, and binds everything that does not depend on the
+/// material.
 fn begin<'a>(
     encoder: &'a mut wgpu::CommandEncoder,
     (view_group, uploaded, depth): (&wgpu::BindGroup, &GpuScene, &wgpu::TextureView),
@@ -630,7 +632,7 @@ fn begin<'a>(
     pass
 }
 
-/// Blended faces from the farthest to the nearest, by the eye depth of their middle; equals in the file's order.
+/// Sorts blended faces from the farthest to the nearest by the eye depth of their centroid; ties keep the file's order.
 fn back_to_front(scene: &Scene, faces: &[[u32; 2]], camera: &Camera) -> Vec<[u32; 2]> {
     let back = camera.axes()[2];
     let depth = |[object, face]: [u32; 2]| scene.face_corners(object, face).into_iter().sum::<DVec3>().dot(back);

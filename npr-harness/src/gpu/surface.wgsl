@@ -2,57 +2,57 @@
 
 struct SurfaceView {
     clip_from_world: mat4x4<f32>,
-    // xyz: from what the picture's corner shows towards the eye, and how that changes along x and y, per px. Of any
-    // length.
+    // xyz: the vector from the surface at the picture's corner towards the eye, of any length, and its change along x
+    // and y, per px.
     to_eye: vec4<f32>,
     to_eye_dx: vec4<f32>,
     to_eye_dy: vec4<f32>,
-    // A point with w = 1, or in a parallel view the direction to the eye with w = 0.
+    // The eye with w = 1, or, in a parallel view, the direction towards the eye with w = 0.
     eye: vec4<f32>,
-    // Of what is kept: positive where the product with (x px, y px, depth, 1) is.
+    // The clipping plane: a fragment is kept if the dot product with (x px, y px, depth, 1) is not negative.
     clip_px: vec4<f32>,
 }
 
 struct SurfaceMaterial {
-    // Plain surfaces: display-referred; textured ones: linear.
+    // Display-referred for plain surfaces, linear for textured ones.
     base_color: vec4<f32>,
-    // Texels of the texture's largest level, its number of levels - 1, and the least alpha that is kept.
+    // The size of the texture's largest level in texels, its number of levels - 1, and the alpha cutoff.
     texture_size: vec2<f32>,
     last_level: f32,
     cutoff: f32,
-    // Of the texture outside 0..1, for u and v: 0 repeated, 1 mirrored, 2 clamped.
+    // The wrap mode of the texture for u and v: 0 repeat, 1 mirror, 2 clamp.
     wrap: vec2<u32>,
     padding: vec2<u32>,
 }
 
-// What lines in the image need.
+// The uniform for lines in the image.
 struct SurfaceInk {
-    // Of the depth buffer's value, whatever the projection.
+    // Encodes the depth buffer's value, for any projection.
     code: InkDepthCode,
-    // Axes of view space in world space.
+    // The axes of view space, in world space.
     right: vec4<f32>,
     up: vec4<f32>,
     back: vec4<f32>,
-    // The largest number of a region; larger ones are folded.
+    // The largest region number; larger numbers are folded into the range.
     region_max: u32,
     padding0: u32,
     padding1: u32,
     padding2: u32,
 }
 
-// Whether a plane cuts the scene.
+// Whether a plane clips the scene.
 override surface_clipped: bool = false;
-// Whether normal, region and depth are packed into one word.
+// Whether the G-buffer is packed into 32 bits instead of 64.
 override surface_narrow: bool = false;
-// Where the material's inner lines come from: 0 its normals, 1 vertex colours, 2 its texture, 3 regions, 4 nowhere.
+// The source of the material's inner lines: 0 normals, 1 vertex colours, 2 texture, 3 regions, 4 none.
 override surface_line_kind: u32 = 0u;
-// Whether its texture's colours are its regions.
+// Whether the colours of the texture are region numbers.
 override surface_region_of_texture: bool = false;
-// Whether the material is its texture alone or the rest alone, whichever the rest's alpha says.
+// Whether the alpha of the material's colour selects either its texture or its colour; else they are multiplied.
 override surface_by_alpha: bool = false;
-// Whether texture coordinates and vertex colours are looked up, where one entry point does both.
+// Whether texture coordinates and vertex colours are read, in entry points that support both cases.
 override surface_looked_up: bool = false;
-// Whether the surface is blended over what is behind it.
+// Whether the surface is alpha-blended.
 override surface_blended: bool = false;
 
 @group(0) @binding(0) var<uniform> view: SurfaceView;
@@ -73,7 +73,7 @@ struct TexturedSurface {
     @location(2) color: vec4<f32>,
 }
 
-// With the region that lines in the image are drawn around.
+// With the region number for lines in the image.
 struct InkedSurface {
     @invariant @builtin(position) position: vec4<f32>,
     @location(0) normal: vec3<f32>,
@@ -88,8 +88,8 @@ struct InkedTexturedSurface {
     @location(3) @interpolate(flat) region: u32,
 }
 
-// With everything, and with what the light needs that is not the same for all of a face: a position, or vectors to the
-// light and the second vector, or light from the vertices.
+// With all attributes, and the varyings for lighting: a position, or the vector to the light and the second vector, or
+// the light at the vertices.
 struct LitSurface {
     @invariant @builtin(position) position: vec4<f32>,
     @location(0) normal: vec3<f32>,
@@ -100,8 +100,8 @@ struct LitSurface {
     @location(5) second: vec3<f32>,
 }
 
-// The same of plain surfaces without lines in the image, and where the vertices' light is all that is needed: on a
-// software rasteriser each number that is interpolated costs as much as some arithmetic at a pixel.
+// The reduced variants for plain surfaces without lines in the image, and for light computed at the vertices. On a
+// software rasteriser, each interpolated number is about as expensive as some arithmetic per pixel.
 struct PlainLitSurface {
     @invariant @builtin(position) position: vec4<f32>,
     @location(0) normal: vec3<f32>,
@@ -114,7 +114,7 @@ struct VertexLitSurface {
     @location(0) light: vec2<f32>,
 }
 
-// Colour, and normal, region and depth as one or two words.
+// Colour, and the packed normal, region and depth in one or two 32-bit words.
 struct Inked {
     @location(0) color: vec4<f32>,
     @location(1) texel: vec2<u32>,
@@ -124,7 +124,7 @@ struct Texel {
     @location(1) texel: vec2<u32>,
 }
 
-// What is written beside a surface's colour. Not left to a write mask: WebGL2 has one for all targets of a pass.
+// The alpha written with a surface's colour. A write mask cannot be used: WebGL2 has one for all targets of a pass.
 fn surface_alpha(alpha: f32) -> f32 {
     return select(1.0, alpha, surface_blended);
 }
@@ -133,15 +133,15 @@ fn to_eye(position_px: vec2<f32>) -> vec3<f32> {
     return view.to_eye.xyz + view.to_eye_dx.xyz * position_px.x + view.to_eye_dy.xyz * position_px.y;
 }
 
-// Where an object is placed.
+// The instance data of an object.
 struct Instance {
-    // The rows of the matrix from the mesh to the world.
+    // The rows of the matrix from mesh space to world space.
     @location(8) row_x: vec4<f32>,
     @location(9) row_y: vec4<f32>,
     @location(10) row_z: vec4<f32>,
-    // What is added to the regions of the mesh, and what these are multiplied by before.
+    // The offset added to the regions of the mesh, and the factor applied to them before.
     @location(11) regions: vec2<u32>,
-    // How much larger the mesh is placed, and log2 of that.
+    // The scale of the object's transform, and its log2.
     @location(12) scale: vec2<f32>,
 }
 
@@ -150,7 +150,7 @@ fn placed_position(position: vec3<f32>, instance: Instance) -> vec3<f32> {
     return vec3<f32>(dot(instance.row_x, point), dot(instance.row_y, point), dot(instance.row_z, point));
 }
 
-// Of the same length, by the inverse transpose.
+// Transforms a normal by the inverse transpose, preserving its length.
 fn placed_normal(normal: vec3<f32>, instance: Instance) -> vec3<f32> {
     let x = vec3<f32>(instance.row_x.x, instance.row_y.x, instance.row_z.x);
     let y = vec3<f32>(instance.row_x.y, instance.row_y.y, instance.row_z.y);
@@ -204,13 +204,13 @@ fn vs_textured_inked(
     return InkedTexturedSurface(clip, placed_normal(normal, instance), uv, color, placed_region(region, instance));
 }
 
-// What the light needs of a vertex.
+// The varyings of a vertex for lighting.
 fn lit_vertex(mesh_position: vec3<f32>, mesh_normal: vec3<f32>, instance: Instance) -> PlainLitSurface {
     let position = placed_position(mesh_position, instance);
     let normal = placed_normal(mesh_normal, instance);
     let n = toon_unit(normal);
     let eye = view.eye.xyz - position * view.eye.w;
-    // Brought to unit length at the pixel, all it takes is where that is.
+    // If normals are normalized at the pixel, the only further input is the position.
     var lit = PlainLitSurface(view.clip_from_world * vec4<f32>(position, 1.0), normal, position, n);
     if surface_normals == 1u {
         lit.normal = n;
@@ -252,7 +252,7 @@ fn encode_srgb(linear: vec3<f32>) -> vec3<f32> {
     return select(1.055 * pow(c, vec3<f32>(1.0 / 2.4)) - 0.055, c * 12.92, c <= vec3<f32>(0.0031308));
 }
 
-// The texture's linear colour and alpha. In uniform control flow.
+// The texture's linear colour and alpha. Requires uniform control flow.
 fn texture_color(uv: vec2<f32>) -> vec4<f32> {
     let along_x = dpdxFine(uv) * material.texture_size;
     let along_y = dpdyFine(uv) * material.texture_size;
@@ -261,7 +261,7 @@ fn texture_color(uv: vec2<f32>) -> vec4<f32> {
     return textureSampleLevel(base_texture, base_sampler, uv, level);
 }
 
-// Linear colour and alpha, without what says where lines are. In uniform control flow.
+// Linear colour and alpha, excluding a vertex colour or texture that encodes lines. Requires uniform control flow.
 fn base_color(texel: vec4<f32>, color: vec4<f32>) -> vec4<f32> {
     var base = material.base_color;
     if surface_line_kind != 1u {
@@ -276,13 +276,13 @@ fn base_color(texel: vec4<f32>, color: vec4<f32>) -> vec4<f32> {
     return base * texel;
 }
 
-// Per-pixel light from directions that are the same everywhere. In uniform control flow.
+// Per-pixel shading with light directions that are the same everywhere. Requires uniform control flow.
 fn painted(base: vec3<f32>, normal: vec3<f32>, position_px: vec2<f32>, at: ShadowAt) -> vec3<f32> {
     let n = toon_unit(normal);
     return shade_color(base, light_at(n, vec3<f32>(0.0), to_eye(position_px)), n, at);
 }
 
-// Cuts off what lies beyond the plane. After all derivatives.
+// Discards fragments beyond the clipping plane. Must come after all derivatives.
 fn clip_off(position: vec4<f32>) {
     if surface_clipped && dot(view.clip_px, vec4<f32>(position.xyz, 1.0)) < 0.0 {
         discard;
@@ -336,7 +336,7 @@ fn wrapped(texel: i32, size: i32, wrap: u32) -> i32 {
     return select(folded, 2 * size - 1 - folded, folded >= size);
 }
 
-// The region that the texel at a place stands for, not filtered.
+// The region encoded by the nearest texel.
 fn texture_region(uv: vec2<f32>) -> u32 {
     let size = vec2<i32>(textureDimensions(base_texture));
     let at = vec2<i32>(floor(uv * vec2<f32>(size)));
@@ -344,7 +344,7 @@ fn texture_region(uv: vec2<f32>) -> u32 {
     return ink_region_of_color(encode_srgb(textureLoad(base_texture, texel, 0).rgb));
 }
 
-// One of the directions that no visible surface has, world space.
+// The world-space direction for an index of `ink_artist_direction`, which no visible surface can have as its normal.
 fn artist_normal(index: u32, position_px: vec2<f32>) -> vec3<f32> {
     let away = -to_eye(position_px);
     let eye_to_point = vec3<f32>(dot(away, ink.right.xyz), dot(away, ink.up.xyz), dot(away, ink.back.xyz));
@@ -366,7 +366,7 @@ fn inked_normal(normal: vec3<f32>, texel: vec4<f32>, color: vec4<f32>, position_
     return artist_normal(index, position_px);
 }
 
-// The largest number of a region beside a state of shadow.
+// The largest region number that leaves room for the shadow state.
 fn shadowed_most() -> u32 {
     return select(INK_TEXEL64_SHADOWED_REGION_MAX, INK_TEXEL32_SHADOWED_REGION_MAX, surface_narrow);
 }
@@ -423,7 +423,7 @@ fn fs_painted_textured_inked(in: InkedTexturedSurface, @builtin(front_facing) fr
     return Inked(vec4<f32>(color, 1.0), textured_words(in, front, texel, at));
 }
 
-// What the light is at a pixel, wherever it is computed.
+// The lookup coordinates of the light at a pixel, computed at the vertices or at the pixel.
 fn light_of(in: PlainLitSurface, front: bool) -> vec2<f32> {
     if surface_normals == 2u {
         return select(light_of_back(in.first.xy), in.first.xy, front);
@@ -439,7 +439,7 @@ fn without_lookups(in: LitSurface) -> PlainLitSurface {
     return PlainLitSurface(in.position, in.normal, in.first, in.second);
 }
 
-// The own colour of a surface, and its alpha. In uniform control flow.
+// The unshaded colour of a surface, and its alpha. Requires uniform control flow.
 fn lit_base(in: LitSurface, texel: vec4<f32>) -> vec4<f32> {
     if surface_looked_up {
         let base = base_color(texel, in.color);

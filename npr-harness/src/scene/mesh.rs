@@ -1,4 +1,4 @@
-//! A mesh, ready for both executors, however often it is placed.
+//! A mesh prepared for both executors, shared by all objects that place it.
 
 use crate::derived::Derived;
 use crate::rays::RayCaster;
@@ -7,8 +7,8 @@ use npr_mesh::edges::{self, EdgeKind, EdgeOptions, Edges};
 use npr_mesh::{AlphaMode, Model};
 use std::sync::OnceLock;
 
-/// A model with everything that is derived from it once. Its positions are relative to an origin of its own and
-/// multiplied by a power of two where f32 could not hold their products otherwise.
+/// A model and the data derived from it. Its positions are relative to a local origin and scaled by a power of two
+/// where products of lengths would otherwise leave the range of f32.
 pub struct Mesh {
     model: Model,
     origin: DVec3,
@@ -31,7 +31,7 @@ impl Mesh {
         if origin != DVec3::ZERO || scale != 1.0 {
             for position in &mut model.positions {
                 let here = ((position.as_dvec3() - origin) * scale).as_vec3();
-                // What no face uses may lie anywhere, and is not seen.
+                // Vertices that no face uses may lie anywhere; they are never drawn.
                 *position = if here.is_finite() { here } else { Vec3::ZERO };
             }
         }
@@ -39,7 +39,7 @@ impl Mesh {
         Self { origin, scale, ..Self::with_edges(model, edges) }
     }
 
-    /// A model that needs no other origin or size, and its edges.
+    /// Builds a mesh from a model that needs no normalization, and its edges.
     pub(super) fn with_edges(model: Model, edges: Edges) -> Self {
         let closed = !edges.edges.is_empty()
             && edges.skipped.is_empty()
@@ -58,44 +58,45 @@ impl Mesh {
         }
     }
 
-    /// The triangles; a position of the file is a position here divided by [`Mesh::scale`], plus [`Mesh::origin`].
+    /// The triangles. A position in file units is the stored position divided by [`Mesh::scale`], plus
+    /// [`Mesh::origin`].
     pub fn model(&self) -> &Model {
         &self.model
     }
 
-    /// What was subtracted from the positions: 0, or the model's middle where that is far from 0, since f32 positions
-    /// keep their precision only near 0.
+    /// The offset that was subtracted from the positions, in file units: 0, or the centre of the model where that is
+    /// far from 0, since f32 positions are most precise near 0.
     pub fn origin(&self) -> DVec3 {
         self.origin
     }
 
-    /// What the positions were then multiplied by: 1, or a power of two where the half of the box's diagonal is not
-    /// within 2⁻²⁰..=2²⁰. Squares and products of lengths then stay within f32, on a device, too.
+    /// The factor that was then applied to the positions: 1, or a power of two where half the diagonal of the bounding
+    /// box is outside 2⁻²⁰..=2²⁰. Squares and products of lengths then stay within f32, on the GPU too.
     pub fn scale(&self) -> f64 {
         self.scale
     }
 
-    /// The edges for drawing: redundant faces are left out.
+    /// The edges to draw, without those of redundant faces.
     pub fn edges(&self) -> &Edges {
         &self.edges
     }
 
-    /// Whether every edge has two faces that are wound alike, so that no back of a face can be seen from outside.
+    /// Whether every edge has two consistently wound faces, so that no back face is visible from outside.
     pub fn is_closed(&self) -> bool {
         self.closed
     }
 
-    /// The box around all faces; `None` without faces.
+    /// The bounding box of all faces; `None` without faces.
     pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
         self.bounds
     }
 
-    /// The ray caster, built when it is first asked for.
+    /// The ray caster, built on first use.
     pub fn rays(&self) -> &RayCaster {
         self.rays.get_or_init(|| RayCaster::new(&self.model.positions, &self.model.faces))
     }
 
-    /// Per face which of its sides no other face has: bit i for the side from corner i to the next.
+    /// Per face: a bit mask of its boundary edges; bit i stands for the side from corner i to the next.
     pub fn boundary_sides(&self) -> &[u8] {
         self.boundary_sides.get_or_init(|| {
             let mut sides = vec![0; self.model.faces.len()];
@@ -112,7 +113,7 @@ impl Mesh {
         })
     }
 
-    /// The positions of all vertices that are corners of faces, each once.
+    /// The positions of all vertices used by faces, each once.
     pub fn corners(&self) -> impl Iterator<Item = Vec3> + Clone + '_ {
         let mut used = vec![false; self.model.positions.len()];
         for &vertex in self.model.faces.iter().flatten() {
@@ -126,27 +127,27 @@ impl Mesh {
         self.model.materials.iter().any(|m| m.alpha_mode == AlphaMode::Blend)
     }
 
-    /// What techniques derive from the mesh.
+    /// Data that the techniques derive from the mesh and cache.
     pub(crate) fn derived(&self) -> &Derived {
         &self.derived
     }
 }
 
-/// The edges of a model as they are drawn.
+/// Finds the edges of a model with the options used for drawing.
 pub(super) fn find_edges(model: &Model) -> Edges {
     let Model { positions, faces, face_polygon, face_material, .. } = model;
     edges::find(positions, faces, face_polygon, face_material, &EdgeOptions::default())
 }
 
-/// Beyond 2 to this, and below 2 to minus this, positions are brought to another size.
+/// Models whose half diagonal is outside 2^-OCTAVES..=2^OCTAVES are rescaled.
 const OCTAVES: i32 = 20;
 
-/// What is subtracted from positions within a box, and what they are then multiplied by, so that f32 holds them well: the
-/// box's middle if it is far from the origin, measured in the box's own size, and a power of two, which rounds nothing, if
-/// the box is very large or very small.
+/// The origin to subtract from positions within a box and the factor to apply to them, so that f32 represents them
+/// well. The origin is the centre of the box if that is far from 0 relative to the box's size. The factor is a power of
+/// two, which rounds nothing, and differs from 1 only if the box is very large or very small.
 ///
-/// Others stay where they are: a subtraction could round two positions to one. Far away it cannot, since there the
-/// difference of two f32 is exact.
+/// Boxes near 0 keep their origin, because the subtraction could round two positions to one. Far from 0 it cannot,
+/// since there the difference of two f32 is exact.
 pub(super) fn normalization(low: DVec3, high: DVec3) -> (DVec3, f64) {
     let (middle, diagonal) = (low.midpoint(high), (high - low).length());
     if !(middle.is_finite() && diagonal.is_finite()) {

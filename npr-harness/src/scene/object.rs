@@ -1,4 +1,4 @@
-//! A mesh, placed in a scene.
+//! A mesh placed in a scene.
 
 use super::mesh::Mesh;
 use crate::derived::Derived;
@@ -6,35 +6,36 @@ use glam::{DAffine3, DMat3, DVec3, DVec4, Vec3};
 use npr_outline::line_style::LineStyle;
 use std::sync::Arc;
 
-/// The lines along the edges of an object. Lines found in the image are the same for all objects.
+/// The lines along the edges of an object. Lines found in the image cannot be set per object.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum ObjectLines {
-    /// Those of the picture's style.
+    /// The edge lines of the picture's style.
     #[default]
     OfStyle,
-    /// None.
+    /// No edge lines.
     None,
-    /// In a line style of the object's own, where the picture's style draws lines along edges.
+    /// A line style for this object. It has no effect if the picture's style draws no edge lines.
     Own(LineStyle),
 }
 
-/// A mesh, placed in a scene.
+/// A mesh placed in a scene.
 #[derive(Clone)]
 pub struct Object {
-    /// The node's name in the file, or empty.
+    /// The name of the node in the file, or empty.
     pub name: String,
-    /// Its lines along edges.
+    /// The lines along its edges.
     pub lines: ObjectLines,
     pub(super) mesh: usize,
-    /// The number of its first material among the scene's, and whether all of its faces have that.
+    /// The index of its first material in the scene, and whether all of its faces use that material.
     pub(super) first_material: usize,
     pub(super) one_material: bool,
     placement: Placement,
-    /// What techniques derive of a mesh whose angles the transform changes; emptied when they change.
+    /// Data that techniques derive from the mesh if the transform does not preserve angles; cleared when the metric
+    /// changes.
     of_shape: Arc<Derived>,
 }
 
-/// A transform with what is derived of it.
+/// A transform and the data derived from it.
 #[derive(Clone, Copy, Debug)]
 struct Placement {
     scene_from_mesh: DAffine3,
@@ -42,8 +43,7 @@ struct Placement {
     is_identity: bool,
     is_mirrored: bool,
     scale: f64,
-    /// The product of the linear part's transpose with itself, divided by the square of the scale: the identity where
-    /// the transform keeps all angles.
+    /// AᵀA / scale² for the linear part A: the identity if the transform preserves angles.
     metric: DMat3,
     keeps_angles: bool,
 }
@@ -67,7 +67,7 @@ impl Placement {
     }
 }
 
-/// Whether metrics are the same but for the rounding of a file's f32 numbers.
+/// Whether two metrics are equal up to the rounding of the f32 numbers in a file.
 fn is_near(a: &DMat3, b: &DMat3) -> bool {
     a.abs_diff_eq(*b, 1e-5)
 }
@@ -101,8 +101,8 @@ impl Object {
         self.placement = placement;
     }
 
-    /// What techniques derive of the mesh in the object's shape, and the inverse transpose that its angles are measured
-    /// with: what all objects share whose transforms keep angles.
+    /// The data that techniques derive from the mesh as this object transforms it, and the matrix that transforms
+    /// normals for it. All objects with angle-preserving transforms share the data of the mesh.
     pub(crate) fn derived<'a>(&'a self, mesh: &'a Mesh) -> (&'a Derived, DMat3) {
         if self.placement.keeps_angles {
             (mesh.derived(), DMat3::IDENTITY)
@@ -111,38 +111,38 @@ impl Object {
         }
     }
 
-    /// The number of its first material among the scene's, and whether all of its faces have that one.
+    /// The index of its first material in the scene, and whether all of its faces use that material.
     pub(crate) fn first_material(&self) -> (usize, bool) {
         (self.first_material, self.one_material)
     }
 
-    /// The number of its mesh in the scene.
+    /// The index of its mesh in the scene.
     pub fn mesh(&self) -> usize {
         self.mesh
     }
 
-    /// From the positions of the mesh to those of the scene.
+    /// The transform from mesh space to scene space.
     pub fn scene_from_mesh(&self) -> &DAffine3 {
         &self.placement.scene_from_mesh
     }
 
-    /// Whether the transform mirrors. The front of a face stays its front then.
+    /// Whether the transform is a reflection. Front faces stay front faces.
     pub fn is_mirrored(&self) -> bool {
         self.placement.is_mirrored
     }
 
-    /// The cube root of what the transform multiplies volumes by.
+    /// The uniform scale of the transform: the cube root of its volume ratio.
     pub fn scale(&self) -> f64 {
         self.placement.scale
     }
 
-    /// A position of the mesh in the scene.
+    /// Transforms a position from mesh space to scene space.
     pub fn point(&self, position: Vec3) -> DVec3 {
         let position = position.as_dvec3();
         if self.placement.is_identity { position } else { self.placement.scene_from_mesh.transform_point3(position) }
     }
 
-    /// A normal of the mesh in the scene, of the same length, by the inverse transpose.
+    /// Transforms a normal from mesh space to scene space by the inverse transpose, preserving its length.
     pub fn normal(&self, normal: Vec3) -> DVec3 {
         let normal = normal.as_dvec3();
         if self.placement.is_identity {
@@ -158,7 +158,8 @@ impl Object {
         self.placement.mesh_from_scene.matrix3.transpose()
     }
 
-    /// A ray of the scene in the space of the mesh; distances along it are in the same units of its direction.
+    /// Transforms a ray from scene space to mesh space. The direction is not normalized, so t is the same in both
+    /// spaces.
     pub(crate) fn ray(&self, origin: DVec3, direction: DVec3) -> (DVec3, DVec3) {
         if self.placement.is_identity {
             return (origin, direction);
@@ -167,7 +168,7 @@ impl Object {
         (mesh_from_scene.transform_point3(origin), mesh_from_scene.transform_vector3(direction))
     }
 
-    /// A homogeneous point of the scene, such as an eye or a light, in the space of the mesh.
+    /// Transforms a homogeneous point, such as the eye or a light, from scene space to mesh space.
     pub(crate) fn homogeneous(&self, point: DVec4) -> DVec4 {
         if self.placement.is_identity {
             return point;
@@ -176,13 +177,13 @@ impl Object {
         (matrix3 * point.truncate() + translation * point.w).extend(point.w)
     }
 
-    /// The box in the scene around a box of the mesh: exact where axes map to axes.
+    /// The scene-space bounding box of a mesh-space box; tight if the transform maps axes to axes.
     pub(super) fn box_around(&self, (low, high): (Vec3, Vec3)) -> (DVec3, DVec3) {
         placed_box(&self.placement.scene_from_mesh, (low.as_dvec3(), high.as_dvec3()))
     }
 }
 
-/// The box around a placed box.
+/// The axis-aligned bounding box of a transformed box.
 pub(super) fn placed_box(transform: &DAffine3, (low, high): (DVec3, DVec3)) -> (DVec3, DVec3) {
     let DAffine3 { matrix3, translation } = *transform;
     let axes = [(matrix3.x_axis, low.x, high.x), (matrix3.y_axis, low.y, high.y), (matrix3.z_axis, low.z, high.z)];

@@ -1,7 +1,6 @@
 //! The part of a plan that is about shadows.
 
 use super::style::{ShadowMethod, ShadowStyle};
-use crate::capabilities::Capabilities;
 use crate::error::HarnessError;
 use crate::rays::Hit;
 use crate::scene::{Mesh, Scene};
@@ -77,21 +76,19 @@ pub fn casters(mesh: &Mesh) -> Arc<ShadowCasters> {
 }
 
 impl ShadowTechnique {
-    /// The light `light` is checked: a shadow map takes none from within.
+    /// The light `light` is checked: a shadow map takes none from within. `device`: how it makes volumes, and whether it
+    /// counts them against depths of 32-bit floats; `None` for the CPU.
     pub(crate) fn new(
         scene: &Scene,
         style: &ShadowStyle,
         light: DVec4,
-        capabilities: &Capabilities,
+        device: Option<(VolumeMethod, bool)>,
     ) -> Result<Self, HarnessError> {
         if let ShadowMethod::Map { side } = style.method {
             check_map_light(scene, light)?;
-            return Ok(if capabilities.is_adapter() { Self::Map { side } } else { Self::Rays });
+            return Ok(if device.is_some() { Self::Map { side } } else { Self::Rays });
         }
-        if !capabilities.is_adapter() {
-            return Ok(Self::Rays);
-        }
-        let (method, float_depth) = (capabilities.volumes(scene.objects().len()).0, capabilities.float_stencil);
+        let Some((method, float_depth)) = device else { return Ok(Self::Rays) };
         let casters = scene.meshes().iter().map(|mesh| casters(mesh)).collect();
         Ok(Self::Volumes { casters, method, float_depth })
     }

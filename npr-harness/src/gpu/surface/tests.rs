@@ -9,7 +9,7 @@ use std::mem::offset_of;
 
 #[test]
 fn the_uniforms_lie_as_the_shader_has_them() {
-    // Hatched, since that has all of them.
+    // The hatching shader contains all of the uniforms.
     let Shade::Hatch(shade) = style("hatch").expect("a style of this crate").shade else { panic!("it hatches") };
     let text = surface_wgsl(&Shade::Hatch(shade)).expect("good numbers");
     let module = naga::front::wgsl::parse_str(&text).expect("the shader parses");
