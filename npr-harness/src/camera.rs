@@ -1,22 +1,22 @@
-//! Where a picture is taken from.
+//! Cameras, their rays and their matrices.
 
 use glam::{DMat4, DVec2, DVec3, DVec4, Vec3};
 use npr_outline::fin_printed::{FinDepth, FinView};
 use npr_outline::segment::LineView;
 
-/// How depth turns into size.
+/// The projection of a camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Projection {
-    /// Farther is smaller.
+    /// Perspective projection.
     Perspective {
-        /// Angle between the upper and the lower border.
+        /// The vertical field of view.
         fov_y_rad: f64,
     },
-    /// Parallel.
+    /// Parallel projection.
     Orthographic {
-        /// Between the upper and the lower border, world units.
+        /// The height of the view volume, world units.
         height: f64,
-        /// Eye depth of the far plane, world units; the depth buffer's range ends there.
+        /// Eye depth of the far plane, world units, which ends the range of the depth buffer.
         far: f64,
     },
 }
@@ -26,9 +26,9 @@ pub enum Projection {
 pub struct Camera {
     /// World space.
     pub eye: DVec3,
-    /// World space; not the eye.
+    /// World space; must differ from the eye.
     pub target: DVec3,
-    /// Roughly upwards; not along the line of sight.
+    /// The approximate up direction; must not be parallel to the viewing direction.
     pub up: DVec3,
     /// Perspective or parallel.
     pub projection: Projection,
@@ -36,16 +36,16 @@ pub struct Camera {
     pub near: f64,
 }
 
-/// The direction from which a model is seen, and how large.
+/// The direction from which a model is viewed, and its size in the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Framing {
-    /// To the right around the model, from the side of +Z.
+    /// The angle around the model to the right, from +Z.
     pub yaw_rad: f64,
-    /// Upwards from the horizon, −π/2..=π/2.
+    /// The angle above the horizon, −π/2..=π/2.
     pub pitch_rad: f64,
-    /// 1 fits the whole model; 2 is twice as far away, or in a parallel view half the size.
+    /// 1 fits the whole model; 2 doubles the distance, or in a parallel view halves the size.
     pub distance: f64,
-    /// `Some` angle between the upper and lower border, or `None` for a parallel view.
+    /// The vertical field of view, or `None` for a parallel view.
     pub fov_y_rad: Option<f64>,
 }
 
@@ -60,11 +60,11 @@ impl Default for Framing {
     }
 }
 
-/// [`Camera::rays`].
+/// Generates rays through points of a picture; see [`Camera::rays`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PictureRays {
     eye: DVec3,
-    /// From the picture's middle to its right border, at eye depth 1 in perspective.
+    /// From the picture's centre to its right border, at eye depth 1 in perspective.
     right: DVec3,
     up: DVec3,
     forwards: DVec3,
@@ -73,7 +73,7 @@ pub struct PictureRays {
 }
 
 impl PictureRays {
-    /// [`Camera::ray`].
+    /// The ray through a point, as [`Camera::ray`].
     pub fn through(&self, point_px: DVec2) -> (DVec3, DVec3) {
         let ndc = DVec2::new(2.0 * point_px.x / self.size_px.x - 1.0, 1.0 - 2.0 * point_px.y / self.size_px.y);
         let aside = self.right * ndc.x + self.up * ndc.y;
@@ -81,21 +81,21 @@ impl PictureRays {
     }
 }
 
-/// What of the picture's width and height a fitted model takes up.
+/// The fraction of the picture's width or height that a fitted model occupies.
 const FILL: f64 = 0.9;
 
-/// Where the near plane of a framed view lies at most, as a share of the depth of the nearest point.
+/// The upper bound of a framed view's near plane, relative to the depth of the nearest point.
 const NEAR: f64 = 0.1;
 
 impl Camera {
-    /// Looks at all of `points` so that they just fit, with a margin.
+    /// Creates a camera that fits all `points` into the picture, with a margin.
     ///
     /// - `points`: at least one; world space.
     /// - `aspect`: width over height.
     pub fn framed(points: impl Iterator<Item = Vec3> + Clone, aspect: f64, framing: &Framing) -> Self {
         let (yaw, pitch) = (framing.yaw_rad, framing.pitch_rad);
         let back = DVec3::new(yaw.sin() * pitch.cos(), pitch.sin(), yaw.cos() * pitch.cos());
-        // Straight up and down, "up" on the picture is away from the viewer's feet.
+        // In a view straight up or down, the picture's up direction points away from the viewer's feet.
         let up = DVec3::new(-yaw.sin() * pitch.sin(), pitch.cos(), -yaw.cos() * pitch.sin());
         let right = up.cross(back);
         let in_view = |p: Vec3| {
@@ -106,7 +106,8 @@ impl Camera {
         let (low, high) = points.clone().map(in_view).fold(empty, |(l, h), p| (l.min(p), h.max(p)));
         let middle = (low + high) / 2.0;
         let size = match (high - low).max_element() {
-            // All at one place: any distance from it is as good, if the eye is not at the same place for rounding.
+            // All points coincide. Any distance works that is large enough to separate the eye from them despite
+            // rounding.
             0.0 => middle.length().max(1.0),
             size => size,
         };
@@ -120,8 +121,8 @@ impl Camera {
                     distance.max(p.z + (p.x.abs() / tan.x).max(p.y.abs() / tan.y))
                 });
                 let distance = fitting.max(size * 1e-3) * framing.distance;
-                // As far away as is safe: OpenGL's depths are multiples of 2⁻²⁴ of the near plane's, at any distance. By a
-                // power of two, so that other devices' depths are rounded the same.
+                // As far away as is safe, because OpenGL's depths are multiples of 2⁻²⁴ at any distance. The factor is
+                // a power of two, so that depths are rounded the same on other APIs.
                 let (least, nearest) = (distance * 1e-3, distance - (high.z - middle.z));
                 let octaves = (NEAR * nearest / least).max(1.0).log2().floor();
                 Self {
@@ -154,7 +155,7 @@ impl Camera {
         [right, back.cross(right), back]
     }
 
-    /// The eye as a homogeneous point: where it is with w = 1, or in a parallel view the direction to it with w = 0.
+    /// The eye as a homogeneous point: its position with w = 1, or in a parallel view the direction to it with w = 0.
     pub fn homogeneous_eye(&self) -> DVec4 {
         match self.projection {
             Projection::Perspective { .. } => self.eye.extend(1.0),
@@ -162,7 +163,7 @@ impl Camera {
         }
     }
 
-    /// Half the picture's width and height: at eye depth 1 in perspective, everywhere in a parallel view.
+    /// Half the width and height of the view: at eye depth 1 in perspective, at any depth in a parallel view.
     fn half_extent(&self, aspect: f64) -> DVec2 {
         let half_height = match self.projection {
             Projection::Perspective { fov_y_rad } => (fov_y_rad / 2.0).tan(),
@@ -171,7 +172,8 @@ impl Camera {
         DVec2::new(aspect, 1.0) * half_height
     }
 
-    /// To clip space with reversed depth: 1 at the near plane; in perspective 0 at infinity, else 0 at the far plane.
+    /// The matrix to clip space with reversed depth: 1 at the near plane; 0 at infinity in perspective, else at the far
+    /// plane.
     pub fn clip_from_world(&self, aspect: f64) -> DMat4 {
         let [right, up, back] = self.axes();
         let view_from_world = DMat4::from_cols(
@@ -198,7 +200,7 @@ impl Camera {
         clip_from_view * view_from_world
     }
 
-    /// The depth buffer's value at an eye depth; 0 for what is infinitely far.
+    /// The depth buffer's value at an eye depth; 0 at infinity.
     pub fn buffer_depth(&self, eye_depth: f64) -> f64 {
         match self.projection {
             Projection::Perspective { .. } => self.near / eye_depth,
@@ -206,8 +208,8 @@ impl Camera {
         }
     }
 
-    /// The ray through a point of the picture: origin, and a direction of which one unit is one unit of eye depth. For
-    /// many points of one picture take [`Self::rays`].
+    /// The ray through a point of the picture: its origin, and its direction, scaled so that t is eye depth. Use
+    /// [`Self::rays`] for many points of one picture.
     pub fn ray(&self, point_px: DVec2, size_px: DVec2) -> (DVec3, DVec3) {
         self.rays(size_px).through(point_px)
     }
@@ -220,16 +222,16 @@ impl Camera {
         PictureRays { eye: self.eye, right: right * half.x, up: up * half.y, forwards: -back, size_px, is_parallel }
     }
 
-    /// The eye depths between which rays may hit.
-    pub fn depth_range(&self) -> (f64, f64) {
+    /// The range of eye depth in which rays may hit.
+    pub(crate) fn depth_range(&self) -> (f64, f64) {
         match self.projection {
             Projection::Perspective { .. } => (self.near, f64::INFINITY),
             Projection::Orthographic { far, .. } => (self.near, far),
         }
     }
 
-    /// The part of a picture in which a box is seen, with so many px around it: left, top, width and height. All of the
-    /// picture if some of the box is nearer than the near plane.
+    /// The bounding rectangle of a box in the picture, enlarged by `around_px`: left, top, width and height. The whole
+    /// picture if a part of the box is nearer than the near plane.
     pub fn area(&self, (low, high): (Vec3, Vec3), (width, height): (u32, u32), around_px: u32) -> [u32; 4] {
         let size_px = DVec2::new(width.into(), height.into());
         let clip_from_world = self.clip_from_world(size_px.x / size_px.y);
@@ -250,8 +252,8 @@ impl Camera {
         [from.x, from.y, to.x - from.x, to.y - from.y]
     }
 
-    /// A plane of world space, positive where n · p + d is, for points of the picture: positive where the product with
-    /// (x px, y px, depth buffer's value, 1) is.
+    /// Transforms a world-space plane to picture space: the result is positive at (x px, y px, depth buffer's value, 1)
+    /// where n · p + d is positive.
     pub fn plane_px(&self, plane: DVec4, size_px: DVec2) -> DVec4 {
         let in_clip = self.clip_from_world(size_px.x / size_px.y).inverse().transpose() * plane;
         // Clip space over w from px: x' = 2 x / width - 1, y' = 1 - 2 y / height.
@@ -259,7 +261,7 @@ impl Camera {
         DVec4::new(along.x, along.y, in_clip.z, in_clip.w - in_clip.x + in_clip.y)
     }
 
-    /// What npr-outline needs to know.
+    /// The view parameters for npr-outline.
     pub fn line_view(&self, size_px: DVec2) -> LineView {
         let px = 2.0 * self.half_extent(size_px.x / size_px.y).y / size_px.y;
         let depth_per_px = match self.projection {
@@ -269,16 +271,17 @@ impl Camera {
         LineView { clip_from_world: self.clip_from_world(size_px.x / size_px.y), viewport_px: size_px, depth_per_px }
     }
 
-    /// What the printed fins need to know: `width_px` wide where the depth is w, and `bounds` is the model's box.
+    /// The view parameters for the printed fins: `width_px` wide where the depth is w. `bounds` is the model's bounding
+    /// box.
     ///
-    /// The printed depth has a far plane, which this camera has not: it is put 1 % behind the farthest corner of the
-    /// box, as one would have done to spare a depth buffer of 2002. In a parallel view, for which the listing has no
-    /// eye, the eye is put so far away that all lines of sight are parallel to within a millionth, and the depth is
-    /// w = 1: fins are `width_px` wide everywhere.
-    pub fn fin_view(&self, size_px: DVec2, width_px: f64, bounds: (Vec3, Vec3)) -> FinView {
+    /// The printed depth needs a far plane, which this camera does not have. It is placed 1 % behind the farthest
+    /// corner of the box, where it uses the precision of a depth buffer of 2002 best. In a parallel view, for which the
+    /// listing has no eye, the eye is placed so far away that all viewing directions are parallel to within a
+    /// millionth, and the depth is w = 1, so fins are `width_px` wide everywhere.
+    pub(crate) fn fin_view(&self, size_px: DVec2, width_px: f64, bounds: (Vec3, Vec3)) -> FinView {
         let aspect = size_px.x / size_px.y;
         let back = self.axes()[2];
-        // The corner of the box that lies farthest against the direction to the viewer.
+        // The corner of the box that is farthest from the viewer.
         let farthest = DVec3::select(back.cmpgt(DVec3::ZERO), bounds.0.as_dvec3(), bounds.1.as_dvec3());
         let far = (1.01 * (self.eye - farthest).dot(back)).max(2.0 * self.near);
         let (eye, depth) = match self.projection {

@@ -1,52 +1,52 @@
-//! What an executor can do, and which method each pass takes for it.
+//! The capabilities of an executor, and the method for each pass that follows from them.
 
 use crate::edge_lines::EdgeLineMethod;
 use crate::error::HarnessError;
 use crate::picture_limits::MEMORY_BYTES;
 use crate::shadow::VolumeMethod;
 
-/// With more objects lines are not found by a pass for each, nor kept for each what bounds its shadow volumes.
-pub const MANY_OBJECTS: usize = 64;
+/// Above this number of objects, methods with GPU passes or buffers per object are not used, neither for finding lines
+/// nor for shadow volumes.
+pub(crate) const MANY_OBJECTS: usize = 64;
 
 /// The kind of an executor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExecutorKind {
     /// Ray casting on the CPU.
     RayCaster,
-    /// A graphics adapter that is the processor itself.
+    /// A graphics adapter that runs on the CPU.
     SoftwareAdapter,
-    /// A graphics adapter of hardware.
+    /// A hardware graphics adapter.
     HardwareAdapter,
 }
 
-/// What an executor can do, as far as pictures depend on it. Plain data: taking something away is enough to make pictures
-/// without it.
+/// The capabilities of an executor that affect pictures. Plain data: clearing a field is enough to make pictures
+/// without that capability.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Capabilities {
-    /// The kind of the executor. The following fields are about adapters; a ray caster has no such limits.
+    /// The kind of the executor. The other fields apply to adapters; a ray caster has no such limits.
     pub kind: ExecutorKind,
-    /// Whether the adapter runs compute shaders, in groups of 64 invocations, over the four storage buffers that they need
-    /// here.
+    /// Whether the adapter supports compute shaders with workgroups of 64 invocations and the four storage buffers that
+    /// they use here.
     pub compute: bool,
-    /// The reason, if it does not, or if they are not used.
+    /// The reason if compute shaders are not supported or not used.
     pub no_compute: &'static str,
-    /// Whether vertex shaders read the three storage buffers that edges lie in.
+    /// Whether vertex shaders can read the three storage buffers that hold the edges.
     pub vertex_storage: bool,
-    /// Whether a draw call's arguments can lie in a buffer.
+    /// Whether indirect draws are supported.
     pub indirect_draws: bool,
-    /// Whether depths outside 0..=1 can be kept from being clipped, which shadow volumes need in parallel views.
+    /// Whether depth clipping can be disabled, which shadow volumes need in parallel views.
     pub unclipped_depth: bool,
-    /// Whether a depth buffer of 32-bit floats can have a stencil beside it. Otherwise shadow volumes are counted against
-    /// depths of 24 bits.
+    /// Whether a depth buffer of 32-bit floats can have a stencil. Otherwise shadow volumes use depths of 24 bits.
     pub float_stencil: bool,
-    /// Whether depths reach the depth buffer as they were computed. OpenGL brings them from 0..=1 to −1..=1 and back: they
-    /// are multiples of 2⁻²⁴ then, at any distance.
+    /// Whether depths are stored as computed. OpenGL maps them from 0..=1 to −1..=1 and back, which rounds them to
+    /// multiples of 2⁻²⁴ at any distance.
     pub exact_depth: bool,
     /// The longest side of a texture, px.
     pub texture_px: u32,
     /// The largest storage buffer, bytes.
     pub storage_bytes: u64,
-    /// How much memory a picture may take besides its scene, bytes.
+    /// The memory that a picture may use in addition to its scene, bytes.
     pub memory_bytes: u64,
 }
 
@@ -66,28 +66,29 @@ impl Capabilities {
         memory_bytes: MEMORY_BYTES,
     };
 
-    /// Whether an adapter executes, and not the CPU.
+    /// Whether the executor is an adapter, not the CPU ray caster.
     pub fn is_adapter(&self) -> bool {
         self.kind != ExecutorKind::RayCaster
     }
 
-    /// Whether the adapter is the processor itself.
+    /// Whether the adapter runs on the CPU.
     pub fn is_software(&self) -> bool {
         self.kind == ExecutorKind::SoftwareAdapter
     }
 
-    /// The same capabilities without compute shaders and the methods that need them, with the reason: all passes are
-    /// triangles then.
+    /// The same capabilities without compute shaders and the methods that need them, with the reason. All passes then
+    /// draw triangles.
     pub fn without_compute(self, no_compute: &'static str) -> Self {
         Self { compute: false, no_compute, vertex_storage: false, indirect_draws: false, ..self }
     }
 
-    /// Whether lines can be found on the device, whoever asks for that.
+    /// Whether the adapter supports finding lines on the GPU.
     pub fn can_find_lines(&self) -> bool {
         self.compute && self.vertex_storage && self.indirect_draws
     }
 
-    /// How lines along edges are found, and why so. On the device edges take [`ContourEdges::device_bytes`] in one buffer.
+    /// Selects how edge lines are found, with the reason. On the GPU the edges take [`ContourEdges::device_bytes`] in
+    /// one buffer.
     ///
     /// [`ContourEdges::device_bytes`]: npr_outline::ContourEdges::device_bytes
     pub fn edge_lines(&self, edge_bytes: u64, objects: usize) -> (EdgeLineMethod, String) {
@@ -104,7 +105,7 @@ impl Capabilities {
         }
     }
 
-    /// Who decides what bounds shadow volumes, and why so.
+    /// Selects the executor that decides what bounds shadow volumes, with the reason.
     pub fn volumes(&self, objects: usize) -> (VolumeMethod, &'static str) {
         if self.is_software() && objects <= MANY_OBJECTS {
             (VolumeMethod::OnCpu, "bounds found on the CPU: a software rasteriser is slow at many small instances")
@@ -113,8 +114,8 @@ impl Capabilities {
         }
     }
 
-    /// Whether tonal art maps of six tones are stored as half floats, else as bytes, and why so.
-    pub fn half_float_maps(&self) -> (bool, &'static str) {
+    /// Whether six-tone tonal art maps are stored as half floats, else as bytes, with the reason.
+    pub(crate) fn half_float_maps(&self) -> (bool, &'static str) {
         if self.is_software() {
             (true, "half floats: a software rasteriser filters bytes in 8 bits")
         } else {
@@ -122,7 +123,7 @@ impl Capabilities {
         }
     }
 
-    /// Whether a texture can be had.
+    /// Checks that the adapter supports a texture of this size.
     pub(crate) fn check_size(&self, what: &'static str, (width, height): (u32, u32)) -> Result<(), HarnessError> {
         let limit = self.texture_px;
         if self.is_adapter() && (width == 0 || height == 0 || width > limit || height > limit) {

@@ -9,7 +9,6 @@ mod reference;
 mod shadow;
 
 pub use reference::{PLACES, Reference, Shot};
-pub use shadow::{STATES_PX, STATES_SHARE};
 
 use crate::camera::{Camera, Framing};
 use crate::compare::{Comparison, ReportRow, Tolerance, compare, html_report, leave_behind};
@@ -37,31 +36,31 @@ use std::path::{Path, PathBuf};
 pub const SIZE: (u32, u32) = (640, 360);
 
 /// Outside the exempt pixels, of 255: what two roundings to bytes (lines blend twice) can add up to.
-pub const SHADING_MAGNITUDE: u8 = 2;
+pub(crate) const SHADING_MAGNITUDE: u8 = 2;
 /// The same where a texture is looked up: samplers interpolate with 8 bits of fraction.
-pub const TEXTURE_MAGNITUDE: u8 = 4;
+pub(crate) const TEXTURE_MAGNITUDE: u8 = 4;
 /// At most this share of the pixels may be exempt.
 pub const EXEMPT_SHARE: f64 = 0.03;
 /// Over the whole picture, exempt or not: at most [`GROSS_SHARE`] of the pixels may differ by more than this, of 255.
-pub const GROSS_MAGNITUDE: u8 = 16;
+pub(crate) const GROSS_MAGNITUDE: u8 = 16;
 /// See [`GROSS_MAGNITUDE`].
-pub const GROSS_SHARE: f64 = 0.005;
+pub(crate) const GROSS_SHARE: f64 = 0.005;
 /// Lines are compared within this distance, px.
 pub const WITHIN_PX: f64 = 1.5;
 /// The least precision and the least recall of lines.
-pub const LINE_ACCURACY: f64 = 0.98;
+pub(crate) const LINE_ACCURACY: f64 = 0.98;
 
 /// At most this share of (edge, view) pairs may be misclassified by the plane records.
-pub const PLANES_MISCLASSIFIED: f64 = 1e-6;
+pub(crate) const PLANES_MISCLASSIFIED: f64 = 1e-6;
 /// How many views around a model the formats are measured over.
-pub const FORMAT_VIEWS: usize = 32;
+pub(crate) const FORMAT_VIEWS: usize = 32;
 /// Formats are not measured on models with more edges, for the time it takes.
-pub const LARGEST_FORMAT_EDGES: usize = 200_000;
+pub(crate) const LARGEST_FORMAT_EDGES: usize = 200_000;
 /// How far the width of a line may be off, in widths.
-pub const WIDTH_ERROR: f64 = 0.10;
+pub(crate) const WIDTH_ERROR: f64 = 0.10;
 
 /// Three views around a model: yaw, pitch in degrees.
-pub const VIEWS: [(f64, f64); 3] = [(30.0, 20.0), (150.0, -10.0), (270.0, 50.0)];
+pub(crate) const VIEWS: [(f64, f64); 3] = [(30.0, 20.0), (150.0, -10.0), (270.0, 50.0)];
 
 /// A metric of a technique on a model.
 #[derive(Clone, Debug, PartialEq, Serialize)]

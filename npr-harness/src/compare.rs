@@ -46,7 +46,7 @@ impl Comparison {
     }
 
     /// Pixels, exempt or not, that differ by more than `magnitude`.
-    pub fn over_all(&self, magnitude: u8) -> u64 {
+    pub(crate) fn over_all(&self, magnitude: u8) -> u64 {
         self.histogram_all[usize::from(magnitude) + 1..].iter().sum()
     }
 
@@ -117,7 +117,7 @@ pub fn exempt_mask(reference: &Image, shifted: &[Image], magnitude: u8) -> Resul
 ///
 /// # Errors
 /// [`CompareError`] where the sizes or the mask's length do not fit.
-pub fn difference_image(expected: &Image, actual: &Image, exempt: &[bool]) -> Result<Image, CompareError> {
+pub(crate) fn difference_image(expected: &Image, actual: &Image, exempt: &[bool]) -> Result<Image, CompareError> {
     check(expected, actual, exempt)?;
     let amplified = |difference: u8| match difference {
         0 => 0,
@@ -167,7 +167,7 @@ fn differences<'a>(expected: &'a Image, actual: &'a Image) -> impl Iterator<Item
 ///
 /// # Errors
 /// [`HarnessError::Image`], which names the file, and [`HarnessError::Compare`].
-pub fn leave_behind(
+pub(crate) fn leave_behind(
     dir: &Path,
     name: &str,
     expected: &Image,
@@ -186,7 +186,7 @@ pub fn leave_behind(
 
 /// One comparison of a report.
 #[derive(Clone, Debug)]
-pub struct ReportRow {
+pub(crate) struct ReportRow {
     /// What was compared.
     pub name: String,
     /// Files of the expected, actual and difference images, as [`leave_behind`] returns them.
@@ -202,7 +202,7 @@ pub struct ReportRow {
 ///
 /// # Errors
 /// [`ImageError::Read`] for an image and [`ImageError::Write`] for the page.
-pub fn html_report(dir: &Path, rows: &[ReportRow]) -> Result<PathBuf, ImageError> {
+pub(crate) fn html_report(dir: &Path, rows: &[ReportRow]) -> Result<PathBuf, ImageError> {
     fs::create_dir_all(dir).map_err(|source| ImageError::Write { path: dir.to_owned(), source })?;
     let failed = rows.iter().filter(|row| !row.comparison.passes(&row.tolerances)).count();
     let mut page = format!(

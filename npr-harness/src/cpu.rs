@@ -52,7 +52,7 @@ pub fn render(scene: &Scene, plan: &Plan, options: &CpuOptions, progress: &(dyn 
 }
 
 /// As [`render`], with primary hits that may be cached. `hits` must be for the plan's camera.
-pub fn render_kept(
+pub(crate) fn render_kept(
     hits: &PrimaryHits<'_>,
     plan: &Plan,
     options: &CpuOptions,
@@ -250,7 +250,7 @@ impl FrameContext<'_> {
     }
 
     /// The sample point of a pixel.
-    pub fn sample_point(&self, x: f64, y: f64) -> DVec2 {
+    pub(crate) fn sample_point(&self, x: f64, y: f64) -> DVec2 {
         DVec2::new(x + 0.5, y + 0.5) + self.shift_px
     }
 

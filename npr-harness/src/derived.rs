@@ -3,8 +3,8 @@
 use std::any::Any;
 use std::sync::{Arc, Mutex};
 
-/// Values by the type and value of their key: a technique keeps here what it computes of a scene, so that planning a
-/// picture of a scene that did not change costs no more than looking it up.
+/// A cache indexed by the type and value of a key. A technique stores here what it derives from a scene, so that
+/// planning another picture of an unchanged scene only needs a lookup.
 #[derive(Default)]
 pub struct Derived {
     kept: Mutex<Vec<Entry>>,
@@ -13,12 +13,13 @@ pub struct Derived {
 /// A key and its value.
 type Entry = (Box<dyn Any + Send + Sync>, Arc<dyn Any + Send + Sync>);
 
-/// At most so many values of one type of key are kept: a key that changes from picture to picture, such as an angle that
-/// somebody turns, must not fill the memory.
+/// The maximum number of values kept per key type. A key that changes from picture to picture, such as an angle under
+/// interactive control, must not fill the memory.
 const MOST: usize = 4;
 
 impl Derived {
-    /// The value of a key, made if it is not there. The key's type must be used with one type of value only.
+    /// Returns the value of a key, computing it if it is missing. A key type must always be used with the same value
+    /// type.
     ///
     /// # Errors
     /// Those of `make`.
@@ -30,9 +31,9 @@ impl Derived {
         if let Some(found) = self.find(&key) {
             return Ok(found);
         }
-        // Without the lock: what is made may need something else from here.
+        // Computed without holding the lock, because `make` may read other values from this cache.
         let made = Arc::new(make()?);
-        // Another thread may have made it meanwhile.
+        // Another thread may have stored the value in the meantime.
         if let Some(found) = self.find(&key) {
             return Ok(found);
         }

@@ -455,7 +455,7 @@ pub enum HarnessError {
 
 impl HarnessError {
     /// Whether the fault lies with a device, and the CPU may make the picture.
-    pub fn is_of_the_device(&self) -> bool {
+    pub(crate) fn is_of_the_device(&self) -> bool {
         matches!(
             self,
             Self::NoAdapter { .. }
@@ -467,7 +467,7 @@ impl HarnessError {
     }
 
     /// Whether a device cannot make the picture for a limit that it has, without a fault.
-    pub fn is_device_limit(&self) -> bool {
+    pub(crate) fn is_device_limit(&self) -> bool {
         use npr_outline::OutlineError;
         match self {
             Self::TextureTooLarge { .. }

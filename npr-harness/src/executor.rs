@@ -1,4 +1,4 @@
-//! Which executor renders: a device, or ray casting on the CPU.
+//! Selection of the executor that renders: the GPU, or ray casting on the CPU.
 
 mod candidates;
 mod cost;
@@ -20,31 +20,31 @@ use std::fmt;
 #[cfg(feature = "gpu")]
 use crate::gpu::{self, GpuContext};
 
-/// Why compute shaders are not used that were promised.
+/// The reason given where compute shaders are not used although the driver reports support.
 #[cfg(feature = "gpu")]
 const REFUSED: &str = "the driver refused the compute shaders that it had promised";
 
-/// Which executor is asked for.
+/// The executor that is requested.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Backend {
-    /// A hardware adapter, else a software adapter or the CPU, whichever is expected to be sooner.
+    /// A hardware adapter; else a software adapter or the CPU, whichever is expected to be faster.
     #[default]
     Auto,
-    /// An adapter, hardware or software; an error where there is none, or where it cannot make the picture.
+    /// An adapter, hardware or software; an error if there is none, or if it cannot render the picture.
     Gpu,
     /// Ray casting on the CPU.
     Cpu,
 }
 
-/// Whether adapters are looked for: the environment variable `NPR_GPU`.
+/// Whether an adapter is used: the environment variable `NPR_GPU`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum GpuPolicy {
-    /// If there is one.
+    /// An adapter is used if there is one.
     #[default]
     Auto,
-    /// None is an error.
+    /// It is an error if there is no adapter.
     Required,
-    /// As if there were none.
+    /// Adapters are ignored.
     Off,
 }
 
@@ -64,16 +64,16 @@ impl GpuPolicy {
     }
 }
 
-/// Why the CPU renders where it was not asked for.
+/// The reason why the CPU renders although it was not requested.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum CpuReason {
     /// The only adapter is a software one, and slower.
     Sooner {
-        /// Which adapter.
+        /// The adapter.
         adapter: String,
     },
-    /// There is no adapter, or none is wanted, or it cannot make the picture.
+    /// There is no adapter, adapters are disabled, or the adapter cannot render the picture.
     Unable(String),
 }
 
@@ -86,38 +86,38 @@ impl fmt::Display for CpuReason {
     }
 }
 
-/// What renders pictures.
+/// An executor, which renders pictures.
 pub enum Executor {
-    /// A device.
+    /// A GPU device.
     #[cfg(feature = "gpu")]
     Gpu(Box<GpuContext>),
     /// Ray casting on the CPU.
     Cpu {
-        /// Why not a device, where one was looked for.
+        /// The reason for not using the GPU, if it was considered.
         why: Option<CpuReason>,
     },
 }
 
-/// What a picture is made of.
+/// The inputs of a picture.
 #[derive(Clone, Copy)]
 pub struct Picture<'a> {
     /// The scene.
     pub scene: &'a Scene,
     /// The style.
     pub style: &'a Style,
-    /// The camera, the size and the samples.
+    /// The camera, the size and the samples per pixel.
     pub view: View,
-    /// How much memory it may take besides the scene, bytes.
+    /// The memory that rendering may use in addition to the scene, bytes.
     pub memory_bytes: u64,
 }
 
 impl<'a> Picture<'a> {
-    /// A picture that may take [`MEMORY_BYTES`].
+    /// A picture with the memory limit [`MEMORY_BYTES`].
     pub fn new(scene: &'a Scene, style: &'a Style, view: View) -> Self {
         Self { scene, style, view, memory_bytes: MEMORY_BYTES }
     }
 
-    /// The plan of the picture for an executor that can do so much.
+    /// Plans the picture for an executor with these capabilities.
     ///
     /// # Errors
     /// Those of [`Plan::new`].
@@ -127,19 +127,19 @@ impl<'a> Picture<'a> {
     }
 }
 
-/// A picture, and how it was made.
+/// A rendered picture and how it was rendered.
 #[derive(Clone, Debug)]
 pub struct Rendered {
     /// The picture.
     pub image: Image,
     /// The plan that was executed.
     pub plan: Plan,
-    /// The reason for which the CPU made it, if a device could not.
+    /// The reason why the CPU rendered it, if the GPU could not.
     pub why_cpu: Option<CpuReason>,
 }
 
 impl Executor {
-    /// Selects an executor, a device wherever there is one: for measurements and comparisons.
+    /// Selects an executor for measurements and comparisons: the GPU whenever there is an adapter.
     ///
     /// # Errors
     /// If an adapter is required, by `backend` or by the environment, and there is none.
@@ -147,8 +147,8 @@ impl Executor {
         Ok(Candidates::find(backend)?.choose())
     }
 
-    /// Selects the executor for some pictures: where `backend` leaves it open, a software adapter only if it is expected to
-    /// be sooner than the CPU.
+    /// Selects the executor for some pictures. If `backend` does not decide, a software adapter is used only if it is
+    /// expected to be faster than the CPU.
     ///
     /// # Errors
     /// As [`Executor::choose`].
@@ -156,17 +156,17 @@ impl Executor {
         Ok(Candidates::find(backend)?.choose_for(work))
     }
 
-    /// The CPU, for a picture that a device could not make, and why: not where a device was asked for, by `backend` or by
-    /// the environment.
+    /// Falls back to the CPU for a picture that the GPU could not render because of `error`, unless `backend` or the
+    /// environment requires the GPU.
     ///
     /// # Errors
-    /// The error itself, else; [`HarnessError::Policy`].
+    /// `error` itself, if there is no fallback; [`HarnessError::Policy`].
     pub fn fallback(backend: Backend, error: HarnessError) -> Result<Self, HarnessError> {
         if backend != Backend::Auto || GpuPolicy::from_env()? != GpuPolicy::Auto {
             return Err(error);
         }
         match &error {
-            // A device takes more than the CPU does.
+            // The GPU executor needs more memory than the CPU.
             HarnessError::PictureMemory { .. } => Ok(Self::Cpu { why: Some(CpuReason::Unable(error.to_string())) }),
             fault if fault.is_of_the_device() => Ok(Self::Cpu { why: Some(CpuReason::Unable(fault.to_string())) }),
             _ => Err(error),
@@ -178,7 +178,7 @@ impl Executor {
         matches!(self, Self::Cpu { .. })
     }
 
-    /// One line: what renders, and why not something else.
+    /// One line: the executor, and the reason for not using another.
     pub fn describe(&self) -> String {
         match self {
             #[cfg(feature = "gpu")]
@@ -197,8 +197,8 @@ impl Executor {
         }
     }
 
-    /// Executes a plan that was made for its capabilities; without compute shaders where the driver refuses those that it
-    /// promised.
+    /// Executes a plan that was made for its capabilities. If the driver rejects compute shaders although it reports
+    /// support, the plan is executed without them.
     ///
     /// # Errors
     /// [`HarnessError`].
@@ -207,7 +207,7 @@ impl Executor {
             #[cfg(feature = "gpu")]
             Self::Gpu(context) => match gpu::render(context, scene, plan) {
                 Err(HarnessError::Device { .. } | HarnessError::Outline(_)) if plan.computes() => {
-                    // What else it reported is of the same attempt.
+                    // Clears further errors of the same attempt.
                     let _ = context.wait();
                     let image = gpu::render(context, scene, &plan.without_compute(REFUSED))?;
                     context.note_refusal();
@@ -227,8 +227,8 @@ impl Executor {
         self.execute(picture.scene, &picture.plan(self.capabilities())?, progress)
     }
 
-    /// Plans and renders a picture, on the CPU where the device cannot and `backend` and the environment leave that open.
-    /// After a device was lost, or had no memory left, the CPU renders further pictures too.
+    /// Plans and renders a picture, on the CPU if the GPU cannot and `backend` and the environment allow it. After a
+    /// device was lost or ran out of memory, the CPU renders further pictures too.
     ///
     /// # Errors
     /// [`HarnessError`].
@@ -247,7 +247,7 @@ impl Executor {
             Ok(rendered) => {
                 #[cfg(feature = "gpu")]
                 if rendered.plan.computes() && !self.capabilities().compute {
-                    // The driver refused just now.
+                    // The driver has just rejected compute shaders.
                     return Ok(Rendered { plan: rendered.plan.without_compute(REFUSED), ..rendered });
                 }
                 return Ok(rendered);

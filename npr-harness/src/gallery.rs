@@ -3,7 +3,7 @@
 mod figure_10;
 mod painted;
 
-pub use figure_10::{figure_10, figure_10_styles};
+pub(crate) use figure_10::{figure_10, figure_10_styles};
 pub use painted::{painted_camera, painted_scene};
 
 use crate::camera::{Camera, Projection};

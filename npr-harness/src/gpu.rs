@@ -292,7 +292,7 @@ impl<'a> GpuRenderer<'a> {
     ///
     /// # Errors
     /// [`HarnessError::Device`].
-    pub fn found_lines(&self, uploaded: &GpuScene) -> Result<Option<Vec<[u32; 2]>>, HarnessError> {
+    pub(crate) fn found_lines(&self, uploaded: &GpuScene) -> Result<Option<Vec<[u32; 2]>>, HarnessError> {
         let Some(edges) = &uploaded.edges else { return Ok(None) };
         let mut found = Vec::new();
         for (object, edges) in (0u32..).zip(edges) {

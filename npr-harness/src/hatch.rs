@@ -1,4 +1,4 @@
-//! Hatching: strokes of a tonal art map, as dense as a surface is dark.
+//! Hatching with strokes from a tonal art map, denser where a surface is darker.
 
 pub(crate) mod cpu;
 #[cfg(feature = "gpu")]

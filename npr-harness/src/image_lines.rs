@@ -1,4 +1,4 @@
-//! Lines that are found in the image: of normals, regions and depths beside its colours.
+//! Image-space lines: edge detection in normals, regions and depths that are rendered with the picture.
 
 pub(crate) mod cpu;
 #[cfg(feature = "gpu")]

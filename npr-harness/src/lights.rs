@@ -1,15 +1,15 @@
-//! A style's lights, placed in a scene.
+//! The lights of a style, and their positions in a scene.
 
 use crate::camera::Camera;
 use crate::scene::{FARTHEST, Scene};
 use glam::{DVec4, Vec3};
 use npr_toon::source::{Light, LightKind, aggregate};
 
-/// What a light's direction or position is measured in.
+/// The coordinate frame of a light's direction or position.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum LightFrame {
-    /// The viewer's axes, x to the right, y up and z towards the eye. Positions are counted from the middle of the model's
-    /// box in halves of its diagonal, so that a light suits any model, seen from any side.
+    /// The viewer's axes: x to the right, y up and z towards the eye. Positions are relative to the centre of the
+    /// model's bounding box, in units of half its diagonal, so a light works for any model and view.
     #[default]
     View,
     /// The model's own axes and units.
@@ -19,14 +19,14 @@ pub enum LightFrame {
 /// A light of a style.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StyleLight {
-    /// Where it is, its colour and its brightness.
+    /// Its direction or position, its colour and its brightness.
     pub light: Light,
-    /// What its place is measured in.
+    /// The frame of its direction or position.
     pub frame: LightFrame,
 }
 
 impl StyleLight {
-    /// White, over the viewer's left shoulder, so that any model is well lit from any side.
+    /// A white light over the viewer's left shoulder, which lights any model from any view.
     pub const KEY: Self = Self {
         light: Light {
             place: LightKind::Directional { to_light: Vec3::new(-0.5, 0.7, 0.6) },
@@ -43,8 +43,8 @@ impl Default for StyleLight {
     }
 }
 
-/// A style's lights in the space of the scene's positions. More than `most` are replaced by the one that stands for them
-/// ([`aggregate`], at the middle of the model's box). Directions are unit vectors, but zero where two lights cancel out.
+/// The lights of a style in scene space. More than `most` are replaced by one that approximates them ([`aggregate`] at
+/// the centre of the model's bounding box). Directions are unit vectors, or zero where two lights cancel out.
 pub fn lights_in_world(lights: &[StyleLight], most: usize, scene: &Scene, camera: &Camera) -> Vec<Light> {
     let lights: Vec<Light> = lights.iter().map(|light| in_world(light, scene, camera)).collect();
     if lights.len() <= most {
@@ -58,8 +58,8 @@ pub fn lights_in_world(lights: &[StyleLight], most: usize, scene: &Scene, camera
     }]
 }
 
-/// The light that casts shadows, the first: a point with w = 1, or the unit direction to it with w = 0, in the space of
-/// the scene's positions.
+/// The light that casts shadows, which is the first: a point with w = 1, or the unit direction to it with w = 0, in
+/// scene space.
 pub fn casting_light(lights: &[StyleLight], scene: &Scene, camera: &Camera) -> DVec4 {
     lights.first().map_or(DVec4::ZERO, |light| match in_world(light, scene, camera).place {
         LightKind::Directional { to_light } => to_light.as_dvec3().normalize_or_zero().extend(0.0),
@@ -82,7 +82,8 @@ fn in_world(StyleLight { light, frame }: &StyleLight, scene: &Scene, camera: &Ca
                 LightFrame::View => scene.middle() + turned(position) * scene.radius(),
                 LightFrame::World => scene.place_here(position.as_dvec3()),
             };
-            // A light that is farther away shines as from there, and its position is an f32 on a device.
+            // The clamp keeps the position representable as f32 on the GPU; farther away it makes no visible
+            // difference.
             LightKind::Positional { position: position.clamp_length_max(FARTHEST).as_vec3() }
         }
     };

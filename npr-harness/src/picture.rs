@@ -1,4 +1,4 @@
-//! Pictures in memory, and their files.
+//! Pictures in memory and in files.
 
 mod format;
 
@@ -9,9 +9,9 @@ use npr_hatch::files::{read_file, write_file};
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
-/// Of a file.
+/// The largest file that is read, bytes.
 const MOST_BYTES: u64 = 1 << 30;
-/// Of a file's picture.
+/// The largest picture that is read, px.
 const MOST_PIXELS: u64 = 1 << 26;
 
 /// A picture in memory.
@@ -21,7 +21,7 @@ pub struct Image {
     pub width: u32,
     /// Pixels.
     pub height: u32,
-    /// `width * height * 4` bytes: rows from the top; red, green, blue and alpha, not premultiplied.
+    /// `width * height * 4` bytes in rows from the top: red, green, blue and alpha, not premultiplied.
     pub rgba8: Vec<u8>,
 }
 
@@ -29,14 +29,14 @@ pub struct Image {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ImageError {
-    /// Not four bytes a pixel.
+    /// The number of bytes is not four per pixel.
     #[error("{bytes} bytes are no {width}×{height} image of four bytes a pixel")]
     Length {
         /// Pixels.
         width: u32,
         /// Pixels.
         height: u32,
-        /// How many there were.
+        /// The number of bytes.
         bytes: usize,
     },
     /// The file could not be read.
@@ -55,7 +55,7 @@ pub enum ImageError {
         /// What the decoder said.
         source: image::ImageError,
     },
-    /// The file has more pixels than are read.
+    /// The file has more pixels than the limit.
     #[error("{}: {width} × {height} px: at most {limit} pixels are read", path.display())]
     TooLarge {
         /// The file.
@@ -67,15 +67,15 @@ pub enum ImageError {
         /// Pixels.
         limit: u64,
     },
-    /// No bytes of a format could be made of it.
+    /// The picture could not be encoded.
     #[error("a {format} picture could not be made: {source}")]
     Format {
-        /// Of the picture.
+        /// The format.
         format: PictureFormat,
         /// What the encoder said.
         source: image::ImageError,
     },
-    /// No PNG could be made of it.
+    /// The picture could not be encoded as PNG.
     #[error("{}: {source}", path.display())]
     Encode {
         /// The file that was to be written.
@@ -123,7 +123,7 @@ pub enum CompareError {
         width: u32,
         /// Pixels.
         height: u32,
-        /// How many there were.
+        /// The number of bytes.
         bytes: usize,
     },
 }
@@ -139,7 +139,7 @@ impl Image {
         }
     }
 
-    /// The same colour everywhere.
+    /// Creates an image of one colour.
     ///
     /// # Panics
     /// If the image does not fit the address space.
@@ -199,7 +199,7 @@ impl Image {
         write_whole(path, &bytes)
     }
 
-    /// The bytes of a file of a format.
+    /// Encodes the picture in a format.
     ///
     /// # Errors
     /// [`ImageError::Length`], [`ImageError::Format`].
@@ -211,7 +211,7 @@ impl Image {
     }
 }
 
-/// `None` where it leaves the address space.
+/// `None` if the size exceeds the address space.
 pub(crate) fn byte_count(width: u32, height: u32) -> Option<usize> {
     (width as usize).checked_mul(height as usize)?.checked_mul(4)
 }

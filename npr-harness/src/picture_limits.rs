@@ -1,35 +1,35 @@
-//! How large a picture may be: said before anything is allocated.
+//! Limits on the size of a picture, checked before anything is allocated.
 
 use crate::error::HarnessError;
 use crate::image_lines::InkScale;
 use crate::shadow::ShadowMethod;
 use crate::style::Style;
 
-/// Px along a side.
+/// The largest side of a picture, px.
 pub const LARGEST_SIDE: u32 = 65_536;
-/// What a picture may take if nothing else is said, bytes.
+/// The default limit on a picture's memory, bytes.
 pub const MEMORY_BYTES: u64 = 2 << 30;
-/// Samples per pixel along each axis.
+/// The maximum number of samples per pixel along each axis.
 pub const MOST_SAMPLES: u32 = 64;
 
-/// On the CPU per sample: colour 32, depth 8, a line's coverage or a texel 8.
+/// CPU, per sample: colour 32, depth 8, line coverage or texel 8.
 const SAMPLE_BYTES: u64 = 48;
-/// On the CPU per pixel: the mean of several samples.
+/// CPU, per pixel: the resolved frame.
 const MEAN_BYTES: u64 = 40;
-/// On the CPU per pixel: the picture, its copy while it grows, its file.
+/// CPU, per pixel: the picture, its copy while it grows, its file.
 const FILE_BYTES: u64 = 12;
-/// On a device per sample: two colours, depth, the lines' coverage, 12 of strokes, what is read back, the picture, its file.
+/// GPU, per sample: two colours, depth, line coverage, 12 for strokes, the readback buffer, the picture, its file.
 const DEVICE_BYTES: u64 = 48;
-/// Per pixel of ink found in the image: texels 8, depth 4, ink and brush.
+/// Per pixel of ink in image-space lines: texels 8, depth 4, ink and dilation.
 const INK_BYTES: u64 = 20;
 
-/// On a device per pixel of the picture, and of the ink where that has another size: depth, the stencil of shadows, and
-/// the mask that is made of it.
+/// GPU, per pixel of the picture, and of the ink if it has another size: depth, the stencil for shadows, and the shadow
+/// mask.
 const STENCIL_BYTES: u64 = 9;
 
-/// About how many bytes of memory a picture takes while it is made, besides the scene: as a rule a little less.
-/// A software adapter's memory is the machine's, too.
-pub fn picture_bytes(style: &Style, (width, height): (u32, u32), samples: u32, on_device: bool) -> u64 {
+/// An estimate of the memory that rendering a picture takes besides the scene, bytes; usually slightly too high. A
+/// software adapter uses main memory too.
+pub(crate) fn picture_bytes(style: &Style, (width, height): (u32, u32), samples: u32, on_device: bool) -> u64 {
     let pixels = u64::from(width) * u64::from(height);
     let ink = match style.lines.image.map(|ink| ink.scale) {
         Some(InkScale::Half) => INK_BYTES / 4,
@@ -46,7 +46,7 @@ pub fn picture_bytes(style: &Style, (width, height): (u32, u32), samples: u32, o
     let samples = u64::from(samples.max(1));
     let per_pixel = if on_device {
         let sampled = (DEVICE_BYTES + stencil).saturating_mul(samples).saturating_mul(samples);
-        // Several are averaged into targets of the picture's own size, and the ink has surfaces of its own.
+        // Several samples are resolved into targets of the picture's size, and the ink has its own geometry pass.
         let own = if samples > 1 { DEVICE_BYTES + STENCIL_BYTES } else { 0 };
         sampled.saturating_add(own + ink)
     } else {
@@ -57,7 +57,7 @@ pub fn picture_bytes(style: &Style, (width, height): (u32, u32), samples: u32, o
     pixels.saturating_mul(per_pixel).saturating_add(map)
 }
 
-/// Whether a picture can be asked for.
+/// Checks that a picture is within the limits.
 ///
 /// # Errors
 /// [`HarnessError::Size`], [`HarnessError::PictureMemory`].

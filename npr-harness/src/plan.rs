@@ -226,7 +226,7 @@ impl Plan {
 
     /// The same plan for an adapter whose driver rejects compute shaders although it reported support for them.
     #[cfg(feature = "gpu")]
-    pub(crate) fn without_compute(&self, no_compute: &'static str) -> Self {
+    pub fn without_compute(&self, no_compute: &'static str) -> Self {
         let mut plan = self.clone();
         if let Some(edge_lines) = &mut plan.edge_lines {
             edge_lines.method = EdgeLineMethod::OnCpu;

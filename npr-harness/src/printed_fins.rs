@@ -1,4 +1,4 @@
-//! Outlines as Card & Mitchell 2002 printed them (listing 1): a fin for every edge, to be compared with.
+//! Outlines as printed in Card & Mitchell 2002 (listing 1): a fin for every edge, for comparison.
 
 pub(crate) mod cpu;
 pub mod plan;

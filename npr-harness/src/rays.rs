@@ -1,4 +1,4 @@
-//! Rays against triangles, in f64: what every other picture of a scene is measured against.
+//! Ray casting against triangles in f64, the reference for all other renderings of a scene.
 //!
 //! A bounding volume hierarchy in f32 (built in `hierarchy.rs` and, where large faces pass through one another, in
 //! `cells.rs`; walked by obvhs) only proposes triangles, from boxes that are padded by more than its rounding. Whether a
@@ -25,7 +25,8 @@ use std::collections::HashMap;
 use std::ops::ControlFlow;
 use triangle::{DUPLICATES, Duplicate, PADDING, Triangle};
 
-/// Finds the faces that a ray hits. Several threads can share it: what rays add to the hierarchy changes no answer.
+/// Finds the faces that a ray hits. Threads can share it: the parts of the hierarchy that rays build on demand do not
+/// change the results.
 ///
 /// Distances are exact to a few units in the last place of f64 times the distance of the ray's origin, up to
 /// origins 10⁹ scene sizes away; farther off a face at a silhouette can be missed.
@@ -33,45 +34,45 @@ pub struct RayCaster {
     tree: Tree,
     /// The hierarchy works on (position − centre) / half_size, which is within −1..1.
     whole: Whole,
-    /// Faces that lie on one another and are wound alike, by number: one triangle stands for them.
+    /// Groups of duplicate faces with the same winding; each group is represented by one triangle.
     alike: Vec<Vec<Duplicate>>,
 }
 
-/// What a visited hit leads to.
+/// The visitor's response to a hit.
 struct Seen {
-    /// The largest t that still matters.
+    /// The upper end of the t range for further hits.
     t_max: f64,
-    /// Whether further faces with the same corners do not.
+    /// Whether further faces with the same corners can be skipped.
     enough: bool,
 }
 
-/// Where a ray meets a face.
+/// An intersection of a ray and a face.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// How far along, in units of the ray's direction.
+    /// The distance in units of the ray's direction.
     pub t: f64,
-    /// Of which object; a [`RayCaster`] knows of one only, 0.
+    /// The index of the object; always 0 in a [`RayCaster`], which has one object.
     pub object: u32,
-    /// Which face.
+    /// The index of the face.
     pub face: u32,
-    /// The weight of each of the face's corners, 0..=1; together 1 but for rounding.
+    /// The barycentric weights of the corners, 0..=1; they sum to 1 up to rounding.
     pub barycentric: [f64; 3],
     /// Whether the corners run counter-clockwise as seen from the ray's origin.
     pub front: bool,
 }
 
-/// The scene in the hierarchy's units lies within √3 of the origin; the rest is for rounding.
+/// The scene in the hierarchy's units lies within √3 of the origin; the margin covers rounding.
 const REACH: f64 = 1.75;
 
 impl RayCaster {
     /// Builds the hierarchy.
     ///
-    /// - `positions`: any unit and size within f32.
-    /// - `faces`: three vertices each. Faces of zero area and faces with a corner that is not finite are left out:
+    /// - `positions`: in any unit, within the range of f32.
+    /// - `faces`: three vertices each. Faces of zero area and faces with a corner that is not finite are ignored:
     ///   no ray hits them.
     ///
     /// # Panics
-    /// If a face names a vertex that is not there, or there are 2³¹ faces.
+    /// If a face refers to a vertex that does not exist, or there are 2³¹ faces.
     pub fn new(positions: &[Vec3], faces: &[[u32; 3]]) -> Self {
         assert!(faces.len() <= DUPLICATES as usize, "more faces than numbers");
         let mut found = Boxes::new(positions, faces);
@@ -90,11 +91,12 @@ impl RayCaster {
         Self { tree, whole, alike }
     }
 
-    /// The nearest hit with t in `t_range` (both ends included) that `accept` takes; of several at equal t the one
-    /// on the lowest-numbered face. `None` too where the origin or direction is not finite or the direction zero.
+    /// The nearest hit with t in `t_range` (both ends included) that `accept` accepts; among hits at equal t, the one
+    /// on the face with the lowest index. `None` also if the origin or direction is not finite or the direction is
+    /// zero.
     ///
-    /// `direction` has any length; t is in its units. `accept` sees hits in no particular order, some more than
-    /// once and not all of them, so its answer must depend on the hit only.
+    /// `direction` has any length; t is in its units. `accept` is called with hits in no particular order, with some
+    /// more than once and not with all of them, so its answer must depend only on the hit.
     pub fn closest(
         &self,
         origin: DVec3,
@@ -109,14 +111,14 @@ impl RayCaster {
             if accepted {
                 nearest = Some(hit);
             }
-            // Of faces with the same corners those that follow have higher numbers.
+            // Faces with the same corners follow in ascending order.
             let enough = accepted || !nearer;
             ControlFlow::Continue(Seen { t_max: nearest.map_or(t_range.1, |n| n.t), enough })
         });
         nearest
     }
 
-    /// Every hit with t in `t_range` (both ends included) that `accept` takes, by ascending t, then by face.
+    /// All hits with t in `t_range` (both ends included) that `accept` accepts, sorted by t, then by face.
     pub fn all(
         &self,
         origin: DVec3,
@@ -136,7 +138,7 @@ impl RayCaster {
         hits
     }
 
-    /// Whether there is a hit with t in `t_range` (both ends included) that `accept` takes.
+    /// Whether there is a hit with t in `t_range` (both ends included) that `accept` accepts.
     pub fn any(
         &self,
         origin: DVec3,
@@ -152,8 +154,8 @@ impl RayCaster {
         found
     }
 
-    /// Shows `visitor` the hits within `t_range`, those of faces with the same corners by ascending number. A face in
-    /// several cells may be shown several times, with the same hit.
+    /// Calls `visitor` with the hits within `t_range`, those of duplicate faces in ascending order. A face in several
+    /// cells may be passed several times, with the same hit.
     fn visit(
         &self,
         origin: DVec3,
@@ -164,11 +166,11 @@ impl RayCaster {
         if !(origin.is_finite() && direction.is_finite()) || direction == DVec3::ZERO {
             return;
         }
-        // The squares of very long and very short directions leave the range of f64.
+        // Divided by the largest component first, because the squares of extreme components leave the range of f64.
         let largest = direction.abs().max_element();
         let length = (direction / largest).length();
         let unit = direction / largest / length;
-        // The ray in the hierarchy's units, started near the scene: f32 has no precision to spend on the way there.
+        // The ray in the hierarchy's units. Its start is moved close to the scene to keep the precision of f32.
         let start = (origin - self.whole.center) / self.whole.half_size;
         let per_t = largest / self.whole.half_size * length;
         let middle = -start.dot(unit);
@@ -188,24 +190,25 @@ impl RayCaster {
     }
 }
 
-/// A ray on its way through the hierarchy.
+/// The state of a traversal.
 struct Walk<'a, V> {
     caster: &'a RayCaster,
     frame: Frame,
     t_min: f64,
-    /// The largest t that still matters.
+    /// The upper end of the t range for further hits.
     t_max: f64,
-    /// The hierarchy's units in one of t, and where in them the ray enters the scene's surroundings and leaves them.
+    /// The hierarchy's units per unit of t. `enter` and `exit` are where the ray enters and leaves the scene's
+    /// surroundings.
     per_t: f64,
     enter: f64,
     exit: f64,
     visitor: V,
-    /// The visitor wants no more.
+    /// Whether the visitor has ended the traversal.
     stopped: bool,
 }
 
 impl<V: FnMut(Hit) -> ControlFlow<(), Seen>> Walk<'_, V> {
-    /// Where the ray in the hierarchy's units ends.
+    /// The end of the ray in the hierarchy's units.
     fn leave(&self) -> f32 {
         ((self.t_max * self.per_t).min(self.exit) - self.enter) as f32 + PADDING as f32
     }
@@ -227,7 +230,7 @@ impl<V: FnMut(Hit) -> ControlFlow<(), Seen>> Walk<'_, V> {
         });
     }
 
-    /// The nearer half first.
+    /// Visits the nearer half first.
     #[cold]
     fn through_cell(&mut self, cell: &Cell, mut ray: Ray) {
         let halves = cell.halves(&self.caster.whole);
@@ -278,8 +281,8 @@ impl<V: FnMut(Hit) -> ControlFlow<(), Seen>> Walk<'_, V> {
     }
 }
 
-/// The ray as the z axis: axes permuted so that its largest component is the third, without changing the handedness,
-/// then sheared.
+/// The transformation that makes the ray the z axis: a permutation of axes that makes its largest component the third
+/// and preserves handedness, then a shear.
 struct Frame {
     origin: DVec3,
     axes: [usize; 3],
@@ -300,7 +303,7 @@ impl Frame {
         Self { origin, axes: [x, y, z], shear_x: direction[x] / along, shear_y: direction[y] / along, along }
     }
 
-    /// A corner relative to the ray: how far beside it, and its depth along the ray's largest component.
+    /// The position of a corner relative to the ray: its 2D offset, and its depth along the ray's largest component.
     #[inline(always)]
     fn place(&self, corner: Vec3) -> [f64; 3] {
         let p = (corner.as_dvec3() - self.origin).to_array();
@@ -317,7 +320,7 @@ impl Frame {
         if (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {
             return None;
         }
-        // Seldom reached: here every weight is made good to two units in its last place.
+        // Rarely reached: recomputes every weight to within two units in its last place.
         let (u, v, w) = (precise_cross(b, c), precise_cross(c, a), precise_cross(a, b));
         let sum = u + v + w;
         if sum == 0.0 {

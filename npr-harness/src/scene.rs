@@ -439,12 +439,12 @@ impl Scene {
     }
 
     /// The textures with their mip levels.
-    pub fn mip_mapped(&self) -> &[MipMapped] {
+    pub(crate) fn mip_mapped(&self) -> &[MipMapped] {
         self.mip_mapped.get_or_init(|| self.textures.iter().map(MipMapped::new).collect())
     }
 
     /// Whether any face is blended over what is behind it.
-    pub fn has_blend(&self) -> bool {
+    pub(crate) fn has_blend(&self) -> bool {
         self.meshes.iter().any(|mesh| mesh.has_blend())
     }
 

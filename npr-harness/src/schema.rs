@@ -1,4 +1,4 @@
-//! What the tables of a style's file have in common: colours, file names, faults.
+//! Types that the tables of a style file share: colours, file names, errors.
 
 use crate::error::HarnessError;
 use crate::picture::Image;
@@ -78,7 +78,7 @@ pub(crate) fn yes() -> bool {
     true
 }
 
-/// The file that a table stands in.
+/// The file that contains a table.
 pub(crate) struct StyleFile<'a> {
     pub(crate) path: &'a Path,
 }
@@ -88,15 +88,15 @@ impl StyleFile<'_> {
         HarnessError::StyleTable { path: self.path.to_owned(), what: what.into() }
     }
 
-    /// Names the file in an error of what it says.
+    /// Adds the name of the file to an error about its content.
     pub(crate) fn rule(&self, source: HarnessError) -> HarnessError {
         HarnessError::StyleRule { path: self.path.to_owned(), source: Box::new(source) }
     }
 
-    /// Where a file is that the style names: relative to the style's own.
+    /// Resolves a path in a style relative to the style's file.
     pub(crate) fn beside(&self, file: &Path) -> PathBuf {
         let path = self.path.parent().unwrap_or(Path::new("")).join(file);
-        // Absolute, so that it is found from anywhere once it is written again.
+        // Absolute, so that a copy of the style written elsewhere still finds it.
         std::path::absolute(&path).unwrap_or(path)
     }
 
@@ -105,7 +105,7 @@ impl StyleFile<'_> {
     }
 }
 
-/// Whether a number of a style is in its range.
+/// Checks that a number of a style is within its range.
 pub(crate) fn within(
     what: &'static str,
     value: f32,
@@ -120,7 +120,7 @@ pub(crate) fn within(
     }
 }
 
-/// Whether all components of a colour are in 0..=1.
+/// Checks that all components of a colour are within 0..=1.
 pub(crate) fn within_colors(what: &'static str, components: &[f32]) -> Result<(), HarnessError> {
     components.iter().try_for_each(|&component| within(what, component, 0.0, 1.0, "0..=1"))
 }

@@ -1,9 +1,9 @@
-//! How surfaces are painted by light: one file for each shade, with its table in a style's file, its function on the CPU,
-//! and its shader and uniform on a device.
+//! Shades: how surfaces are painted depending on light. There is one file for each shade, with its table in a style
+//! file, its CPU function, and its shader and uniform for the GPU.
 //!
-//! A shade is looked up with two numbers. The first is the *diffuse term*, N·L times the light's brightness. The second
-//! is the shade's own: N·H for a highlight, the diffuse term of a second light, R·E for Gooch's highlight. Adding a shade
-//! takes its file here, a variant of [`Shade`], and a line in each of the lists below.
+//! A shade has two lookup coordinates. The first is the *diffuse term*, N·L times the light's brightness. The second
+//! depends on the shade: N·H for a highlight, the diffuse term of a second light, R·E for Gooch's highlight. Adding a
+//! shade takes a file here, a variant of [`Shade`], and a line in each of the lists below.
 
 pub mod gooch;
 pub mod lambert;
@@ -36,17 +36,17 @@ use x_toon::XToon;
 pub enum Shade {
     /// Surfaces are not painted; only lines are drawn.
     Paper,
-    /// Ambient and diffuse light without bands: the plain renderer that others are timed against.
+    /// Ambient and diffuse light without bands: the baseline for performance comparisons.
     Lambert(Lambert),
     /// Bands of light.
     Toon(Bands),
-    /// Any colours by light, from a 1D ramp.
+    /// Colours from a 1D ramp.
     Ramp(RampShade),
-    /// Two lights, each an axis of a 2D ramp.
+    /// Two lights, each mapped to an axis of a 2D ramp.
     Painter(PainterShade),
     /// Bands that fade with depth or near the silhouette.
     XToon(XToon),
-    /// From cool to warm.
+    /// Gooch shading, from cool to warm.
     Gooch(Gooch),
     /// Strokes of a tonal art map.
     Hatch(HatchShade),
@@ -54,7 +54,7 @@ pub enum Shade {
     Normals,
 }
 
-/// The table `[shade]` of a style's file.
+/// The table `[shade]` of a style file.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) enum ShadeTable {
@@ -100,7 +100,7 @@ impl ShadeTable {
 }
 
 impl Shade {
-    /// What light makes of a surface's own colour. Paper and hatching take only the diffuse term from it.
+    /// The shading model. Paper and hatching use only its diffuse term.
     pub(crate) fn model(&self) -> &dyn ShadeModel {
         match self {
             Self::Paper | Self::Hatch(_) => &unlit::Unlit,

@@ -1,17 +1,17 @@
-//! Shadows that a style's first light casts: what a style says of them, and what a scene then needs.
+//! Shadows that the first light of a style casts: their settings in a style and their part of a plan.
 //!
-//! A point of a surface is *turned* away from the light, where its face is; *lit*; or in a *cast* shadow, turned towards the
-//! light with something between. Only between the last two is there a border: [`npr_imagespace::shadow`]. For lines what
-//! is nearly turned away counts as such: N·L of the shading normal is not above the style's terminator. So no line is
-//! drawn where a surface turns away from the light by itself, nor around the shadows that the small faces of a coarse
-//! model cast on each other there.
+//! A surface point is in one of three states. It is *back-facing* if its face is turned away from the light; else it is
+//! *lit*, or in a *cast* shadow if something lies between it and the light. Only the border between the last two is a
+//! shadow border: [`npr_imagespace::shadow`]. For lines, points that are nearly back-facing count as back-facing: those
+//! where N·L of the shading normal is not above the style's terminator. So no line is drawn where a surface turns away
+//! from the light, nor around the shadows that small faces of a coarse model cast on each other there.
 //!
-//! In a cast shadow, where N·L is above 0, a surface is lit as if its normal were negated, which is what Card & Mitchell 2002 do to it for lines:
-//! N·L becomes −|N·L|, and no highlight is seen. Bands get their darkest tone, Gooch's tones turn cool, strokes are as
-//! dense as where no light falls, and at the terminator nothing jumps.
+//! In a cast shadow, where N·L is above 0, a surface is lit as if its normal were negated, which is what Card &
+//! Mitchell 2002 do for lines: N·L becomes −|N·L|, and there is no highlight. Bands get their darkest tone, Gooch's
+//! tones become cool, and strokes are as dense as where no light falls. Shading is continuous at the terminator.
 //!
-//! What casts: every face that is not blended, whichever way it is wound, and whether or not a plane cuts it off for the
-//! viewer. What is cut out by alpha casts the shadow of its whole faces. On blended surfaces no shadow falls.
+//! All unblended faces cast shadows, regardless of their winding and of the clipping plane. Alpha-tested faces cast the
+//! shadow of the whole face. Blended surfaces receive no shadows.
 
 pub(crate) mod cpu;
 #[cfg(feature = "gpu")]

@@ -21,35 +21,36 @@ use npr_toon::painter::Painter;
 /// A style.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Style {
-    /// What `--style` calls it.
+    /// The name that `--style` accepts.
     pub name: String,
-    /// One line.
+    /// A description of one line.
     pub about: String,
-    /// Display-referred colour of what no surface covers.
+    /// The display-referred background colour.
     pub paper: Vec3,
     /// How surfaces are painted.
     pub shade: Shade,
     /// How the three normals of a triangle are used.
     pub normals: NormalUse,
-    /// One or two. A shade that knows one light takes the two together, see [`crate::lights::lights_in_world`]. A light's
-    /// brightness multiplies its N·L, and its colour the surface's; Gooch shading ignores both.
+    /// One or two lights. A shade that supports one replaces two by an approximation, see
+    /// [`crate::lights::lights_in_world`]. A light's brightness multiplies its N·L, and its colour the surface's
+    /// colour; Gooch shading ignores both.
     pub lights: Vec<StyleLight>,
     /// Whether the first light casts shadows, and how.
     pub shadow: Option<ShadowStyle>,
     /// Which lines are drawn.
     pub lines: Lines,
-    /// Edges whose faces meet at more than this angle are lines.
+    /// Edges at which the surface turns by more than this angle are creases.
     pub crease_angle_rad: f32,
 }
 
-/// The lines of a style: any kinds, drawn over each other in the order in which they stand here.
+/// The lines of a style. Any kinds can be combined; they are drawn over each other in this order.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Lines {
-    /// Fins as Card & Mitchell printed them, to be compared with.
+    /// Fins as printed in Card & Mitchell 2002, for comparison.
     pub printed: Option<PrintedLines>,
-    /// Lines along edges: screen-aligned, antialiased, hidden where their centreline is.
+    /// Edge lines: screen-aligned, antialiased, hidden where their centreline is hidden.
     pub edges: Option<LineStyle>,
-    /// Lines found in the image.
+    /// Image-space lines.
     pub image: Option<ImageInk>,
 }
 
@@ -57,24 +58,25 @@ impl Lines {
     /// No lines.
     pub const NONE: Self = Self { printed: None, edges: None, image: None };
 
-    /// Lines along edges alone.
+    /// Only edge lines.
     pub fn edges(style: LineStyle) -> Self {
         Self { edges: Some(style), ..Self::NONE }
     }
 
-    /// Lines found in the image alone.
+    /// Only image-space lines.
     pub fn image(ink: ImageInk) -> Self {
         Self { image: Some(ink), ..Self::NONE }
     }
 
-    /// Printed fins alone.
+    /// Only printed fins.
     pub fn printed(style: PrintedLines) -> Self {
         Self { printed: Some(style), ..Self::NONE }
     }
 }
 
 impl Style {
-    /// Whether all numbers are in their ranges. What lines need of a scene is checked by [`crate::plan::Plan::new`].
+    /// Checks that all numbers are within their ranges. [`crate::plan::Plan::new`] checks what lines require of a
+    /// scene.
     ///
     /// # Errors
     /// The first broken rule: [`HarnessError::Toon`], [`HarnessError::Gooch`], [`HarnessError::Hatch`],
@@ -86,7 +88,7 @@ impl Style {
         if self.lights.is_empty() {
             return Err(HarnessError::NoLight);
         }
-        // The most that any shade knows.
+        // The shade that supports the most lights.
         Painter::new(self.lights.iter().map(|light| light.light).collect())?;
         let Lines { printed, edges, image } = &self.lines;
         printed.as_ref().map_or(Ok(()), PrintedLines::validate)?;

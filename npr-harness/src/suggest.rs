@@ -1,10 +1,10 @@
-//! What was probably meant by a name that is not known.
+//! Suggestions for misspelt names.
 
-/// No known name is so long, and the work grows with the product of the lengths.
+/// Longer names get no suggestion: no known name is so long, and the work grows with the product of the lengths.
 const LONGEST: usize = 64;
 
-/// The first of the known names to which a name has the least distance: at most one edit (a character more, less or
-/// another, or two neighbours exchanged) for three characters of the name, upper and lower case being the same.
+/// The known name with the least edit distance to a name, the first among equals. At most one edit (insertion,
+/// deletion, substitution, or transposition of neighbours) per three characters is allowed; case is ignored.
 ///
 /// ```
 /// use npr_harness::suggest::nearest;

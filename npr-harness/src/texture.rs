@@ -1,7 +1,7 @@
-//! Textures with their mip levels, and the lookup that both executors share.
+//! Mip-mapped textures, and their sampling, which both executors define alike.
 //!
-//! Filtering and mip levels are in linear light. The level is chosen by our own formula, not the hardware's, whose
-//! precision is its own affair: log2 of the longer of the two footprint axes in texels.
+//! Filtering and mip levels are in linear light. The mip level is computed explicitly, because the precision of the
+//! hardware's formula is not specified: log2 of the longer of the two footprint axes in texels.
 
 use crate::color::{decode_srgb, encode_srgb, to_byte};
 use glam::{DVec2, DVec4};
@@ -10,7 +10,7 @@ use std::sync::LazyLock;
 
 static DECODED: LazyLock<[f64; 256]> = LazyLock::new(|| std::array::from_fn(|byte| decode_srgb(byte as f64 / 255.0)));
 
-/// One image and its halvings.
+/// An image and its mip levels.
 #[derive(Clone, Debug)]
 pub struct MipMapped {
     /// From the largest to 1×1: width, height, and rows of sRGB-encoded RGB with linear alpha.
@@ -21,10 +21,10 @@ pub struct MipMapped {
 
 impl MipMapped {
     /// Halves the image until one texel is left. Each texel of a level is the mean, in linear light, of those that it
-    /// covers; of an odd size the last row or column is shared out by area.
+    /// covers. At odd sizes, texels that two texels share contribute by area.
     pub fn new(texture: &Texture) -> Self {
         let mut levels = vec![(texture.width, texture.height, texture.rgba8.to_vec())];
-        // The largest level is decoded where it is read: in f64 it would take eight times its bytes.
+        // The largest level is decoded on access, because it would take eight times as many bytes in f64.
         let decoded = |at: usize| {
             let texel = &texture.rgba8[4 * at..4 * at + 4];
             let d = |i: usize| DECODED[usize::from(texel[i])];
@@ -46,14 +46,14 @@ impl MipMapped {
         Self { levels, wrap: texture.wrap, smooth: texture.smooth }
     }
 
-    /// The level for a footprint: how uv changes along x and along y, per px.
+    /// The mip level for a footprint, given by the derivatives of uv along x and y, per px.
     pub fn level(&self, uv_dx: DVec2, uv_dy: DVec2) -> f64 {
         let size = DVec2::new(f64::from(self.levels[0].0), f64::from(self.levels[0].1));
         let longest = (uv_dx * size).length_squared().max((uv_dy * size).length_squared());
         (0.5 * longest.max(1e-30).log2()).clamp(0.0, (self.levels.len() - 1) as f64)
     }
 
-    /// Linear RGBA at a place and level, interpolated within and between levels.
+    /// Linear RGBA at texture coordinates and a level, interpolated within and between levels.
     pub fn sample(&self, uv: DVec2, level: f64) -> DVec4 {
         if level <= 0.0 {
             return if self.smooth { self.bilinear(0, uv) } else { self.nearest(uv) };
@@ -69,8 +69,8 @@ impl MipMapped {
         self.texel(0, (uv.x * f64::from(*width)).floor(), (uv.y * f64::from(*height)).floor())
     }
 
-    /// The colour of the largest level's texel at a place, as it stands in the file.
-    pub fn nearest_bytes(&self, uv: DVec2) -> [u8; 3] {
+    /// The sRGB bytes of the nearest texel of the largest level.
+    pub(crate) fn nearest_bytes(&self, uv: DVec2) -> [u8; 3] {
         let (width, height, texels) = &self.levels[0];
         let (x, y) = ((uv.x * f64::from(*width)).floor(), (uv.y * f64::from(*height)).floor());
         let (x, y) = (wrapped(x, *width, self.wrap[0]), wrapped(y, *height, self.wrap[1]));
@@ -96,7 +96,7 @@ impl MipMapped {
     }
 }
 
-/// The next level of one of this size.
+/// Computes the next level of one of this size.
 fn halved(width: u32, height: u32, texel: impl Fn(usize) -> DVec4) -> Vec<DVec4> {
     let (next_width, next_height) = ((width / 2).max(1), (height / 2).max(1));
     let (columns, rows) = (covered(width, next_width), covered(height, next_height));
@@ -115,7 +115,7 @@ fn halved(width: u32, height: u32, texel: impl Fn(usize) -> DVec4) -> Vec<DVec4>
     next
 }
 
-/// For each texel of a level the texels of the larger one that it covers, with their shares.
+/// For each texel of a level: the texels of the larger level that it covers, with their weights.
 fn covered(larger: u32, smaller: u32) -> Vec<Vec<(u32, f64)>> {
     let scale = f64::from(larger) / f64::from(smaller);
     (0..smaller)
@@ -133,7 +133,7 @@ fn covered(larger: u32, smaller: u32) -> Vec<Vec<(u32, f64)>> {
 
 fn wrapped(texel: f64, size: u32, wrap: Wrap) -> u32 {
     let size_f = f64::from(size);
-    // A coordinate that is no number looks up the first texel.
+    // A coordinate that is not finite reads the first texel.
     let texel = if texel.is_finite() { texel } else { 0.0 };
     let index = match wrap {
         Wrap::Repeat => texel.rem_euclid(size_f),

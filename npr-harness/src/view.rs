@@ -1,22 +1,22 @@
-//! Where a picture is taken from, and how finely.
+//! The view of a picture: camera, size and samples.
 
 use crate::camera::{Camera, Projection};
 use glam::DVec2;
 
-/// A camera, the size of the picture, and the samples of its pixels.
+/// The camera, the size of the picture, and the samples per pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
-    /// Where the picture is taken from.
+    /// The camera.
     pub camera: Camera,
     /// Width and height of the picture, px.
     pub size: (u32, u32),
-    /// Samples per pixel along each axis, at least 1. The picture is drawn that many times as large, with lines as much
-    /// wider, and averaged; lines found in the image are found at the picture's own size.
+    /// Samples per pixel along each axis, at least 1. The picture is rendered that many times as large, with lines
+    /// wider by the same factor, and averaged. Image-space lines are found at the picture's own size.
     pub samples: u32,
 }
 
 impl View {
-    /// One sample a pixel.
+    /// A view with one sample per pixel.
     pub fn new(camera: Camera, size: (u32, u32)) -> Self {
         Self { camera, size, samples: 1 }
     }

@@ -186,6 +186,35 @@ fn lines_of_an_object_are_its_own() {
 }
 
 #[test]
+fn borders_between_materials_have_lines_where_a_style_gives_them_a_width() {
+    let mut model = embedded::cube();
+    model.materials.push(Material::default());
+    // The triangles of a side have one material.
+    let top: Vec<usize> = (0..model.faces.len())
+        .filter(|&face| model.faces[face].iter().all(|&v| model.positions[v as usize].y > 0.5))
+        .collect();
+    model.fill_face_material();
+    for face in top {
+        model.face_material[face] = 1;
+    }
+    let scene = Scene::new(model);
+    let camera = framed(&scene, Some(0.6));
+    // No angle is a crease.
+    let style = |material_border_px| Style {
+        crease_angle_rad: 3.0,
+        lines: npr_harness::style::Lines::edges(LineStyle {
+            width_px: npr_outline::line_style::widths_px(1.0, 1.0, 1.0, material_border_px),
+            ink: [0.0, 0.0, 0.0, 1.0],
+        }),
+        ..named("lines")
+    };
+    let (without, none) = planned(&scene, &style(0.0), &camera, SIZE).lines(&scene);
+    let (with, counts) = planned(&scene, &style(2.0), &camera, SIZE).lines(&scene);
+    // Of the four sides of the top two are silhouettes.
+    assert_eq!((none[3], counts[3], with.len()), (0, 2, without.len() + 2));
+}
+
+#[test]
 fn a_material_of_an_objects_own() {
     let mut scene = scene();
     let camera = framed(&scene, Some(0.6));

@@ -37,11 +37,11 @@ use npr_outline::LineKind;
 
 /// Silhouettes and boundaries behind which the next surface is nearer than this share of the model's size, the
 /// diagonal of its box, are not asked of a filter.
-pub const LEAST_STEP: f64 = 0.01;
+pub(crate) const LEAST_STEP: f64 = 0.01;
 
 /// The least F1 of the default filter, by the name of the model's file: 0.95 on the models of docs/accuracy.md, elsewhere
 /// what was recorded, rounded down.
-pub const LEAST_F1: [(&str, f64); 11] = [
+pub(crate) const LEAST_F1: [(&str, f64); 11] = [
     ("stanford-bunny.obj", 0.95),
     ("fandisk.obj", 0.95),
     ("rocker-arm.obj", 0.95),

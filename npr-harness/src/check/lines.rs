@@ -19,9 +19,9 @@ use npr_outline::line_style::LineStyle;
 use npr_outline::normal_format::{NormalFormat, misclassified_share, misclassified_share_of_planes};
 
 /// Units: how far away the segments lie whose width is measured.
-pub const WIDTH_DISTANCES: [f64; 7] = [0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0];
+pub(crate) const WIDTH_DISTANCES: [f64; 7] = [0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0];
 /// Px: the widths that are asked for.
-pub const WIDTHS_PX: [f32; 4] = [1.0, 2.0, 4.0, 8.0];
+pub(crate) const WIDTHS_PX: [f32; 4] = [1.0, 2.0, 4.0, 8.0];
 /// How much the segments rise over half of their length, in half lengths: level, nearly level, and steep.
 const RISES: [f64; 3] = [0.0, 0.07, 0.6];
 

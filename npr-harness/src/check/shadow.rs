@@ -6,9 +6,11 @@ use crate::error::HarnessError;
 use crate::style::style;
 
 /// At most this share of the pixels may be in another state of shadow than rays find.
-pub const STATES_SHARE: f64 = 1e-3;
+#[cfg(feature = "gpu")]
+const STATES_SHARE: f64 = 1e-3;
 /// No such pixel may be farther from an edge of a shadow, px.
-pub const STATES_PX: f64 = 2.0;
+#[cfg(feature = "gpu")]
+const STATES_PX: f64 = 2.0;
 
 impl Checker<'_> {
     /// The pictures of the styles with shadows.

@@ -22,7 +22,9 @@ pub struct CpuOptions {
 /// A picture in f64, before it is rounded to bytes, and its depth buffer.
 #[derive(Clone, Debug)]
 pub struct CpuFrame {
+    /// The width of the picture, px.
     pub width: u32,
+    /// The height of the picture, px.
     pub height: u32,
     /// Per pixel, in rows from the top: display-referred RGBA, 0..=1.
     pub color: Vec<DVec4>,

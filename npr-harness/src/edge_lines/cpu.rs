@@ -1,4 +1,4 @@
-//! Lines on the CPU: the same segments, coverage and visibility as on the device, in f64.
+//! Edge lines on the CPU: the same segments, coverage and visibility as on the GPU, in f64.
 
 use super::plan::EdgeLinePlan;
 use crate::cpu::frame::CpuFrame;
@@ -9,8 +9,8 @@ use npr_outline::contour::ContourEdges;
 use npr_outline::line_style::LineStyle;
 use npr_outline::segment::{ScreenSegment, outline_coverage, outline_is_visible, outline_project};
 
-/// Draws lines over `frame`, which has all samples of the view. `shift_px`: where its surfaces were sampled relative to the
-/// samples' centres, in px of the frame.
+/// Draws lines over `frame`, which has all samples of the view. `shift_px` is the offset of its surface samples from
+/// the sample centres, in px of the frame.
 pub(crate) fn draw_lines(plan: &EdgeLinePlan, scene: &Scene, view: &View, shift_px: DVec2, frame: &mut CpuFrame) {
     for (style, objects) in plan.groups(scene) {
         let mut coverage = vec![0.0f64; frame.color.len()];
@@ -30,7 +30,7 @@ pub(crate) fn draw_lines(plan: &EdgeLinePlan, scene: &Scene, view: &View, shift_
     }
 }
 
-/// The edges of an object, and how their lines look.
+/// The edges of an object, and the style of its lines.
 struct ObjectEdges<'a> {
     object: &'a Object,
     mesh: &'a Mesh,
@@ -38,7 +38,7 @@ struct ObjectEdges<'a> {
     style: &'a LineStyle,
 }
 
-/// Adds how much visible lines of an object cover of each pixel, the greatest of any line.
+/// Adds the coverage of each pixel by the visible lines of an object; the largest coverage of any line counts.
 fn add_coverage(edges: &ObjectEdges<'_>, view: &View, shift_px: DVec2, frame: &CpuFrame, coverage: &mut [f64]) {
     let &ObjectEdges { object, mesh, contours, style } = edges;
     let scale = f64::from(view.samples.max(1));
@@ -58,18 +58,18 @@ fn add_coverage(edges: &ObjectEdges<'_>, view: &View, shift_px: DVec2, frame: &C
         }
         let (ends, normals) = placed_edge(object, mesh, contours, edge);
         let Some(segment) = outline_project(ends, normals, width_px, &view) else { continue };
-        // The depth samples move, the coverage does not: it is no sample, but a function of where the pixel is.
+        // Only the depth samples are shifted: coverage is an analytic function of the pixel's position, not a sample.
         let among_samples = ScreenSegment { ends_px: segment.ends_px.map(|end| end - shift_px), ..segment };
         let cut_out = contours.edges[edge].is_cut_out();
         let reach = 0.5 * width_px + 1.0;
         let [p0, p1] = segment.ends_px;
         let (low, high) = ((p0.min(p1) - reach).floor(), (p0.max(p1) + reach).ceil());
         for y in (low.y.max(0.0) as i64)..=(high.y.min(last.1 as f64) as i64) {
-            // Of the row what can be within reach: of a long slanted line that is little of its box.
+            // Only the part of the row near the line, since the bounding box of a long slanted line is mostly empty.
             let (from, to) = row_reach(segment.ends_px, y as f64 + 0.5, reach);
             for x in (low.x.max(from).max(0.0) as i64)..=(high.x.min(to).min(last.0 as f64) as i64) {
                 let pixel = &mut coverage[(y * (last.0 + 1) + x) as usize];
-                // No line covers more.
+                // The pixel is already fully covered.
                 if *pixel >= 1.0 {
                     continue;
                 }
@@ -85,8 +85,8 @@ fn add_coverage(edges: &ObjectEdges<'_>, view: &View, shift_px: DVec2, frame: &C
     }
 }
 
-/// The ends of an edge in the scene, in the order in which its first face runs over it there, and the unit normals of its
-/// faces; zero where there is no second.
+/// The ends of an edge in scene space, in the winding order of its first face, and the unit normals of its faces; zero
+/// if there is no second face.
 pub(crate) fn placed_edge(
     object: &Object,
     mesh: &Mesh,
@@ -94,16 +94,16 @@ pub(crate) fn placed_edge(
     edge: usize,
 ) -> ([DVec3; 2], [DVec3; 2]) {
     let [from, to] = contours.edges[edge].ends.map(|v| object.point(mesh.model().positions[v as usize]));
-    // A mirrored face's normal is on the side of its front, and its corners run the other way around it.
+    // A reflection keeps the normal on the front side but reverses the winding relative to it.
     let ends = if object.is_mirrored() { [to, from] } else { [from, to] };
     (ends, contours.normals(edge).map(|normal| object.normal(normal)))
 }
 
-/// Where a row of pixels may be within reach of a line: the columns' range, a little too wide.
+/// The range of columns in which a row of pixels may be within `reach` of a line, slightly too wide.
 fn row_reach([p0, p1]: [DVec2; 2], row: f64, reach: f64) -> (f64, f64) {
     let along = p1 - p0;
     let length = along.length();
-    // A line along the row has all of its box.
+    // A nearly horizontal line uses the full width of its bounding box.
     if along.y.abs() <= 1e-3 * length {
         return (f64::NEG_INFINITY, f64::INFINITY);
     }

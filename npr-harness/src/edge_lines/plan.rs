@@ -1,42 +1,43 @@
-//! The part of a plan that is about lines along edges.
+//! The part of a plan for edge lines.
 
 use crate::error::HarnessError;
 use crate::scene::{Mesh, Object, ObjectLines, Scene};
 use crate::schema::{within, within_colors};
 use glam::DVec4;
+use npr_outline::LineKind;
 use npr_outline::contour::{ContourEdges, ContourOptions, contour_edges};
 use npr_outline::line_style::LineStyle;
 use std::sync::Arc;
 
-/// Not quite black: the ink of the styles of this crate.
+/// The ink of this crate's styles, nearly black.
 pub const INK: [f32; 4] = [0.10, 0.09, 0.11, 1.0];
 
-/// Lines along edges.
+/// The edge lines of a picture.
 #[derive(Clone, Debug)]
 pub struct EdgeLinePlan {
-    /// Per object the edges that can be lines; objects share them whose transforms keep angles.
+    /// Per object: the edges that can be lines. Objects whose transforms preserve angles share them.
     pub contours: Vec<Arc<ContourEdges>>,
-    /// Their widths in px of the picture, and their ink.
+    /// The widths in px of the picture, and the ink.
     pub style: LineStyle,
-    /// How a device finds them.
+    /// How the GPU executor finds the lines.
     pub method: EdgeLineMethod,
 }
 
-/// How a device finds lines among the edges.
+/// How the GPU executor classifies edges as lines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EdgeLineMethod {
-    /// A scan on the CPU.
+    /// By a scan on the CPU.
     OnCpu,
-    /// A compute pass, whose findings an indirect draw takes.
+    /// By a compute pass that writes the arguments of an indirect draw.
     OnDevice,
 }
 
-/// The key of the contours among what is derived of a mesh: the crease angle.
+/// The cache key of the contours: the crease angle, and whether edges between two materials are lines.
 #[derive(PartialEq)]
-struct ContoursKey(f32);
+struct ContoursKey(f32, bool);
 
 impl EdgeLinePlan {
-    /// `method`: chosen by the bytes that the edges take on a device.
+    /// `method` selects a method from the size in bytes of the edges on the GPU.
     pub(crate) fn new(
         scene: &Scene,
         style: &LineStyle,
@@ -49,17 +50,22 @@ impl EdgeLinePlan {
                 validate(own)?;
             }
         }
+        let has_borders = |style: &LineStyle| style.width_px[LineKind::MaterialBorder as usize] > 0.0;
+        let of_objects = |object: &Object| matches!(&object.lines, ObjectLines::Own(own) if has_borders(own));
+        let material_borders = has_borders(style) || scene.objects().iter().any(of_objects);
         let of_object = |(object, mesh): (&Object, &Mesh)| {
             let (derived, world_from_normal) = object.derived(mesh);
-            let options = ContourOptions { crease_angle_rad, material_borders: false, world_from_normal };
-            derived.get(ContoursKey(crease_angle_rad), || contour_edges(mesh.model(), mesh.edges(), &options))
+            let options = ContourOptions { crease_angle_rad, material_borders, world_from_normal };
+            derived.get(ContoursKey(crease_angle_rad, material_borders), || {
+                contour_edges(mesh.model(), mesh.edges(), &options)
+            })
         };
         let contours = scene.placed_objects().map(of_object).collect::<Result<Vec<_>, _>>()?;
         let method = method(device_bytes(scene, &contours));
         Ok(Self { contours, style: *style, method })
     }
 
-    /// The objects that have lines, by the style of their lines: that of the picture first.
+    /// The objects that have lines, grouped by line style; the style of the picture comes first.
     pub(crate) fn groups(&self, scene: &Scene) -> Vec<(LineStyle, Vec<u32>)> {
         let mut groups: Vec<(LineStyle, Vec<u32>)> = vec![(self.style, Vec::new())];
         for (number, object) in (0u32..).zip(scene.objects()) {
@@ -77,8 +83,8 @@ impl EdgeLinePlan {
         groups
     }
 
-    /// The edges that are lines for an eye, each as object and edge, and how many there are of each
-    /// [`LineKind`](npr_outline::LineKind).
+    /// The edges that are lines for an eye, as (object, edge), and the number of lines of each
+    /// [`LineKind`].
     pub fn lines(&self, scene: &Scene, eye: DVec4) -> (Vec<[u32; 2]>, [usize; 4]) {
         let (mut lines, mut counts, mut found) = (Vec::new(), [0; 4], Vec::new());
         for number in self.groups(scene).into_iter().flat_map(|(_, objects)| objects) {
@@ -95,16 +101,16 @@ impl EdgeLinePlan {
     }
 }
 
-/// The size of the largest buffer for finding lines on a device, bytes.
+/// The size of the largest buffer for finding lines on the GPU, bytes.
 pub(crate) fn device_bytes(scene: &Scene, contours: &[Arc<ContourEdges>]) -> u64 {
     let bytes = scene.placed_objects().zip(contours).map(|((_, mesh), of)| of.device_bytes(&mesh.model().positions));
     bytes.max().unwrap_or(0)
 }
 
-/// Whether widths and colours are in their ranges.
+/// Checks that widths and colours are within their ranges.
 pub(crate) fn validate(style: &LineStyle) -> Result<(), HarnessError> {
     for &width_px in &style.width_px {
-        // Wider ones take as long as there are pixels, each.
+        // The limit bounds the cost: every line wider than the picture covers all pixels.
         within("a line's width", width_px, 0.0, 256.0, "0..=256 px")?;
     }
     within_colors("a component of the lines' ink", &style.ink)

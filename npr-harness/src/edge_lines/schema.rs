@@ -1,4 +1,4 @@
-//! The table `[lines.edges]` of a style's file.
+//! The table `[lines.edges]` of a style file.
 
 use crate::schema::Color;
 use glam::Vec3;
@@ -17,7 +17,7 @@ pub(crate) struct EdgesTable {
     opacity: f32,
 }
 
-/// As in the style `cartoon`, but for borders between materials.
+/// The settings of the style `cartoon`, except for borders between materials.
 impl Default for EdgesTable {
     fn default() -> Self {
         Self::new(&LineStyle { width_px: widths_px(2.0, 2.0, 1.3, 0.0), ink: super::plan::INK })

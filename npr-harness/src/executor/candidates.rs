@@ -1,4 +1,4 @@
-//! What could render, found before it is known what there is to do.
+//! Candidate executors, found before the work is known.
 
 use super::{Backend, CpuReason, Executor, GpuPolicy, Work};
 use crate::error::HarnessError;
@@ -6,18 +6,18 @@ use crate::error::HarnessError;
 #[cfg(feature = "gpu")]
 use crate::gpu::{DeviceLimits, GpuAdapter};
 
-/// What could render. It can be looked for on another thread, while a model is read.
+/// The candidate executors. They can be searched on another thread while a model is loaded.
 pub struct Candidates(Found);
 
 enum Found {
     Executor(Executor),
-    /// The CPU or this adapter, whichever is sooner.
+    /// The CPU or this adapter, whichever is faster.
     #[cfg(feature = "gpu")]
     Software(GpuAdapter, DeviceLimits),
 }
 
 impl Candidates {
-    /// Looks for adapters, and opens the one that will be taken whatever there is to do.
+    /// Finds adapters, and opens the one that is used for any work.
     ///
     /// # Errors
     /// If an adapter is required, by `backend` or by the environment, and there is none.
@@ -41,9 +41,9 @@ impl Candidates {
 
     #[cfg(feature = "gpu")]
     fn on_device(backend: Backend, policy: GpuPolicy) -> Result<Self, HarnessError> {
-        // A misspelt variable is an error wherever pictures would be made.
+        // A misspelt variable is an error even if no device is opened.
         let limits = DeviceLimits::from_env()?;
-        // Where a device is required no time is compared.
+        // If a device is required, expected times are not compared.
         let open = backend == Backend::Auto && policy == GpuPolicy::Auto;
         let found = GpuAdapter::find().and_then(|adapter| {
             if open && adapter.is_software() {
@@ -67,7 +67,7 @@ impl Candidates {
         Ok(Self::unable("this build has no GPU executor".into()))
     }
 
-    /// A device wherever there is one.
+    /// Selects the GPU whenever there is an adapter.
     pub fn choose(self) -> Executor {
         match self.0 {
             Found::Executor(executor) => executor,
@@ -79,7 +79,7 @@ impl Candidates {
         }
     }
 
-    /// A software adapter only if it is expected to be sooner than the CPU.
+    /// Selects a software adapter only if it is expected to be faster than the CPU.
     pub fn choose_for(self, work: &Work) -> Executor {
         #[cfg(feature = "gpu")]
         if let Found::Software(adapter, _) = &self.0
@@ -87,7 +87,7 @@ impl Candidates {
         {
             return Executor::Cpu { why: Some(CpuReason::Sooner { adapter: adapter.describe() }) };
         }
-        // In a build without devices nothing depends on it.
+        // In a build without the GPU executor, `work` has no effect.
         let _ = work;
         self.choose()
     }

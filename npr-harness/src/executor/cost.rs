@@ -1,12 +1,12 @@
-//! How long the CPU and a software adapter are expected to take, to choose between them.
+//! A cost model of the CPU and of a software adapter, to choose between them.
 //!
-//! Both run on the same cores, so their number hardly matters. A device has to be opened and its pipelines compiled,
-//! whatever is drawn, and takes less for each pixel. Ray casting builds a hierarchy over the faces, which takes as long as
-//! their upload.
+//! Both run on the same cores, so the number of cores hardly matters. An adapter has a fixed cost for opening the
+//! device and compiling pipelines, but a lower cost per pixel. Ray casting builds a hierarchy over the faces, which
+//! takes as long as uploading them.
 //!
-//! The numbers were measured on two cores with Mesa 22.3's lavapipe, over the built-in styles, models of 12 to 4.4 million
-//! faces and pictures of 320 × 180 to 2560 × 1440 px; they foretell which of the two is sooner, not how long it takes on
-//! another machine. `cargo bench -p npr-harness --bench orbit` has the two side by side.
+//! The numbers were measured on two cores with Mesa 22.3's lavapipe, over the built-in styles, models of 12 to 4.4
+//! million faces and pictures of 320 × 180 to 2560 × 1440 px. They predict which of the two is faster, not the time on
+//! another machine. `cargo bench -p npr-harness --bench orbit` compares the two.
 
 use crate::image_lines::InkScale;
 use crate::scene::Scene;
@@ -14,52 +14,53 @@ use crate::shade::Shade;
 use crate::shadow::ShadowMethod;
 use crate::style::Style;
 
-/// What pictures of a scene take either executor, ms.
+/// The expected time for pictures of a scene on either executor, ms.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Work {
-    /// On the CPU, once for a scene: the hierarchy over the faces, part of which is hidden behind other work.
+    /// On the CPU, once per scene: building the hierarchy, part of which overlaps other work.
     hierarchy_ms: f64,
-    /// On the CPU, all pictures.
+    /// On the CPU: all pictures.
     rays_ms: f64,
-    /// On a software adapter, all pictures and what is made ready for them.
+    /// On a software adapter: all pictures and their preparation.
     adapter_ms: f64,
 }
 
-/// To open a software adapter's device, once the adapter is found, and to give it back.
+/// Opening and closing the device of a software adapter that has been found.
 const OPEN_MS: f64 = 20.0;
-/// To compile a picture's pipelines, without compute shaders, and draw its first pixel.
+/// Compiling a picture's pipelines, without compute shaders, and drawing its first pixel.
 const PIPELINES_MS: f64 = 45.0;
-/// For a face: the hierarchy; the scan for lines; the upload.
+/// Per face: building the hierarchy; the scan for lines; the upload.
 const HIERARCHY_MS: f64 = 8e-5;
 const SCAN_MS: f64 = 5e-6;
 const UPLOAD_MS: f64 = 9e-5;
 
-/// For a sample, on the CPU and on a software adapter.
+/// The time per sample, on the CPU and on a software adapter.
 struct PerSample {
     cpu_ms: f64,
     adapter_ms: f64,
 }
 
-/// Light, and lines from edges.
+/// Lighting and edge lines.
 const LIT: PerSample = PerSample { cpu_ms: 1.25e-4, adapter_ms: 3.5e-5 };
-/// Strokes, besides.
+/// Additional time for strokes.
 const HATCHED: PerSample = PerSample { cpu_ms: 3.5e-5, adapter_ms: 1.3e-4 };
-/// Shadow volumes, or shadow rays, besides.
+/// Additional time for shadow volumes or shadow rays.
 const SHADOWED: PerSample = PerSample { cpu_ms: 9e-5, adapter_ms: 1.2e-4 };
-/// Lines in the image, for a pixel of the ink, from the surfaces of the picture.
+/// Image-space lines from the picture's geometry pass, per pixel of the ink.
 const INKED: PerSample = PerSample { cpu_ms: 5e-5, adapter_ms: 1e-5 };
-/// The same from surfaces of its own.
+/// Image-space lines with a separate geometry pass, per pixel of the ink.
 const INKED_SEPARATELY: PerSample = PerSample { cpu_ms: 1.35e-4, adapter_ms: 4e-5 };
 
 impl Work {
-    /// Of one picture.
+    /// The work for one picture.
     ///
-    /// `samples`: along each axis of a pixel.
+    /// `samples` is the number of samples along each axis of a pixel.
     pub fn new(scene: &Scene, style: &Style, size: (u32, u32), samples: u32) -> Self {
         Self::sequence(scene, style, size, samples, 1)
     }
 
-    /// Of so many frames by a renderer that is kept, with whatever moves but the scene's own shape.
+    /// The work for a number of frames rendered with the same resources, where anything may move but the meshes are
+    /// constant.
     pub fn sequence(scene: &Scene, style: &Style, (width, height): (u32, u32), samples: u32, frames: u32) -> Self {
         let pixels = f64::from(width) * f64::from(height);
         let (faces, frames) = (scene.face_count() as f64, f64::from(frames));
@@ -89,7 +90,7 @@ impl Work {
         }
     }
 
-    /// With more pictures of the same scene, each with pipelines of its own.
+    /// Adds pictures of the same scene, each with its own pipelines.
     pub fn and(self, other: Self) -> Self {
         Self {
             hierarchy_ms: self.hierarchy_ms.max(other.hierarchy_ms),
@@ -98,17 +99,17 @@ impl Work {
         }
     }
 
-    /// Whether the CPU is expected to take no longer than a software adapter.
+    /// Whether the CPU is expected to be at least as fast as a software adapter.
     pub fn is_sooner_on_cpu(&self) -> bool {
         self.cpu_ms() <= self.software_adapter_ms()
     }
 
-    /// On the CPU, ms.
+    /// The expected time on the CPU, ms.
     pub fn cpu_ms(&self) -> f64 {
         self.hierarchy_ms + self.rays_ms
     }
 
-    /// On a software adapter, from its start on, ms.
+    /// The expected time on a software adapter, including opening it, ms.
     pub fn software_adapter_ms(&self) -> f64 {
         OPEN_MS + self.adapter_ms
     }
@@ -123,8 +124,8 @@ mod tests {
         Work::sequence(scene, &style(name).expect("a style of this crate"), size, 1, frames).is_sooner_on_cpu()
     }
 
-    /// Measured, whole processes: 9 against 83 ms; 356 against 429; 609 against 276; 459 against 195; for a frame of a
-    /// sequence 94 against 27.
+    /// Measured times of whole processes, CPU against adapter: 9 and 83 ms; 356 and 429; 609 and 276; 459 and 195; for
+    /// a frame of a sequence 94 and 27.
     #[test]
     fn what_was_sooner_when_measured_is_taken() {
         let scene = Scene::new(npr_mesh::embedded::scene());

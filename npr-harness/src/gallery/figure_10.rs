@@ -19,7 +19,7 @@ use npr_toon::normal::NormalUse;
 ///
 /// Two things are not as printed: shadows' outlines come from states, not from the negated normals, and strokes follow the
 /// form.
-pub fn figure_10_styles() -> [Style; 4] {
+pub(crate) fn figure_10_styles() -> [Style; 4] {
     let shadowed = style("hatch-shadow").expect("a style of this crate");
     let Shade::Hatch(hatching) = &shadowed.shade else { panic!("`hatch-shadow` hatches") };
     let six = |transfer, ground| {
@@ -41,7 +41,7 @@ pub fn figure_10_styles() -> [Style; 4] {
 ///
 /// # Errors
 /// [`HarnessError`].
-pub fn figure_10(
+pub(crate) fn figure_10(
     executor: &mut Executor,
     backend: Backend,
     scene: &Scene,

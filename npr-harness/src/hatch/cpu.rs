@@ -1,4 +1,4 @@
-//! Strokes at a point of a surface, in f64. The twin of `hatch.wgsl`.
+//! Evaluates strokes at a point of a surface, in f64. The GPU version is `hatch.wgsl`.
 
 use super::plan::{HatchPlan, HatchVertex};
 use super::style::{HatchGround, HatchMapping, HatchShade, HatchTransfer, six_tones};
@@ -13,39 +13,39 @@ use npr_hatch::{
     hatch_transfer, hatch_weights,
 };
 
-/// A map as a frame looks it up.
+/// A tonal art map, prepared for lookups in a frame.
 #[derive(Clone, Copy)]
 pub(crate) struct Strokes<'a> {
     plan: &'a HatchPlan,
     tam: &'a Tam,
     thresholds: Option<&'a Thresholds>,
     tones: (DVec3, DVec3),
-    /// Texels for the side of the map, made less where they are to be larger than pixels.
+    /// The side of the map in texels, times the size of a texel in px: the scale of footprints.
     texels: f64,
 }
 
-/// A pixel as strokes cover it.
+/// The inputs for hatching a pixel.
 pub(crate) struct Hatching<'a> {
-    /// Where strokes lie ([`Strokes::position`]), and how that changes from pixel to pixel.
+    /// The stroke coordinates ([`Strokes::position`]) and their derivatives per pixel.
     pub(crate) at: DVec3,
     pub(crate) at_dx: DVec3,
     pub(crate) at_dy: DVec3,
-    /// In the space of the mesh, of unit length.
+    /// The unit normal in mesh space.
     pub(crate) normal: DVec3,
-    /// The number of the mesh, and log2 of how much larger it is placed.
+    /// The index of the mesh, and log2 of the scale of the object's transform.
     pub(crate) mesh: usize,
     pub(crate) octave: f64,
-    /// Corners of the face, and the point's weights in it.
+    /// The corners of the face, and the point's barycentric weights.
     pub(crate) corners: [u32; 3],
     pub(crate) barycentric: [f64; 3],
     /// The diffuse term.
     pub(crate) diffuse: f64,
     pub(crate) in_shadow: bool,
-    /// The diffuse terms at the corners, asked for where the weights of tones are computed there.
+    /// The diffuse terms at the corners, evaluated only if the weights of tones are computed there.
     pub(crate) diffuse_of_corners: &'a dyn Fn() -> Option<[f64; 3]>,
 }
 
-/// What a hatching of a pixel is computed from.
+/// The inputs that all hatching layers of a pixel share.
 struct Sampled {
     at: DVec3,
     at_dx: DVec3,
@@ -58,7 +58,7 @@ struct Sampled {
 }
 
 impl<'a> Strokes<'a> {
-    /// `samples`: along each axis of a pixel.
+    /// `samples` is the number of samples along each axis of a pixel.
     pub(crate) fn new(plan: &'a HatchPlan, samples: u32) -> Self {
         let drawn = "a plan has its map drawn";
         let (tam, thresholds) = (plan.tam().expect(drawn), plan.drawn_thresholds().expect(drawn));
@@ -66,8 +66,7 @@ impl<'a> Strokes<'a> {
         Self { plan, tam, thresholds, tones: six_tones(tam), texels: f64::from(tam.side) * texel_px }
     }
 
-    /// Where on a surface strokes lie, of a position in the space of its mesh, in the scene's units, and of texture
-    /// coordinates.
+    /// The stroke coordinates for a position in mesh space, in scene units, and texture coordinates.
     pub(crate) fn position(&self, at: DVec3, uv: DVec2) -> DVec3 {
         match self.plan.shade.mapping {
             HatchMapping::Coordinates => uv.extend(0.0),
@@ -91,7 +90,7 @@ impl<'a> Strokes<'a> {
         hatch_weights(hatch_level_of_tone(self.tones.0, self.tones.1, tone))
     }
 
-    /// What one hatching leaves as paper.
+    /// The fraction of the ground that one hatching layer leaves uncovered.
     fn once(&self, uv: DVec2, footprint: HatchFootprint, tone: f64, weights: HatchWeights) -> f64 {
         let flat = hatch_flat_weight(footprint.level, self.last_level());
         let (strokes, mean) = if let Some(thresholds) = self.thresholds {
@@ -107,13 +106,13 @@ impl<'a> Strokes<'a> {
         (self.tam.levels() - 1) as f64
     }
 
-    /// What a hatching leaves that counts for a share, along with what those before it left.
+    /// Combines the uncovered fraction of a hatching layer of weight `share` with that of the layers before it.
     fn share(&self, before: f64, sampled: &Sampled, uv: DVec2, footprint: HatchFootprint, share: f64) -> f64 {
         if share <= 0.0 {
             return before;
         }
         if self.plan.weights_at_vertices {
-            // Weights that were interpolated are nobody's tone: what is left is their mean.
+            // Interpolated weights do not correspond to a single tone, so the layers are averaged.
             return before + share * self.once(uv, footprint, sampled.tone, sampled.weights);
         }
         let tone = hatch_share_tone(sampled.tone, share);
@@ -170,7 +169,7 @@ impl<'a> Strokes<'a> {
         }
     }
 
-    /// The direction of the field and the octave of texture coordinates at a point of a face.
+    /// The direction of the field and the octave of the texture coordinates at a point of a face.
     fn at_point(&self, mesh: usize, corners: [u32; 3], barycentric: [f64; 3]) -> ([DVec3; 2], f64) {
         let vertices = &self.plan.vertices[mesh];
         if vertices.is_empty() {
@@ -185,7 +184,7 @@ impl<'a> Strokes<'a> {
         ([mean(|vertex| vertex.diagonal), mean(|vertex| vertex.others)], octave.sum())
     }
 
-    /// The display-referred colour of a pixel. `base`: the surface's own.
+    /// The display-referred colour of a pixel. `base` is the surface's unshaded colour.
     pub(crate) fn color(&self, hatching: &Hatching<'_>, base: DVec3, paper: DVec3) -> DVec3 {
         let lit = if hatching.in_shadow { 0.0 } else { 1.0 };
         let tone = hatch_tone_in_shadow(self.tone(hatching.diffuse), self.tone(0.0), lit);

@@ -1,4 +1,4 @@
-//! Strokes on the device: the overrides of `hatch.wgsl`, its uniform, and the textures of the map.
+//! Strokes on the GPU: the override constants of `hatch.wgsl`, its uniform, and the textures of the map.
 
 use super::plan::HatchPlan;
 use super::style::{HatchEncoding, HatchGround, HatchMapping, HatchShade, HatchTransfer, six_tones};
@@ -9,7 +9,7 @@ use crate::shade::flag;
 use glam::{DVec3, Vec3};
 use npr_hatch::upload::{TamChannels, hatch_sampler, hatch_threshold_sampler, upload_tam, upload_thresholds};
 
-/// The shader of hatched surfaces, and what it needs before it.
+/// The shader parts for hatched surfaces, after their libraries.
 pub(crate) const HATCH_WGSL: &[(&str, &str)] =
     &[("npr-hatch", npr_hatch::WGSL), ("npr-hatch, lookup", npr_hatch::LOOKUP_WGSL)];
 
@@ -34,7 +34,7 @@ pub(crate) struct HatchUniform {
 }
 
 impl HatchUniform {
-    /// `samples`: along each axis of a pixel.
+    /// `samples` is the number of samples along each axis of a pixel.
     pub(crate) fn new(plan: &HatchPlan, paper: Vec3, samples: u32) -> Result<Self, HarnessError> {
         let (tam, shade) = (plan.tam()?, &plan.shade);
         let (light, dark) = six_tones(tam);
@@ -59,7 +59,7 @@ impl HatchUniform {
     }
 }
 
-/// What of strokes is known when a pipeline is made.
+/// The properties of strokes that are fixed when a pipeline is created.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct HatchVariant {
     mapping: HatchMapping,
@@ -96,13 +96,13 @@ impl HatchVariant {
     }
 }
 
-/// A map's textures; what is not looked up is blank.
+/// The textures of a map; those that are not used are placeholders.
 pub(crate) struct HatchTextures {
     pub(crate) light: wgpu::TextureView,
     pub(crate) dark: wgpu::TextureView,
     pub(crate) sampler: wgpu::Sampler,
     pub(crate) thresholds: wgpu::TextureView,
-    /// Nothing, where surfaces are not hatched.
+    /// A placeholder vertex buffer for surfaces that are not hatched.
     pub(crate) blank: wgpu::Buffer,
 }
 
@@ -130,7 +130,7 @@ impl HatchTextures {
         }
     }
 
-    /// `channels`: what six tones are stored in.
+    /// `channels` is the storage format of six tones.
     pub(crate) fn new(context: &GpuContext, plan: &HatchPlan, channels: TamChannels) -> Result<Self, HarnessError> {
         let (device, queue) = (&context.device, &context.queue);
         let mut textures = Self::blank(device);

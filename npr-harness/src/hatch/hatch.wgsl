@@ -1,15 +1,15 @@
-// Strokes on surfaces. The twin of `cpu.rs`.
+// Strokes on surfaces. The CPU version is `cpu.rs`.
 
 const HATCH_BY_COORDINATES: u32 = 0u;
 const HATCH_BY_PLANES: u32 = 1u;
 const HATCH_BY_FORM: u32 = 2u;
 
 override surface_hatch_mapping: u32 = HATCH_BY_COORDINATES;
-// Whether thresholds are looked up, else six tones.
+// Whether the threshold map is sampled, else six tones.
 override surface_hatch_thresholds: bool = false;
-// Whether the tone is what listing 4 makes of the light, else it is in proportion to it.
+// Whether listing 4 maps the light to the tone, else the tone is linear in the light.
 override surface_hatch_listing_4: bool = false;
-// Whether strokes are drawn over the surface's own colour, else over paper.
+// Whether strokes are drawn over the surface's unshaded colour, else over paper.
 override surface_hatch_over_surface: bool = false;
 // Whether the weights of six tones are computed at the vertices and interpolated.
 override surface_hatch_at_vertices: bool = false;
@@ -17,18 +17,18 @@ override surface_hatch_at_vertices: bool = false;
 struct SurfaceHatch {
     // The map's mean tones, the lightest first.
     light_tones: vec3<f32>,
-    // Texels for the side of the map, as many times more as they are to be larger than pixels.
+    // The side of the map in texels, times the size of a texel in px: the scale of footprints.
     texels: f32,
     dark_tones: vec3<f32>,
     last_level: f32,
     ink: vec3<f32>,
-    // How many sides of the map there are for a unit of length.
+    // The number of map repetitions per scene unit.
     tiles: f32,
     paper: vec3<f32>,
-    // Of listing 4.
+    // The brightness factor of listing 4.
     brightness: f32,
     ambient: f32,
-    // The span of tones over which a texel turns to ink.
+    // The range of tones over which a texel turns to ink.
     width: f32,
     padding: vec2<u32>,
 }
@@ -36,7 +36,7 @@ struct SurfaceHatch {
 @group(0) @binding(5) var<uniform> hatch: SurfaceHatch;
 @group(0) @binding(6) var hatch_light: texture_2d<f32>;
 @group(0) @binding(7) var hatch_dark: texture_2d<f32>;
-// For six tones it filters texels and levels, for thresholds it takes the nearest: GLSL knows one sampler a texture.
+// Trilinear for six tones, nearest for thresholds. GLSL has one sampler per texture.
 @group(0) @binding(8) var hatch_sampler: sampler;
 @group(0) @binding(9) var hatch_map: texture_2d<f32>;
 
@@ -48,20 +48,20 @@ struct HatchedSurface {
     @location(3) @interpolate(flat) region: u32,
     @location(4) first: vec3<f32>,
     @location(5) second: vec3<f32>,
-    // Where the strokes lie: a position, or texture coordinates.
+    // The stroke coordinates: a position, or texture coordinates.
     @location(6) at: vec3<f32>,
     // The field's direction.
     @location(7) diagonal: vec3<f32>,
     @location(8) others: vec3<f32>,
     @location(9) octave: f32,
-    // Listing 4's weights, where they are computed at the vertices.
+    // The weights of listing 4, if they are computed at the vertices.
     @location(10) light_weights: vec3<f32>,
     @location(11) dark_weights: vec3<f32>,
-    // In the space of the mesh, as where the strokes lie.
+    // The normal in mesh space, like the stroke coordinates.
     @location(12) mesh_normal: vec3<f32>,
 }
 
-// What is asked of strokes at a pixel.
+// The inputs for hatching a pixel.
 struct Hatching {
     at: vec3<f32>,
     at_dx: vec3<f32>,
@@ -74,7 +74,7 @@ struct Hatching {
     weights: HatchWeights,
 }
 
-// The tone that the light asks for.
+// The tone for a diffuse term.
 fn hatched_tone(reach: f32) -> f32 {
     if surface_hatch_listing_4 {
         return hatch_transfer(hatch.light_tones, hatch.dark_tones, hatch_level(hatch.brightness, reach));
@@ -93,7 +93,7 @@ fn vs_hatched(
     @location(6) others: vec3<f32>, @location(7) octave: f32, instance: Instance,
 ) -> HatchedSurface {
     let plain = lit_vertex(position, normal, instance);
-    // In the space of the mesh, so that strokes move with it.
+    // In mesh space, so that strokes move with the mesh.
     var at = position * instance.scale.x * hatch.tiles;
     if surface_hatch_mapping == HATCH_BY_COORDINATES {
         at = vec3<f32>(uv, 0.0);
@@ -110,7 +110,7 @@ fn vs_hatched(
     return out;
 }
 
-// What one hatching leaves as paper.
+// The fraction of the ground that one hatching layer leaves uncovered.
 fn hatched_once(uv: vec2<f32>, footprint: HatchFootprint, tone: f32, weights: HatchWeights) -> f32 {
     let flat = hatch_flat_weight(footprint.level, hatch.last_level);
     if surface_hatch_thresholds {
@@ -121,13 +121,14 @@ fn hatched_once(uv: vec2<f32>, footprint: HatchFootprint, tone: f32, weights: Ha
     return mix(hatch_blend(texels.light, texels.dark, weights), mean, flat);
 }
 
-// Hatchings that meet at a pixel, as many as there are: they are listed and then looked up in one loop, since software
-// adapters run through every lookup that they branch around. (Listed, a frame takes 0.4 to 0.7 of the time there.)
+// The hatching layers of a pixel. They are collected first and then sampled in one loop, since software adapters
+// execute every texture lookup even in branches that are not taken. With the list, a frame takes 0.4 to 0.7 of the time
+// there.
 struct Hatchings {
     count: u32,
-    // Place in the map, and spread.
+    // Texture coordinates in the map, and spread.
     places: array<vec4<f32>, 6>,
-    // Level and share.
+    // Mip level and weight.
     shares: array<vec2<f32>, 6>,
 }
 
@@ -140,10 +141,10 @@ fn hatched_list(list: ptr<function, Hatchings>, uv: vec2<f32>, footprint: HatchF
     }
 }
 
-// What a hatching leaves that counts for a share, along with what those before it left.
+// Combines the uncovered fraction of a hatching layer of weight `share` with that of the layers before it.
 fn hatched_share(before: f32, asked: Hatching, uv: vec2<f32>, footprint: HatchFootprint, share: f32) -> f32 {
     if surface_hatch_at_vertices {
-        // Weights that were interpolated are nobody's tone: what is left is their mean.
+        // Interpolated weights do not correspond to a single tone, so the layers are averaged.
         return before + share * hatched_once(uv, footprint, asked.tone, asked.weights);
     }
     let tone = hatch_share_tone(asked.tone, share);
@@ -197,7 +198,7 @@ fn hatched(asked: Hatching) -> f32 {
     return paper;
 }
 
-// In uniform control flow.
+// Requires uniform control flow.
 fn hatched_color(in: HatchedSurface, base: vec3<f32>, front: bool, at: ShadowAt) -> vec3<f32> {
     let at_dx = dpdxFine(in.at);
     let at_dy = dpdyFine(in.at);
@@ -210,7 +211,7 @@ fn hatched_color(in: HatchedSurface, base: vec3<f32>, front: bool, at: ShadowAt)
     }
     var weights = HatchWeights(in.light_weights, in.dark_weights);
     if surface_hatch_at_vertices && (!front || in_shadow) {
-        // The tone is known, its weights are not.
+        // The weights were interpolated for the lit front face, so they are recomputed from the tone.
         weights = hatched_weights(tone);
     }
     let normal = toon_unit(in.mesh_normal);

@@ -1,4 +1,4 @@
-//! The part of a plan that is about strokes.
+//! The part of a plan for hatching.
 
 use super::style::{HatchEncoding, HatchMapping, HatchShade};
 use crate::error::HarnessError;
@@ -13,29 +13,28 @@ use std::sync::Arc;
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub struct HatchVertex {
-    /// Of the tensor of the field's direction: xx, yy, zz.
+    /// The diagonal of the tensor of the field's direction: xx, yy, zz.
     pub diagonal: [f32; 3],
-    /// xy, xz, yz.
+    /// The off-diagonal elements of the tensor: xy, xz, yz.
     pub others: [f32; 3],
-    /// log2 of what texture coordinates are multiplied by.
+    /// log2 of the scale applied to the texture coordinates.
     pub octave: f32,
 }
 
-/// The part of a plan that is about strokes.
+/// The part of a plan for hatching.
 #[derive(Clone, Debug)]
 pub struct HatchPlan {
-    /// The style's, with the mapping that the model allows.
+    /// The hatching settings of the style, with a mapping that the model supports.
     pub shade: HatchShade,
-    /// The length on the surface of one side of the map, in the units of the scene's positions.
+    /// The length of one side of the map on the surface, in scene units.
     pub tile: f64,
-    /// Per mesh and vertex; empty if the mapping needs nothing. Strokes lie in the space of the mesh, so that they move
-    /// with it.
+    /// Per mesh and vertex; empty if the mapping needs no data. Strokes lie in mesh space, so they move with the mesh.
     pub vertices: Vec<Arc<Vec<HatchVertex>>>,
-    /// Whether the weights of six tones are computed at the vertices and interpolated, as listing 4 has them.
+    /// Whether the weights of six tones are computed at the vertices and interpolated, as in listing 4.
     pub weights_at_vertices: bool,
 }
 
-/// The key of [`HatchPlan::vertices`] among what is derived of a mesh. The tile's bits.
+/// The cache key of [`HatchPlan::vertices`]: the bits of the tile's length.
 #[derive(PartialEq)]
 enum VerticesKey {
     Form,
@@ -43,7 +42,7 @@ enum VerticesKey {
 }
 
 impl HatchPlan {
-    /// `at_vertices`: whether the style computes light at the vertices.
+    /// `at_vertices` is whether the style computes light at the vertices.
     pub(crate) fn new(scene: &Scene, shade: &HatchShade, at_vertices: bool) -> Result<Self, HarnessError> {
         let tile = f64::from(shade.tile) * if scene.radius() > 0.0 { scene.radius() } else { 1.0 };
         let mapping = match shade.mapping {
@@ -56,7 +55,7 @@ impl HatchPlan {
         let vertices = scene.meshes().iter().map(of_mesh).collect::<Result<_, _>>()?;
         let shade = HatchShade { mapping, ..shade.clone() };
         let plan = Self { tile, vertices, weights_at_vertices: false, shade };
-        // Draws the map, if it is not drawn yet.
+        // Draws the map if it does not exist yet.
         plan.tam()?;
         let thresholds = plan.drawn_thresholds()?.is_some();
         Ok(Self { weights_at_vertices: at_vertices && !thresholds, ..plan })
@@ -67,7 +66,7 @@ impl HatchPlan {
         self.shade.map.tam()
     }
 
-    /// The thresholds, if they are what is looked up.
+    /// The threshold map, if the style uses one.
     pub(crate) fn drawn_thresholds(&self) -> Result<Option<&Thresholds>, HatchError> {
         match self.shade.encoding {
             HatchEncoding::SixTones => Ok(None),
@@ -76,7 +75,7 @@ impl HatchPlan {
     }
 }
 
-/// What the strokes of a mesh need per vertex.
+/// Computes the per-vertex data for the strokes of a mesh.
 fn vertices(mesh: &Mesh, mapping: HatchMapping, tile: f64) -> Result<Arc<Vec<HatchVertex>>, HatchError> {
     let (Model { positions, normals, uvs, faces, .. }, seams) = (mesh.model(), &mesh.edges().representative);
     match mapping {
@@ -87,7 +86,7 @@ fn vertices(mesh: &Mesh, mapping: HatchMapping, tile: f64) -> Result<Arc<Vec<Hat
             Ok(directions.iter().map(vertex).collect())
         }),
         HatchMapping::Coordinates => mesh.derived().get(VerticesKey::Coordinates(tile.to_bits()), || {
-            // Where only other meshes have any, all strokes lie at one place.
+            // A mesh without texture coordinates gets (0, 0) at every vertex.
             let none = if uvs.is_empty() { vec![Vec2::ZERO; positions.len()] } else { Vec::new() };
             let uvs = if uvs.is_empty() { &none } else { uvs };
             let octaves = density::octaves(positions, uvs, faces, seams, tile as f32)?;

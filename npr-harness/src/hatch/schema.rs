@@ -1,4 +1,4 @@
-//! The table `[shade.hatch]` of a style's file.
+//! The table `[shade.hatch]` of a style file.
 
 use super::style::{HatchEncoding, HatchGround, HatchMap, HatchMapping, HatchShade, HatchSource, HatchTransfer};
 use crate::error::HarnessError;
@@ -17,10 +17,10 @@ pub(crate) struct HatchTable {
     ink: Color,
     tile: f32,
     texel_px: f32,
-    /// What is left where no light falls.
+    /// The ambient term of the linear transfer.
     #[serde(skip_serializing_if = "Option::is_none")]
     ambient: Option<f32>,
-    /// Listing 4's factor.
+    /// The brightness factor of listing 4.
     #[serde(skip_serializing_if = "Option::is_none")]
     brightness: Option<f32>,
     map: MapTable,
@@ -48,7 +48,8 @@ enum GroundName {
     Surface,
 }
 
-/// Either a file of `npr tam`, or what it is to be like: what is left out is as in [`TamParameters::default`].
+/// Either a file written by `npr tam`, or parameters for drawing a map; omitted ones are those of
+/// [`TamParameters::default`].
 #[derive(Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
 struct MapTable {
@@ -80,7 +81,7 @@ struct MapTable {
     cross_from: Option<CrossValue>,
     #[serde(skip_serializing_if = "Option::is_none")]
     cross_deg: Option<f32>,
-    /// Of the best of so many; without it places come from a sequence.
+    /// The number of candidates for each stroke; if omitted, the strokes are placed by a sequence.
     #[serde(skip_serializing_if = "Option::is_none")]
     candidates: Option<u32>,
 }
@@ -183,7 +184,7 @@ impl MapTable {
         }
     }
 
-    /// What is not as by default.
+    /// The parameters that differ from the defaults.
     fn of(parameters: &TamParameters) -> Self {
         let p = parameters.clone();
         let usual = TamParameters::default();
@@ -228,7 +229,7 @@ impl MapTable {
         }
         let usual = TamParameters::default();
         let tones = self.tones.unwrap_or(usual.tones);
-        // The default is the fourth of six: of few tones there may be none.
+        // The default is the fourth of six tones, which a map with fewer tones may not have.
         let cross_from = usual.cross_from.filter(|&tone| tone < tones.len());
         let parameters = TamParameters {
             tones,

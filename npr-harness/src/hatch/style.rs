@@ -1,4 +1,4 @@
-//! Strokes as a style has them.
+//! The settings of hatching in a style.
 
 use crate::error::HarnessError;
 use crate::schema::{within, within_colors};
@@ -10,99 +10,99 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
-/// Hatching. Of the lights' colours it takes no notice.
+/// The settings of hatching, which ignores the colours of lights.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HatchShade {
     /// The strokes.
     pub map: HatchMap,
-    /// What of the map is looked up.
+    /// The encoding of the map that is sampled.
     pub encoding: HatchEncoding,
-    /// Where on a surface it lies.
+    /// How the map is placed on a surface.
     pub mapping: HatchMapping,
-    /// How dark a surface is.
+    /// How light determines the tone.
     pub transfer: HatchTransfer,
-    /// The length on the surface of one side of the map, in halves of the diagonal of the model's box: 0.01..=100.
+    /// The length of one side of the map on the surface, relative to half the diagonal of the model's bounding box:
+    /// 0.01..=100.
     pub tile: f32,
-    /// The size of a texel, px, as long as there are levels for it: 0.25..=16. Strokes get wider and longer with it.
+    /// The size of a texel, px, within the range of levels: 0.25..=16. Strokes become wider and longer with it.
     pub texel_px: f32,
-    /// Display-referred.
+    /// The display-referred colour of strokes.
     pub ink: Vec3,
-    /// What shows between strokes.
+    /// The colour between strokes.
     pub ground: HatchGround,
 }
 
-/// What of a map is looked up.
+/// The encoding of a map that is sampled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum HatchEncoding {
-    /// Six tones in two textures, of which at most two tones are mixed: listings 4 and 5. With
-    /// [`NormalUse::PerVertex`](npr_toon::normal::NormalUse) their weights are computed at the vertices, as printed.
+    /// Six tones in two textures, at most two of them mixed: listings 4 and 5. With
+    /// [`NormalUse::PerVertex`](npr_toon::normal::NormalUse) the weights are computed at the vertices, as printed.
     SixTones,
-    /// The tone at which each texel turns to ink: any tone, black as well.
+    /// The tone at which each texel turns to ink. Supports all tones, including black.
     Thresholds,
 }
 
-/// Where on a surface a map lies.
+/// How a map is placed on a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum HatchMapping {
-    /// By the model's texture coordinates, their density evened out; models without any by planes.
+    /// By the model's texture coordinates, scaled to a uniform density; models without any use planes.
     Coordinates,
-    /// By three planes, along the model's axes.
+    /// By projection onto three planes, along the model's axes.
     Planes,
-    /// The same, turned so that strokes run where the surface bends most.
+    /// By three planes, rotated so that strokes follow the direction of largest curvature.
     Form,
 }
 
-/// How dark a surface is.
+/// How light determines the tone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum HatchTransfer {
-    /// Listing 4: the light factor is this many times N·L, and the tone what comes of it
-    /// ([`npr_hatch::hatch_transfer`]).
+    /// Listing 4: the light factor is N·L times `brightness`, and [`npr_hatch::hatch_transfer`] maps it to the tone.
     Listing4 {
-        /// 7 makes the tone N·L, but no darker than the darkest tone; 0.1..=100.
+        /// 7 makes the tone equal N·L, limited to the darkest tone; 0.1..=100.
         brightness: f32,
     },
-    /// The tone is N·L over what is left where no light falls.
+    /// The tone is N·L scaled to the range from `ambient` to 1.
     Linear {
         /// 0..=1.
         ambient: f32,
     },
 }
 
-/// What shows between strokes.
+/// The colour between strokes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum HatchGround {
     /// The style's paper.
     Paper,
-    /// The surface's own colour and texture: figure 10d of the 2002 chapter.
+    /// The surface's unshaded colour and texture: figure 10d of the 2002 chapter.
     Surface,
 }
 
-/// Where a map comes from.
+/// The source of a map.
 #[derive(Clone, Debug, PartialEq)]
 pub enum HatchSource {
-    /// Drawn when it is first needed.
+    /// Drawn on first use.
     Parameters(TamParameters),
-    /// The same, with strokes that look like a picture of one.
+    /// Drawn on first use, with an image as the shape of the strokes.
     Stroke {
-        /// What else they are like.
+        /// The other parameters of the map.
         parameters: TamParameters,
-        /// Where the picture comes from.
+        /// The file of the image.
         file: PathBuf,
-        /// It.
+        /// The image.
         stroke: StrokeImage,
     },
-    /// Read from what `npr tam` wrote.
+    /// Read from a file written by `npr tam`.
     File {
-        /// Where from.
+        /// The file.
         file: PathBuf,
-        /// The tones' images.
+        /// The images of the tones.
         tam: Tam,
         /// The thresholds, if the file has them.
         thresholds: Option<Thresholds>,
     },
 }
 
-/// A map, drawn once for all styles that are clones of one. Equal if where they come from is.
+/// A map that is drawn once and shared by all clones of a style. Two maps are equal if their sources are.
 #[derive(Clone)]
 pub struct HatchMap(Arc<Inner>);
 
@@ -113,12 +113,12 @@ struct Inner {
 }
 
 impl HatchMap {
-    /// Of a source, which is not looked at yet.
+    /// Creates a map from a source, without drawing it yet.
     pub fn new(source: HatchSource) -> Self {
         Self(Arc::new(Inner { source, drawing: OnceLock::new(), thresholds: OnceLock::new() }))
     }
 
-    /// What `npr tam` wrote.
+    /// Reads a map written by `npr tam`.
     ///
     /// # Errors
     /// Those of [`read_map`].
@@ -127,7 +127,7 @@ impl HatchMap {
         Ok(Self::new(HatchSource::File { file: file.to_owned(), tam, thresholds }))
     }
 
-    /// Where it comes from.
+    /// The source of the map.
     pub fn source(&self) -> &HatchSource {
         &self.0.source
     }
@@ -140,7 +140,7 @@ impl HatchMap {
         }
     }
 
-    /// How many tones it has.
+    /// The number of tones.
     pub fn tones(&self) -> usize {
         match &self.0.source {
             HatchSource::Parameters(parameters) | HatchSource::Stroke { parameters, .. } => parameters.tones.len(),
@@ -169,7 +169,7 @@ impl HatchMap {
         }
     }
 
-    /// Its thresholds; `None` if the file that it comes from has none.
+    /// Its threshold map; `None` if it was read from a file without one.
     ///
     /// # Errors
     /// Those of [`npr_hatch::draw`].
@@ -198,11 +198,11 @@ impl fmt::Debug for HatchMap {
 }
 
 impl HatchShade {
-    /// The span of tones over which a texel of thresholds turns to ink: so much that a difference of light in the last
-    /// digit does not turn one over.
+    /// The range of tones over which a texel of a threshold map turns to ink, wide enough that a rounding difference of
+    /// the light does not toggle a texel.
     pub(crate) const WIDTH: f64 = 1.0 / 64.0;
 
-    /// Which rule is broken, if one is; the first found. Nothing is drawn for it.
+    /// Returns the first rule that is violated, if any, without drawing the map.
     pub(crate) fn validate(&self) -> Result<(), HarnessError> {
         if let Some((parameters, _)) = self.map.strokes() {
             parameters.validate()?;
@@ -232,7 +232,8 @@ impl HatchShade {
     }
 }
 
-/// What is drawn for a picture takes seconds: 2²⁶ texels, of all tones and candidates. `npr tam` draws anything.
+/// Limits maps drawn for a picture to 2²⁶ texels over all tones and candidates, which take seconds. `npr tam` has no
+/// such limit.
 fn check_effort(parameters: &TamParameters) -> Result<(), HarnessError> {
     let TamParameters { side, tones, placement, .. } = parameters;
     let candidates = if let Placement::BestOf { candidates } = placement { *candidates } else { 1 };
@@ -245,16 +246,16 @@ fn check_effort(parameters: &TamParameters) -> Result<(), HarnessError> {
 
 const MOST_EFFORT: u64 = 1 << 26;
 
-/// The six tones of a map, the lighter three and the darker three; a map of another number is asked for none.
+/// The six tones of a map: the lighter three and the darker three. Zero for maps with another number of tones.
 pub(crate) fn six_tones(tam: &Tam) -> (DVec3, DVec3) {
     let tone = |index: usize| tam.tones.get(index).map_or(0.0, |&tone| f64::from(tone));
     (DVec3::new(tone(0), tone(1), tone(2)), DVec3::new(tone(3), tone(4), tone(5)))
 }
 
-/// The longest map, of 64 tones at 4096² with thresholds, has 1.4 GiB.
+/// The largest file that is read. The largest map, 64 tones at 4096² with thresholds, takes 1.4 GiB.
 const MOST_BYTES: u64 = 3 << 29;
 
-/// Reads what `npr tam` wrote: a regular file of at most 1.5 GiB.
+/// Reads a map written by `npr tam` from a regular file of at most 1.5 GiB.
 ///
 /// # Errors
 /// [`HarnessError::Read`], [`HarnessError::Map`].

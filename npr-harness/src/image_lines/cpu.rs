@@ -1,4 +1,4 @@
-//! Lines in the image on the CPU: what a geometry pass writes for a pixel, and the ink over the picture.
+//! Image-space lines on the CPU: the packed G-buffer value of a pixel, and the ink over the picture.
 
 use super::plan::ImagePlan;
 use crate::color::encode_rgb;
@@ -16,29 +16,29 @@ use npr_imagespace::region::{ink_region_of_color, ink_region_pair};
 use npr_imagespace::resample::resample;
 use npr_imagespace::shadow::{ShadowState, ink_shadow_normal, ink_shadow_region};
 
-/// A point of a surface as lines in the image see it.
+/// The attributes of a surface point that image-space lines use.
 pub(crate) struct InkSample<'a> {
     pub(crate) region: u32,
-    /// Where the material's inner lines come from.
+    /// The source of the material's inner lines.
     pub(crate) kind: LineKind,
     /// World space, of any length, on the viewer's side.
     pub(crate) normal: DVec3,
     /// Eye depth.
     pub(crate) depth: f64,
-    /// Linear, asked for where inner lines come from vertex colours.
+    /// The linear vertex colour, evaluated if inner lines come from vertex colours.
     pub(crate) vertex_color: &'a dyn Fn() -> DVec4,
-    /// Linear, filtered, asked for where they come from a texture.
+    /// The linear filtered texture colour, evaluated if inner lines come from a texture.
     pub(crate) texture_color: &'a dyn Fn() -> DVec4,
-    /// The bytes of the texel there, asked for where regions come from a texture; `None` without one.
+    /// The bytes of the nearest texel, evaluated if regions come from a texture; `None` without a texture.
     pub(crate) texture_bytes: &'a dyn Fn() -> Option<[u8; 3]>,
-    /// From the eye to the point, of any length, and right, up and back of the view; world space, asked for where inner
-    /// lines are an artist's.
+    /// The vector from the eye to the point, of any length, and the right, up and back axes of the view, in world
+    /// space. Evaluated if inner lines come from an artist's colours.
     pub(crate) view: &'a dyn Fn() -> (DVec3, [DVec3; 3]),
-    /// What shadows make of it, asked for where their lines are drawn.
+    /// The shadow state, evaluated if shadows have lines.
     pub(crate) shadow: &'a dyn Fn() -> ShadowAt,
 }
 
-/// What a geometry pass writes for a pixel; `None` is background.
+/// The packed G-buffer value of a pixel; `None` is background.
 pub(crate) fn texel(image: &ImagePlan, sample: Option<&InkSample<'_>>) -> [u32; 2] {
     let Some(sample) = sample else { return BACKGROUND };
     let kind = sample.kind;
@@ -61,7 +61,7 @@ pub(crate) fn texel(image: &ImagePlan, sample: Option<&InkSample<'_>>) -> [u32; 
     }
 }
 
-/// World space, of any length; zero for no normal.
+/// The normal for line detection in world space, of any length; zero if there is none.
 fn normal(sample: &InkSample<'_>) -> DVec3 {
     let index = match sample.kind {
         LineKind::Normals => return sample.normal,
@@ -78,12 +78,12 @@ fn normal(sample: &InkSample<'_>) -> DVec3 {
     world_from_view * ink_artist_direction(index, eye_to_point).as_dvec3()
 }
 
-/// What a pixel may show instead, to a rasteriser that rounds.
+/// A perturbation of a pixel by the rounding of a rasteriser.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Perturbation {
-    /// What differs from all around it: background where there is a surface, a surface where there is background.
+    /// A value unlike its neighbours: background on a surface, or a surface on background.
     Other,
-    /// The same surface in another state of shadow.
+    /// The same surface with another shadow state.
     State(ShadowState),
 }
 
@@ -110,7 +110,7 @@ impl Perturbation {
     }
 }
 
-/// The frame's lines over it, were some of the picture's pixels perturbed.
+/// Draws the lines of a frame after perturbing some of its pixels.
 pub(crate) fn perturbed(image: &ImagePlan, blank: &CpuFrame, pixels: &[usize], perturbation: Perturbation) -> CpuFrame {
     let mut frame = blank.clone();
     let size = image.size;
@@ -128,7 +128,7 @@ pub(crate) fn perturbed(image: &ImagePlan, blank: &CpuFrame, pixels: &[usize], p
     frame
 }
 
-/// Draws the frame's lines over it, from its texels.
+/// Finds lines in the frame's G-buffer and draws them over the frame.
 pub(crate) fn draw_ink(image: &ImagePlan, frame: &mut CpuFrame) {
     let size = image.size;
     let picture = UVec2::new(frame.width, frame.height);

@@ -1,4 +1,4 @@
-//! Lines in the image on the device: filter, dilation and composite.
+//! Image-space lines on the GPU: filter, dilation and composite.
 
 use super::plan::{ImageLines, ImagePlan};
 use crate::camera::Camera;
@@ -15,15 +15,15 @@ use npr_imagespace::picture::Taps;
 use std::cell::{OnceCell, RefCell};
 use std::collections::HashMap;
 
-/// What distinguishes one filter's pipeline from another's.
+/// The properties that distinguish one filter pipeline from another.
 type FilterKey = (Taps, bool, TexelLayout, InkTarget);
 
-/// Why a pass takes the formats of this crate's pictures and ink.
+/// Panic message for passes that fail only for formats other than Unorm.
 const UNORM: &str = "the format is Unorm";
 
 const PICTURE: InkTarget = InkTarget::Picture(COLOR_FORMAT);
 
-/// The passes, made when they are first needed.
+/// The passes, created on first use.
 #[derive(Default)]
 pub(crate) struct InkPasses {
     filters: RefCell<HashMap<FilterKey, FusedPass>>,
@@ -37,7 +37,7 @@ pub(crate) struct InkFrame<'a> {
     pub(crate) device: &'a wgpu::Device,
     pub(crate) image: &'a ImagePlan,
     pub(crate) camera: &'a Camera,
-    /// Of the scene; beyond it there are no lines.
+    /// The bounding box of the scene; there are no lines outside it.
     pub(crate) bounds: Option<(Vec3, Vec3)>,
     pub(crate) ink: &'a InkTargets,
     pub(crate) picture: &'a wgpu::TextureView,
@@ -45,12 +45,12 @@ pub(crate) struct InkFrame<'a> {
 }
 
 impl InkPasses {
-    /// Finds the lines in the texels that were drawn, and draws them over the picture.
+    /// Finds the lines in the G-buffer and draws them over the picture.
     pub(crate) fn record(&self, encoder: &mut wgpu::CommandEncoder, frame: &InkFrame<'_>) -> Result<(), HarnessError> {
         frame.image.passes().try_for_each(|lines| self.record_lines(encoder, frame, lines))
     }
 
-    /// One pass of lines.
+    /// Records one pass of lines.
     fn record_lines(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -61,7 +61,7 @@ impl InkPasses {
         let area = |size, around_px| frame.bounds.map(|bounds| frame.camera.area(bounds, size, around_px));
         let onto =
             |view, size, around_px| PassTarget { view, composite: &lines.composite, area: area(size, around_px) };
-        // Beside a surface there is a pixel of line, and then what a dilation adds.
+        // Lines extend one pixel beyond a surface, plus the radius of the dilation.
         let dilation_px = lines.dilation.map_or(0, |disc| disc.radius_px.ceil() as u32 + 1);
 
         let filter = &lines.filter;
@@ -86,7 +86,7 @@ impl InkPasses {
             let Some(thick) = thick else { return Ok(()) };
             line = thick;
         }
-        // A pixel of ink is at most two of the picture's, and reaches as far again.
+        // A pixel of ink covers at most two pixels of the picture, so the margin is doubled.
         let onto = onto(picture, picture_size, 4 + 2 * dilation_px);
         let composite = self.composite.get_or_init(|| CompositePass::new(device, PICTURE).expect(UNORM));
         composite.record(device, encoder, line, &onto)?;

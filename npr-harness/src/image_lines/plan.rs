@@ -1,4 +1,4 @@
-//! The part of a plan that is about lines found in the image.
+//! The part of a plan for image-space lines.
 
 use super::style::{ImageInk, InkScale, Regions};
 use crate::camera::{Camera, Projection};
@@ -19,40 +19,40 @@ use npr_imagespace::region::{region_of_index, region_of_pairs, region_of_patches
 use npr_mesh::edges::{Edge, EdgeKind};
 use std::sync::Arc;
 
-/// The part of a plan that is about lines found in the image.
+/// The part of a plan for image-space lines.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImagePlan {
-    /// The settings of the style; in a parallel view the depth step is in units of depth.
+    /// The settings of the style. In a parallel view the depth step is in scene units.
     pub ink: ImageInk,
-    /// How eye depth is packed: the scene's own range, as far as the near plane leaves it.
+    /// The encoding of eye depth: the scene's depth range, limited by the near plane.
     pub code: DepthCode,
     /// The region of each face.
     pub regions: RegionPlan,
-    /// Per material where its inner lines come from.
+    /// Per material: the source of its inner lines.
     pub line_kinds: Vec<LineKind>,
-    /// The objects' lines, and those of shadows where they are drawn by the same pass.
+    /// The lines of objects, and those of shadows if the same pass draws them.
     pub lines: ImageLines,
-    /// The lines of shadows where they are drawn separately, below the others.
+    /// The lines of shadows if a separate pass draws them, below the others.
     pub shadow_lines: Option<ImageLines>,
     /// Width and height of the target in which they are found, px.
     pub size: (u32, u32),
-    /// Whether surfaces are drawn for it again, since the picture's are of another size or have several samples a pixel.
+    /// Whether the ink has its own geometry pass, because the picture has another size or several samples per pixel.
     pub own_surfaces: bool,
 }
 
-/// The regions of faces: those of their mesh, from 1, and where those of an object begin.
+/// The regions of faces: numbers from 1 within a mesh, and an offset per object.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RegionPlan {
     /// Per mesh and face.
     pub of_meshes: Vec<Arc<Vec<u32>>>,
-    /// Per object what is added, and whether it is all there is.
+    /// Per object: the offset, and whether the whole object is one region.
     pub of_objects: Vec<(u32, bool)>,
-    /// The largest number that a texel holds; larger ones are folded.
+    /// The largest region number that a texel holds; larger numbers are folded into the range.
     pub most: u32,
 }
 
 impl RegionPlan {
-    /// The region of an object's face as a texel holds it.
+    /// The folded region number of an object's face.
     pub fn of_face(&self, scene: &Scene, object: u32, face: u32) -> u32 {
         let (first, is_all) = self.of_objects[object as usize];
         let of_mesh = &self.of_meshes[scene.objects()[object as usize].mesh()];
@@ -93,7 +93,7 @@ impl RegionPlan {
     }
 }
 
-/// The key of a mesh's regions among what is derived of it.
+/// The cache key of a mesh's regions.
 #[derive(PartialEq)]
 struct FaceRegionKey {
     regions: Regions,
@@ -104,13 +104,13 @@ struct FaceRegionKey {
 /// One pass of lines.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImageLines {
-    /// What is a line.
+    /// The filter that detects lines.
     pub filter: FusedFilter,
-    /// The disc by which they are dilated, if they are.
+    /// The disc by which lines are dilated, if any.
     pub dilation: Option<Disc>,
-    /// The passes of the dilation, where there is one.
+    /// The passes of the dilation, if any.
     flood: Option<FloodPlan>,
-    /// How they are composited over the picture.
+    /// How lines are composited over the picture.
     pub composite: Composite,
 }
 
@@ -126,14 +126,14 @@ impl ImageLines {
 
 impl ImagePlan {
     /// # Errors
-    /// A rule that the thresholds or the dilation break.
+    /// An error if a threshold or the dilation is out of range.
     pub(crate) fn new(scene: &Scene, ink: &ImageInk, crease_angle_rad: f32, view: &View) -> Result<Self, HarnessError> {
         ink.validate()?;
         let camera = &view.camera;
         let code = depth_code(scene, camera, ink.layout)?;
         let mut ink = *ink;
         if let (Projection::Orthographic { .. }, Some(test)) = (camera.projection, &mut ink.filter.depth) {
-            // As large as it may be: no jump is a line then.
+            // Limited to the largest f32, with which no depth step is a line.
             test.step = (test.step * 2.0 * scene.radius() as f32).min(f32::MAX);
         }
         let test = match ink.shadows {
@@ -160,12 +160,13 @@ impl ImagePlan {
         Ok(Self { ink, code, regions, line_kinds, lines, shadow_lines, size: ink.scale.size(view.size), own_surfaces })
     }
 
-    /// Whether ink is needed by itself before it is composited: for a dilation, or since it has not the picture's size.
-    pub fn is_stored(&self, lines: &ImageLines) -> bool {
+    /// Whether the ink must be stored before it is composited: for a dilation, or because its size differs from the
+    /// picture's.
+    pub(crate) fn is_stored(&self, lines: &ImageLines) -> bool {
         lines.dilation.is_some() || self.ink.scale != InkScale::One
     }
 
-    /// The code of what the depth buffer holds, for who has that at hand.
+    /// The encoding from the value of the depth buffer instead of eye depth.
     pub fn buffer_code(&self, camera: &Camera) -> DepthCode {
         match camera.projection {
             Projection::Perspective { .. } => self.code.of_buffer(0.0, 1.0 / camera.near),
@@ -179,17 +180,17 @@ impl ImagePlan {
     }
 
     /// Whether any lines are dilated.
-    pub fn has_dilation(&self) -> bool {
+    pub(crate) fn has_dilation(&self) -> bool {
         self.passes().any(|lines| lines.dilation.is_some())
     }
 
-    /// Ink of a picture of texels, the reference: found, and thickened.
+    /// The reference implementation: finds and dilates lines in a packed G-buffer, and returns the ink.
     ///
     /// - `lines`: [`ImagePlan::lines`] or [`ImagePlan::shadow_lines`];
-    /// - `texels`: of [`ImageInk::layout`]; in one word the second is not looked at.
+    /// - `texels`: packed by [`ImageInk::layout`]; with 32 bits the second word is ignored.
     ///
     /// # Panics
-    /// If there is not one for each pixel.
+    /// If `texels` does not have one element per pixel.
     pub fn ink(&self, lines: &ImageLines, texels: &[[u32; 2]]) -> Vec<u8> {
         let size_px = UVec2::from(self.size);
         let filter = &lines.filter;
@@ -217,8 +218,8 @@ fn depth_code(scene: &Scene, camera: &Camera, layout: TexelLayout) -> Result<Dep
     }
 }
 
-/// Per face its region. Only materials whose lines come from normals or regions are split into patches: of the others
-/// each mesh is one, so that nothing is drawn in it but what the artist wants.
+/// Per face: its region. Only materials whose lines come from normals or regions are split into patches. For the others
+/// a mesh is one region, so that only the artist's lines are drawn in it.
 fn face_regions(
     mesh: &Mesh,
     by: Regions,
@@ -255,7 +256,7 @@ fn face_regions(
     }
 }
 
-/// Neighbouring triangles of one polygon: the edge between them is none of the model's.
+/// Pairs of neighbouring triangles of one polygon; the edge between them is not an edge of the model.
 fn same_polygon(face_polygon: &[u32]) -> impl Iterator<Item = [u32; 2]> + '_ {
     face_polygon
         .windows(2)

@@ -1,4 +1,4 @@
-//! The table `[lines.image]` of a style's file.
+//! The table `[lines.image]` of a style file.
 
 use super::style::{ImageInk, InkScale, Regions};
 use crate::schema::{Color, black, one, yes};
@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
 pub(crate) struct ImageTable {
-    /// Whether normals make lines, and the cosine below which two differ.
+    /// Whether normals are compared, and the cosine below which two differ.
     normals: bool,
     normal_cos: f32,
     depth: bool,
@@ -80,7 +80,7 @@ enum ShadowsTable {
     Separate(SeparateTable),
 }
 
-/// Lines of shadows that look different.
+/// Shadow lines with their own composite and dilation.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct SeparateTable {
@@ -202,7 +202,7 @@ impl ImageTable {
                 normal_cos: self.normals.then_some(self.normal_cos),
                 depth: self.depth.then_some(DepthTest { step: self.depth_step, plain: self.depth_plain }),
                 regions: !matches!(self.regions, RegionsName::None),
-                // The plan says.
+                // Set by the plan.
                 shadows: ShadowTest::NoStates,
                 taps: match self.taps {
                     TapsName::Diagonal => Taps::Diagonal,

@@ -1,4 +1,4 @@
-//! The settings of lines found in the image in a style.
+//! The settings of image-space lines in a style.
 
 use crate::error::HarnessError;
 use crate::schema::within_colors;
@@ -11,35 +11,35 @@ use npr_imagespace::format::texel::{DepthCode, TexelLayout};
 use npr_imagespace::morphology::disc::Disc;
 use npr_imagespace::morphology::flood::{FloodPlan, flood};
 
-/// What a region is, between whose borders there are lines.
+/// The definition of a region; lines are drawn at region borders.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Regions {
-    /// All surfaces are one.
+    /// All surfaces are one region.
     One,
-    /// What is made of one material.
+    /// All faces of one material.
     Material,
-    /// What is one mesh of the file.
+    /// All faces of one mesh of the file.
     Mesh,
-    /// What is connected by edges less sharp than the style's creases, and of one material: creases become borders,
-    /// whatever the shading normals are, and so do meshes that no edge joins.
+    /// Faces of one material that are connected by edges less sharp than the style's crease angle. Creases become
+    /// borders for any shading normals, and so do meshes that share no edge.
     #[default]
     Patch,
 }
 
-/// The size of the target in which lines are found. They are 1 to 2 of its pixels wide, so it decides on their width.
+/// The size of the target in which lines are found. Lines are 1 to 2 of its pixels wide, so it determines their width.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum InkScale {
-    /// Half the picture's: lines twice as wide.
+    /// Half the picture's size, for lines twice as wide.
     Half,
-    /// The picture's. The surfaces are drawn once for both.
+    /// The picture's size. Surfaces are drawn once for both.
     #[default]
     One,
-    /// Twice the picture's: fine lines, antialiased.
+    /// Twice the picture's size, for fine antialiased lines.
     Double,
 }
 
 impl InkScale {
-    /// The target's size for a picture's.
+    /// The size of the target for a picture.
     pub fn size(self, (width, height): (u32, u32)) -> (u32, u32) {
         match self {
             Self::Half => (width.div_ceil(2), height.div_ceil(2)),
@@ -52,27 +52,28 @@ impl InkScale {
 /// How lines are found in the image and composited over it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ImageInk {
-    /// What is a line. In a parallel view the smallest jump of depth is a share of the diagonal of the model's box: so a
-    /// style suits models of any size.
+    /// The filter that detects lines. In a parallel view the smallest depth step is relative to the diagonal of the
+    /// model's bounding box, so a style applies to models of any size.
     pub filter: FusedFilter,
-    /// How normal, region and depth of a pixel are packed.
+    /// The packing of normal, region and depth.
     pub layout: TexelLayout,
-    /// What a region is.
+    /// The definition of a region.
     pub regions: Regions,
-    /// Whether materials say where their inner lines come from ([`Scene::line_kinds`](crate::scene::Scene::line_kinds)); else all from their normals.
+    /// Whether materials specify the source of their inner lines
+    /// ([`Scene::line_kinds`](crate::scene::Scene::line_kinds)); else normals are used for all materials.
     pub artist: bool,
     /// How the borders of shadows are drawn.
     pub shadows: ShadowLines,
-    /// Thickens the lines.
+    /// The disc by which lines are dilated, if any.
     pub dilation: Option<Disc>,
-    /// Of the target in which they are found.
+    /// The size of the target in which lines are found.
     pub scale: InkScale,
-    /// How they are composited over the picture.
+    /// How lines are composited over the picture.
     pub composite: Composite,
 }
 
 impl ImageInk {
-    /// The largest number of a region, beside a state of shadow where there is one.
+    /// The largest region number that leaves room for the shadow state, if any.
     pub fn region_max(&self) -> u32 {
         if self.shadows.has_states() { self.layout.shadowed_region_max() } else { self.layout.region_max() }
     }
@@ -80,7 +81,7 @@ impl ImageInk {
     /// Whether thresholds, dilations and colours are within their ranges.
     ///
     /// # Errors
-    /// The first that is not.
+    /// An error for the first value that is out of range.
     pub fn validate(&self) -> Result<(), HarnessError> {
         if let Composite::Over { color, opacity } = self.composite {
             within_colors("a component of the lines' ink", &color.extend(opacity).to_array())?;
@@ -93,11 +94,11 @@ impl ImageInk {
     }
 
     fn check_filters(&self) -> Result<(), ImageSpaceError> {
-        // Of any depth.
+        // Checks the filter with an arbitrary depth range.
         FilterUniform::new(&self.filter, self.layout, &DepthCode::parallel(1.0, 2.0, self.layout)?)?;
         let of_shadows = if let ShadowLines::Separate { dilation, .. } = self.shadows { dilation } else { None };
         for disc in self.dilation.iter().chain(&of_shadows) {
-            // Of no picture: only the radius is looked at.
+            // Checks the radius, without a picture.
             flood(&[], UVec2::ZERO, disc, &FloodPlan { passes: Vec::new() })?;
         }
         Ok(())

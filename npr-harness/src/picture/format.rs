@@ -6,7 +6,7 @@ use image::{ExtendedColorType, ImageEncoder};
 use std::fmt;
 use std::path::Path;
 
-/// Of 100: its errors are not seen.
+/// On a scale to 100; artefacts are not visible at this quality.
 const JPEG_QUALITY: u8 = 95;
 
 /// The format of a picture file that can be written.
@@ -15,18 +15,18 @@ const JPEG_QUALITY: u8 = 95;
 pub enum PictureFormat {
     /// RGBA, without loss.
     Png,
-    /// RGB at quality 95: the alpha channel is dropped, the colours stay as they are.
+    /// RGB at quality 95; the alpha channel is dropped without changing the colours.
     Jpeg,
     /// RGBA, without loss.
     WebP,
 }
 
 impl PictureFormat {
-    /// All file extensions, and what they mean.
+    /// All file extensions and their formats.
     pub const EXTENSIONS: [(&str, Self); 4] =
         [("png", Self::Png), ("jpg", Self::Jpeg), ("jpeg", Self::Jpeg), ("webp", Self::WebP)];
 
-    /// The format that a file's extension names, in upper or lower case.
+    /// The format for a file's extension, ignoring case.
     ///
     /// ```
     /// use npr_harness::picture::PictureFormat;

@@ -7,8 +7,8 @@ use crate::view::View;
 use glam::{DVec2, DVec4};
 use npr_outline::fin_printed::{fin_printed_triangles, rasterise};
 
-/// Draws the fins of the printed listing over `frame`. They are sampled where the surfaces are, so that a moved sample
-/// shows where their aliased borders are sensitive.
+/// Draws the printed fins over `frame`. They are sampled at the surface samples, so that shifted samples show where
+/// their aliased borders are sensitive to sampling.
 pub(crate) fn draw_printed(plan: &PrintedFinPlan, scene: &Scene, view: &View, shift_px: DVec2, frame: &mut CpuFrame) {
     let (size_px, scale) = (view.sampled_size_px(), f64::from(view.samples.max(1)));
     // Clip space is 2 w wide and high, and its y points up.

@@ -1,4 +1,4 @@
-//! The part of a plan that is about printed fins.
+//! The part of a plan for printed fins.
 
 use crate::camera::Camera;
 use crate::error::HarnessError;
@@ -12,7 +12,7 @@ use std::sync::Arc;
 /// The settings of printed fins in a style.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrintedLines {
-    /// Width far away, px.
+    /// The width of distant fins, px.
     pub width_px: f32,
     /// Display-referred colour.
     pub ink: Vec3,
@@ -25,16 +25,16 @@ impl PrintedLines {
     }
 }
 
-/// Printed fins of a scene.
+/// The printed fins of a scene.
 #[derive(Clone, Debug)]
 pub struct PrintedFinPlan {
-    /// Per mesh a fin for every edge.
+    /// Per mesh: a fin for every edge.
     pub fins: Vec<Arc<PrintedFins>>,
     /// Their width and colour.
     pub style: PrintedLines,
 }
 
-/// The key of the fins among what is derived of a mesh.
+/// The cache key of the fins.
 #[derive(PartialEq)]
 struct FinsKey;
 
@@ -48,9 +48,9 @@ impl PrintedFinPlan {
         Self { fins: scene.meshes().iter().map(of_mesh).collect(), style }
     }
 
-    /// The view of an object's fins: in the space of its mesh, but for depth. `None` without faces.
+    /// The view for an object's fins, in mesh space except for depth. `None` without faces.
     ///
-    /// `size_px`: of the target; `scale`: px of it in one of the picture.
+    /// `size_px` is the size of the target; `scale` is the number of its px per px of the picture.
     pub(crate) fn view(
         &self,
         scene: &Scene,

@@ -1,4 +1,4 @@
-//! The table `[lines.printed]` of a style's file.
+//! The table `[lines.printed]` of a style file.
 
 use super::plan::PrintedLines;
 use crate::schema::Color;
@@ -12,7 +12,7 @@ pub(crate) struct PrintedTable {
     ink: Color,
 }
 
-/// As in the style `printed-fins`.
+/// The settings of the style `printed-fins`.
 impl Default for PrintedTable {
     fn default() -> Self {
         Self { width_px: 2.0, ink: Color(Vec3::ZERO) }

@@ -1,4 +1,4 @@
-//! The boxes of the faces that a ray can hit.
+//! The bounding boxes of the faces that a ray can hit.
 
 use super::hash::{hash, mixed};
 use super::threads;
@@ -11,21 +11,21 @@ use obvhs::aabb::Aabb;
 #[derive(Default)]
 pub struct Boxes {
     pub boxes: Vec<Aabb>,
-    /// Per box its face, ascending.
+    /// Per box: its face, ascending.
     pub faces: Vec<u32>,
-    /// Per box [`mixed`] of the [`hash`] of its face's corners.
+    /// Per box: [`mixed`] of the [`hash`] of its face's corners.
     pub hashes: Vec<u32>,
     pub center: DVec3,
     pub half_size: f64,
 }
 
 impl Boxes {
-    /// Of all faces but those of zero area and those with a corner that is not finite.
+    /// The boxes of all faces, except those of zero area and those with a corner that is not finite.
     pub fn new(positions: &[Vec3], faces: &[[u32; 3]]) -> Self {
         Self::by(positions, faces, threads::count(faces.len()))
     }
 
-    /// On so many threads.
+    /// As [`Boxes::new`], on a number of threads.
     pub fn by(positions: &[Vec3], faces: &[[u32; 3]], threads: usize) -> Self {
         let count = faces.len();
         let mut boxes: Vec<Aabb> = bytemuck::zeroed_vec(count);
@@ -49,7 +49,7 @@ impl Boxes {
             }
             (found, bounds)
         });
-        // The pieces are brought together.
+        // Concatenates the pieces.
         let mut end = 0;
         for (first, (found, _)) in (0..).step_by(piece).zip(&found) {
             if first != end {

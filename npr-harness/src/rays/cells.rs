@@ -1,19 +1,19 @@
-//! Spatial splits, where faces are large and pass through one another: there no order of whole faces has small boxes.
+//! Spatial splits for large intersecting faces, for which no hierarchy over whole faces has small boxes.
 //!
-//! A node of the hierarchy whose boxes are an overlapping cluster becomes a cell. When the first ray comes to a
-//! cell it is halved by a plane across its longest side, and the boxes of what lies on both sides are clipped to either
-//! (Stich, Friedrich & Dietrich 2009, "Spatial Splits in Bounding Volume Hierarchies", section 4). Halves are cells
-//! again, or a hierarchy of their own. On demand, because of such faces a ray sees the first few: a tree that is built
-//! only where rays go (Hunt, Mark & Fussell 2007, "Fast and Lazy Build of Acceleration Structures from Scene
-//! Hierarchies") is fine at the skin and coarse within, where splitting everything as finely would take hundreds of
-//! references a face.
+//! A node of the hierarchy whose boxes form an overlapping cluster becomes a cell. When the first ray reaches a cell,
+//! the cell is split by a plane across its longest side, and the boxes of faces on both sides are clipped to each half
+//! (Stich, Friedrich & Dietrich 2009, "Spatial Splits in Bounding Volume Hierarchies", section 4). Each half is again a
+//! cell, or an ordinary hierarchy. Cells are built on demand (Hunt, Mark & Fussell 2007, "Fast and Lazy Build of
+//! Acceleration Structures from Scene Hierarchies"), because a ray only hits the outermost of such faces: the tree
+//! becomes fine at the surface of the cluster and stays coarse within, where an equally fine split would need hundreds
+//! of references per face.
 //!
-//! There are at most 5 n + 2²² references in all, of about 80 bytes, and a reference is halved at most 64 times. What a
-//! ray hits does not depend on which cells others have opened.
+//! There are at most 5 n + 2²² references in total, of about 80 bytes each, and a reference is split at most 64 times.
+//! The hits of a ray do not depend on which cells have been split.
 //!
-//! The picture of a polygon with 20,000 random corners, 1280 by 720 px, takes 3.8 s of processor time where it took 50 s
-//! without cells; two million random faces as large as the scene stay slow, 0.2 ms a ray. Models (bunny, teapot, beetle,
-//! fandisk, rocker arm, suzanne) have no cells.
+//! With cells, the picture of a polygon with 20,000 random corners, 1280 × 720 px, takes 3.8 s of processor time,
+//! without them 50 s. Two million random faces as large as the scene remain slow, at 0.2 ms per ray. Models (bunny,
+//! teapot, beetle, fandisk, rocker arm, suzanne) have no cells.
 
 use super::clusters::is_overlapping;
 use super::hierarchy::{Hierarchy, hierarchy};
@@ -24,22 +24,22 @@ use obvhs::{aabb::Aabb, bvh2::Bvh2};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, OnceLock, PoisonError};
 
-/// Halving in the middle takes at most this part of the references that are left.
+/// A split in the middle may use at most 1 / AT_ONCE of the remaining references.
 const AT_ONCE: usize = 32;
 
-/// Where that is too much, this share of the cell is cut off.
+/// Otherwise this fraction of the cell is split off.
 const SKIN: f32 = 1.0 / 16.0;
 
-/// Cells of so many halvings become a hierarchy.
+/// Cells split this many times become an ordinary hierarchy.
 const LEVELS: u8 = 64;
 
-/// So do those where so many times in a row both halves had nearly all that the cell had.
+/// So do cells where both halves had nearly all references for this many splits in a row.
 const STALLED: u8 = 6;
 
-/// Nearly all.
+/// The fraction of the references that counts as nearly all.
 const NEARLY: f64 = 0.95;
 
-/// References beyond one a face: so many for each face, and so many more in any scene.
+/// The maximum number of additional references: per face, and in total for any scene.
 const REFERENCES: (usize, usize) = (4, 1 << 22);
 
 /// A hierarchy with its triangles in the order of its leaves.
@@ -50,7 +50,7 @@ pub struct Tree {
     pub cells: Vec<Cell>,
 }
 
-/// What a ray comes to in a cell.
+/// The content of half a cell.
 pub struct Half {
     pub bounds: Aabb,
     pub content: Content,
@@ -61,16 +61,16 @@ pub enum Content {
     Tree(Tree),
 }
 
-/// Faces that lie over one another, halved when a ray comes.
+/// An overlapping cluster of faces, split when the first ray reaches it.
 pub struct Cell {
-    /// Until it is halved.
+    /// The references, until the cell is split.
     references: Mutex<References>,
     halves: OnceLock<Box<[Half; 2]>>,
     level: u8,
     stalled: u8,
 }
 
-/// Parts of triangles: of which faces, and boxes around what of them lies in some cell.
+/// References to parts of triangles: their faces, and the boxes of the parts within a cell.
 #[derive(Default)]
 pub struct References {
     pub faces: Vec<u32>,
@@ -78,14 +78,14 @@ pub struct References {
     pub boxes: Vec<Aabb>,
 }
 
-/// What cells are parts of.
+/// The data shared by all cells.
 pub struct Whole {
     /// Per face; empty where there are no cells.
     pub triangles: Vec<Triangle>,
     /// The hierarchy works on (position − centre) / half_size.
     pub center: DVec3,
     pub half_size: f64,
-    /// So many references more may be made.
+    /// The number of further references that may be created.
     left: AtomicUsize,
 }
 
@@ -95,7 +95,7 @@ impl Whole {
         Self { triangles: Vec::new(), center, half_size, left }
     }
 
-    /// Whether so many references may be made; then they count as made.
+    /// Reserves references, if so many are left.
     fn take(&self, count: usize) -> bool {
         let take = |left: usize| left.checked_sub(count);
         self.left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, take).is_ok()
@@ -107,7 +107,7 @@ impl Whole {
 }
 
 impl Tree {
-    /// `cells`: how deep in cells it is, and [`Cell::stalled`]; none are made without.
+    /// `cells`: the depth of nested cells and [`Cell::stalled`]; `None` to create no cells.
     pub fn new(references: References, cells: Option<(u8, u8)>, triangle: impl Fn(u32) -> Triangle + Sync) -> Self {
         let References { faces, boxes } = references;
         let Hierarchy { bvh, crowds } = hierarchy(boxes, faces, cells.is_some());
@@ -130,7 +130,7 @@ impl Cell {
         Self { references: Mutex::new(references), halves: OnceLock::new(), level, stalled }
     }
 
-    /// Its halves. The first ray that comes makes them; others wait for it.
+    /// Its halves. The first ray creates them; other threads wait for it.
     pub fn halves(&self, whole: &Whole) -> &[Half; 2] {
         self.halves.get_or_init(|| {
             let mut references = self.references.lock().unwrap_or_else(PoisonError::into_inner);
@@ -142,7 +142,7 @@ impl Cell {
         let bounds = references.boxes.iter().fold(Aabb::INVALID, |all, one| all.union(one));
         let count = references.faces.len();
         let (axis, at) = plane(&bounds, &references.boxes, whole.left.load(Ordering::Relaxed));
-        // Everything might lie on both sides.
+        // `count` allows for references that lie on both sides.
         if self.level >= LEVELS || self.stalled >= STALLED || !whole.take(count) {
             return [references, References::default()].map(|half| Half::new(half, None, whole));
         }
@@ -186,7 +186,7 @@ impl Half {
 
 #[cfg(test)]
 impl Tree {
-    /// How many references it and its cells have, and how often its cells are halved cells.
+    /// The number of references in the tree and its cells, and the depth of nested cells.
     pub fn count(&self) -> (usize, u8) {
         self.cells
             .iter()
@@ -209,8 +209,8 @@ impl Cell {
     }
 }
 
-/// Where a cell is halved: an axis, the longest, and a place on it. In the middle, unless that takes too large a share
-/// of the references that are left; then near the end where fewer boxes are, so that few of them are on both sides.
+/// The plane that splits a cell: its longest axis, and a position on it. The position is the middle, unless that needs
+/// too many of the remaining references; then it is near the end with fewer boxes, so that few boxes are on both sides.
 fn plane(bounds: &Aabb, boxes: &[Aabb], left: usize) -> (usize, f32) {
     let size = bounds.diagonal();
     let axis = size.max_position();
@@ -224,11 +224,11 @@ fn plane(bounds: &Aabb, boxes: &[Aabb], left: usize) -> (usize, f32) {
     (axis, if below(ends[0]) <= above(ends[1]) { ends[0] } else { ends[1] })
 }
 
-/// Boxes around what of a triangle lies below and above a plane across an axis, padded, and within `bounds`, which are
-/// padded too. Such without an inside are of nothing.
+/// The boxes of the parts of a triangle below and above a plane across an axis, padded and clipped to `bounds`, which
+/// are padded too. Empty parts have inverted boxes.
 ///
-/// Both have the points in which edges cross the plane as they are computed, so that nothing is lost between them: what
-/// is between the triangle and the two parts of it is rounding, and the padding is more.
+/// Both boxes contain the computed intersections of edges and plane, so that nothing is lost between them: the parts
+/// differ from the triangle by rounding only, which is less than the padding.
 fn clipped(corners: [Vec3A; 3], bounds: &Aabb, axis: usize, at: f32) -> [Aabb; 2] {
     let [mut below, mut above] = [Aabb::INVALID; 2];
     for (from, to) in [(0, 1), (1, 2), (2, 0)].map(|(from, to)| (corners[from], corners[to])) {

@@ -1,25 +1,26 @@
-//! Overlapping clusters: where the boxes of a part of the hierarchy lie so much over one another that no order of whole
-//! faces separates them.
+//! Overlapping clusters: nodes of the hierarchy whose boxes overlap so much that no hierarchy over whole faces
+//! separates them.
 
 use super::triangle::PADDING;
 use obvhs::aabb::Aabb;
 
-/// More boxes than this lie over one another in a cell: their surface over that of the box around them, which is how
-/// many of them a line through it meets in the mean.
+/// The least overlap of a cell's boxes: the sum of their surfaces over the surface of their bounding box, which is the
+/// mean number of boxes that a random line through it intersects.
 pub const OVERLAP: f32 = 32.0;
 
-/// Nor are a cell's boxes smaller than this in the mean, as a share of its surface: small ones are told apart whole.
+/// The least mean surface of a cell's boxes, relative to the cell's surface: smaller boxes are separated without
+/// splits.
 const SHARE: f32 = 1.0 / 16.0;
 
-/// A cell's `prim_count`; its `first_index` is its number among the tree's cells.
+/// The `prim_count` that marks a cell; its `first_index` is the cell's index in the tree.
 pub const CELL: u32 = u32::MAX;
 
-/// Where a part is divided is decided by about so many of its boxes, at equal steps.
+/// The approximate number of boxes, at equal steps, that are sampled to choose a split.
 pub const SAMPLE: usize = 1024;
 
-/// Whether boxes in `bounds` lie so much over one another that they are a cell; of many, by a sample of them.
+/// Whether boxes in `bounds` overlap enough to form a cell; large numbers of boxes are sampled.
 pub fn is_overlapping(bounds: &Aabb, boxes: &[Aabb]) -> bool {
-    // Boxes of the padding's size lie over one another whatever is in them.
+    // Boxes of the size of the padding overlap regardless of their content.
     if boxes.len() as f32 <= OVERLAP || bounds.diagonal().max_element() < 64.0 * PADDING as f32 {
         return false;
     }

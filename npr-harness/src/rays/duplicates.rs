@@ -1,8 +1,8 @@
-//! Faces that lie on one another and are wound alike: one triangle stands for them, else a ray that hits one would be
-//! tested against all.
+//! Duplicate faces: faces with the same corners and winding are represented by one triangle, because a ray that hits
+//! one would have to be tested against all.
 //!
-//! Most faces of most models are alone, and a bit for each hash value tells so: only faces that share a bit, and those of
-//! them that share another bit by another hash, go into a table.
+//! Most faces have no duplicate, which a bit per hash value shows: only faces that share a bit, and those of them that
+//! share another bit by a second hash, are entered into a table.
 
 use super::boxes::Boxes;
 use super::hash::{hash, mixed};
@@ -10,11 +10,11 @@ use super::triangle::Duplicate;
 use glam::Vec3;
 use std::collections::HashMap;
 
-/// Bits for each face.
+/// The number of bits per face.
 const BITS: usize = 16;
 
-/// Joins the boxes of faces with the same corners in the same order, wherever it begins: the first stays. Returns the
-/// groups, each by ascending face. The hashes are gone then.
+/// Merges the boxes of faces whose corners are a cyclic permutation of each other; the first box remains. Returns the
+/// groups, each in ascending order of faces. Clears the hashes.
 pub fn join(positions: &[Vec3], faces: &[[u32; 3]], boxes: &mut Boxes) -> Vec<Vec<Duplicate>> {
     let mut places = sharing(&std::mem::take(&mut boxes.hashes));
     if places.is_empty() {
@@ -23,7 +23,7 @@ pub fn join(positions: &[Vec3], faces: &[[u32; 3]], boxes: &mut Boxes) -> Vec<Ve
     let corners = |place: u32| faces[boxes.faces[place as usize] as usize].map(|vertex| positions[vertex as usize]);
     let second: Vec<u32> = places.iter().map(|&place| mixed(hash(&corners(place)), 1)).collect();
     places = sharing(&second).into_iter().map(|at| places[at as usize]).collect();
-    // Per set of corners the place of the first face, and its group if there is one.
+    // Per set of corners: the position of the first face, and its group, if any.
     let mut known: HashMap<[[u32; 3]; 3], (u32, Option<usize>)> = HashMap::new();
     let mut groups: Vec<Vec<Duplicate>> = Vec::new();
     let mut joined = Vec::new();
@@ -59,7 +59,7 @@ pub fn join(positions: &[Vec3], faces: &[[u32; 3]], boxes: &mut Boxes) -> Vec<Ve
     groups
 }
 
-/// The places of all hashes, ascending, that may be there more than once.
+/// The positions, ascending, of all hashes that may occur more than once.
 fn sharing(hashes: &[u32]) -> Vec<u32> {
     let bits = (BITS * hashes.len()).next_power_of_two().clamp(64, 1 << 32);
     let shift = 32 - bits.trailing_zeros();
@@ -104,7 +104,7 @@ mod tests {
         positions.extend(positions.clone());
         let mut random = Random(21);
         for _ in 0..2_000 {
-            // Half of them of other vertices at the same positions; a third wound the other way.
+            // Half of the faces use other vertices at the same positions; a third have the opposite winding.
             let [a, b, c] = faces[random.bits() as usize % own].map(|v| v + shift * (random.bits() % 2) as u32);
             let mut face = if random.bits().is_multiple_of(3) { [a, c, b] } else { [a, b, c] };
             face.rotate_left(random.bits() as usize % 3);

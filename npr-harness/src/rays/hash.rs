@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-/// Of a face's corners, the same whichever is the first, with all of its bits used.
+/// The hash of a face's corners, invariant under cyclic permutation, with all bits used.
 pub fn hash(corners: &[Vec3; 3]) -> u64 {
     const ODD: u64 = 0x9e37_79b9_7f4a_7c15;
     let of_corner = |corner: &Vec3| {
@@ -13,7 +13,7 @@ pub fn hash(corners: &[Vec3; 3]) -> u64 {
     corners.iter().map(of_corner).fold(0, u64::wrapping_add)
 }
 
-/// The upper half of the hash, or another half that does not depend on it.
+/// 32 bits of the hash: its upper half in round 0, in other rounds a remix that is independent of it.
 pub fn mixed(hash: u64, round: u32) -> u32 {
     match round {
         0 => (hash >> 32) as u32,

@@ -1,18 +1,18 @@
 //! The bounding volume hierarchy that rays traverse, built from the top down by the surface area heuristic over bins
 //! (Wald 2007, "On fast Construction of SAH-based Bounding Volume Hierarchies").
 //!
-//! obvhs, which traverses the hierarchy, has a builder too. It works from the bottom up, in rounds of joining boxes that
-//! are each other's nearest. Faces that lie on or within one another have one such pair a round: 20,000 of them make a
-//! tree 19,994 deep.
+//! obvhs, which traverses the hierarchy, also has a builder. It works bottom-up, in rounds that merge boxes which are
+//! each other's nearest neighbours. Overlapping or nested faces have only one such pair per round: 20,000 of them make
+//! a tree of depth 19,994.
 //!
-//! Boxes are moved to their part of the hierarchy, so that every pass over a part is sequential. Large parts are divided
-//! by a sample of their boxes. The halves of parts of more than [`FORK`] boxes may be built by different threads; which
-//! parts those are depends on the boxes only, so that any number of threads builds the same hierarchy.
+//! Boxes are reordered by subtree, so that every pass over a subtree is sequential. Splits of large subtrees are chosen
+//! from a sample of their boxes. The halves of subtrees with more than [`FORK`] boxes may be built on different
+//! threads. This depends on the boxes only, so any number of threads builds the same hierarchy.
 //!
-//! With the boxes and the triangles in order, 1.1 million faces of a scanned model take 0.26 s of processor time, 4.4
-//! million 1.1 s, on two threads 0.57 of that.
+//! Including boxes and triangles, 1.1 million faces of a scanned model take 0.26 s of processor time and 4.4 million
+//! 1.1 s; two threads take 0.57 of that.
 //!
-//! Here a face is in one leaf. Where faces are so large that this does not do, [`super::cells`] takes over.
+//! Each face is in exactly one leaf. Where faces are too large for that, [`super::cells`] splits them.
 
 use super::clusters::{CELL, SAMPLE, is_overlapping};
 use super::threads;
@@ -21,47 +21,47 @@ use glam::Vec3A;
 use obvhs::{aabb::Aabb, bvh2::Bvh2, bvh2::node::Bvh2Node};
 use std::ops::Range;
 
-/// Up to so many boxes are sorted into 8 bins along each axis, more into 16. With 16 always building takes 1.04 times as
-/// long, and rays the same time.
+/// Up to this many boxes are sorted into 8 bins along each axis, more into 16. With 16 bins always, building takes 1.04
+/// times as long, and rays take the same time.
 const FEW: usize = 128;
 
-/// A leaf has at most so many boxes.
+/// The maximum number of boxes in a leaf.
 const LEAF: usize = 8;
 
-/// What one step down costs, in intersections with a triangle.
+/// The cost of a traversal step, relative to a triangle intersection.
 const STEP: f32 = 1.5;
 
-/// The halves of parts of more boxes, at most [`FORKS`] steps down, have room for nodes of their own.
+/// The halves of subtrees with more boxes, at most [`FORKS`] levels down, get separate ranges of nodes.
 const FORK: usize = 1 << 13;
 const FORKS: usize = 6;
 
 /// A hierarchy over boxes.
 pub struct Hierarchy {
-    /// Its primitive indices are the boxes' numbers, leaf by leaf. Between its nodes there may be unused ones, which are
-    /// zero: those count that are reached from the first.
+    /// Its primitive indices are the boxes' numbers, leaf by leaf. Unused nodes, filled with zeros, may lie between its
+    /// nodes; only nodes reachable from the root count.
     pub bvh: Bvh2,
-    /// For each leaf that is a cell the numbers and boxes in it, which are not among `bvh`'s.
+    /// For each leaf that is a cell: its numbers and boxes, which `bvh` does not contain.
     pub crowds: Vec<(Vec<u32>, Vec<Aabb>)>,
 }
 
-/// The hierarchy over `boxes`, which must be finite, each with a number that stands for it in the result. Takes
-/// n log n steps and is at most 3 log₂ n + 3 deep, whatever they are; `Bvh2::max_depth` is the depth itself.
+/// Builds the hierarchy over `boxes`, which must be finite, each with a number that represents it in the result. Takes
+/// O(n log n) time and is at most 3 log₂ n + 3 deep for any boxes; `Bvh2::max_depth` is the actual depth.
 ///
-/// With `cells`, nodes whose boxes lie much over one another are leaves that say so, with [`CELL`] for a count and the
-/// index of the result's crowd.
+/// With `cells`, nodes whose boxes overlap too much become leaves with the count [`CELL`] and the index into the
+/// result's clusters.
 pub fn hierarchy(boxes: Vec<Aabb>, numbers: Vec<u32>, cells: bool) -> Hierarchy {
     let threads = threads::count(boxes.len());
     hierarchy_by(boxes, numbers, cells, threads)
 }
 
-/// On so many threads.
+/// As [`hierarchy`], on a number of threads.
 pub fn hierarchy_by(mut boxes: Vec<Aabb>, mut numbers: Vec<u32>, cells: bool, threads: usize) -> Hierarchy {
     let mut bvh = Bvh2 { max_depth: 0, ..Bvh2::default() };
     if boxes.is_empty() {
         return Hierarchy { bvh, crowds: Vec::new() };
     }
     let rules = Rules { cells, deep: 2 * boxes.len().ilog2() as usize + 2, threads };
-    // Below the node of a part there are at most two for each of its boxes but one.
+    // A subtree of n boxes has at most 2 (n - 1) nodes below its root.
     let mut nodes: Vec<Bvh2Node> = bytemuck::zeroed_vec(2 * boxes.len() - 1);
     let (root, below) = nodes.split_at_mut(1);
     let part = Part { boxes: &mut boxes, numbers: &mut numbers, first: 0, depth: 0 };
@@ -83,7 +83,7 @@ pub fn hierarchy_by(mut boxes: Vec<Aabb>, mut numbers: Vec<u32>, cells: bool, th
     Hierarchy { bvh, crowds }
 }
 
-/// `numbers` without those that are in no leaf but in cells. `crowds`: their places, ascending.
+/// `numbers` without those that only cells contain. `crowds`: their positions, ascending.
 fn without_crowds(bvh: &mut Bvh2, numbers: &[u32], crowds: &[Range<usize>]) -> Vec<u32> {
     let mut kept = Vec::new();
     for leaf in bvh.nodes.iter_mut().filter(|node| node.is_leaf()) {
@@ -98,50 +98,50 @@ fn without_crowds(bvh: &mut Bvh2, numbers: &[u32], crowds: &[Range<usize>]) -> V
     kept
 }
 
-/// What is the same for all parts.
+/// The settings shared by all subtrees.
 struct Rules {
     cells: bool,
-    /// From this depth on parts are halved.
+    /// The depth from which subtrees are split at the median.
     deep: usize,
     threads: usize,
 }
 
-/// Boxes that become a node and what is below it.
+/// The boxes of a subtree.
 struct Part<'a> {
     boxes: &'a mut [Aabb],
     numbers: &'a mut [u32],
-    /// The place of its first box among all.
+    /// The position of its first box among all.
     first: usize,
     depth: usize,
 }
 
-/// Where the nodes below a part's own go.
+/// The range for the nodes below the root of a subtree.
 struct Room<'a> {
     nodes: &'a mut [Bvh2Node],
-    /// The index of the first of them in the hierarchy.
+    /// The index of the first of these nodes in the hierarchy.
     first: usize,
 }
 
-/// What a built part is, besides its nodes.
+/// The properties of a built subtree.
 #[derive(Default)]
 struct Built {
-    /// Of the deepest node.
+    /// The depth of the deepest node.
     depth: usize,
-    /// How many nodes there are below the part's own, if they are in one piece.
+    /// The number of nodes below the root, if they are contiguous.
     nodes: usize,
-    /// The places of the boxes of each leaf that is a cell, ascending.
+    /// The positions of the boxes of each leaf that is a cell, ascending.
     crowds: Vec<Range<usize>>,
 }
 
-/// What a part becomes.
+/// The kind of node at the root of a subtree.
 enum Shape {
     Leaf,
     Cell,
-    /// Two children, of which the first has so many boxes.
+    /// Two children; the first has this many boxes.
     Inner(usize),
 }
 
-/// Builds a large part, both halves at the same time.
+/// Builds a large subtree, both halves concurrently.
 fn fork(mut part: Part, root: &mut Bvh2Node, room: Room, rules: &Rules) -> Built {
     if part.boxes.len() <= FORK || part.depth >= FORKS {
         return grow(part, root, room, rules);
@@ -163,7 +163,7 @@ fn fork(mut part: Part, root: &mut Bvh2Node, room: Room, rules: &Rules) -> Built
         let part = Part { boxes: right_boxes, numbers: right_numbers, first: part.first + left, depth };
         fork(part, &mut right_root[0], Room { nodes: right_below, first: room.first + 2 * left }, rules)
     };
-    // More halves than threads, since they are not equally large.
+    // More halves than threads, since their sizes differ.
     let at_once = rules.threads > 1 && part.depth <= rules.threads.ilog2() as usize + 1;
     let (mut left, right) =
         if at_once { threads::join(build_left, build_right) } else { (build_left(), build_right()) };
@@ -172,7 +172,7 @@ fn fork(mut part: Part, root: &mut Bvh2Node, room: Room, rules: &Rules) -> Built
     left
 }
 
-/// Builds a part, its nodes in one piece.
+/// Builds a subtree with contiguous nodes.
 fn grow(part: Part, root: &mut Bvh2Node, room: Room, rules: &Rules) -> Built {
     let Part { boxes, numbers, first, depth } = part;
     let mut built = Built::default();
@@ -201,7 +201,7 @@ fn grow(part: Part, root: &mut Bvh2Node, room: Room, rules: &Rules) -> Built {
 }
 
 impl Part<'_> {
-    /// Decides what the part becomes, and orders its boxes by children. `child`: the index of its children's nodes.
+    /// Chooses the kind of node and orders the boxes by children. `child`: the index of the children's nodes.
     fn node(&mut self, child: usize, rules: &Rules) -> (Bvh2Node, Shape) {
         let extent = Extent::of(self.boxes);
         let count = self.boxes.len();
@@ -214,7 +214,7 @@ impl Part<'_> {
         }
     }
 
-    /// What is built of a part without children.
+    /// The result for a subtree without children.
     fn end(&self, shape: &Shape) -> Built {
         let mut built = Built { depth: self.depth, ..Built::default() };
         if matches!(shape, Shape::Cell) {
@@ -223,13 +223,13 @@ impl Part<'_> {
         built
     }
 
-    /// Orders the boxes, so that the first ones are one child's: how many, or `None` for a leaf.
+    /// Orders the boxes by child and returns the number of boxes of the first child, or `None` for a leaf.
     fn divide(&mut self, extent: &Extent, halve: bool) -> Option<usize> {
         let count = self.boxes.len();
         if count <= 2 {
             return None;
         }
-        // Middles nearer than the padding are one place: what distinguishes such boxes is their size.
+        // Centres nearer than the padding count as equal; such boxes are ordered by size.
         let size = extent.middles.diagonal();
         let one_place = size.max_element() <= PADDING as f32;
         if !(one_place || halve) {
@@ -245,13 +245,13 @@ impl Part<'_> {
             if let Some(split) = split {
                 return Some(self.partition(&split));
             }
-            // The sample was all in one bin.
+            // All sampled boxes were in one bin.
         }
         let axis = size.max_position();
         (count > LEAF).then(|| self.halve(if one_place { None } else { Some(axis) }))
     }
 
-    /// Moves the boxes in the lower bins to the front: how many.
+    /// Moves the boxes in the lower bins to the front and returns their number.
     fn partition(&mut self, Split { bins, axis, last, .. }: &Split) -> usize {
         let (low, per_unit) = (bins.low[*axis], bins.per_unit[*axis]);
         let is_lower =
@@ -263,7 +263,7 @@ impl Part<'_> {
         }
     }
 
-    /// Without a branch that depends on a box: every box changes places with the first that stays behind.
+    /// Branchless: every box is swapped with the first that stays behind.
     fn bring_forward(&mut self, is_lower: impl Fn(&Aabb) -> bool) -> usize {
         let mut left = 0;
         for at in 0..self.boxes.len() {
@@ -275,7 +275,7 @@ impl Part<'_> {
         left
     }
 
-    /// Orders the boxes by their middles along an axis, or by their size, as far as that the lower half is in front.
+    /// Partially orders the boxes by their centres along an axis, or by size, so that the lower half comes first.
     fn halve(&mut self, axis: Option<usize>) -> usize {
         let key = |one: &Aabb| axis.map_or_else(|| one.half_area(), |axis| middle(one)[axis]);
         let mut keyed: Vec<(f32, u32, Aabb)> =
@@ -294,7 +294,7 @@ fn middle(one: &Aabb) -> Vec3A {
     one.min + one.max
 }
 
-/// A box around boxes, and one around their [`middle`]s.
+/// The bounding box of boxes, and that of their [`middle`]s.
 struct Extent {
     bounds: Aabb,
     middles: Aabb,
@@ -313,16 +313,16 @@ impl Extent {
     }
 }
 
-/// Equal ranges of the boxes' middles along each axis.
+/// Equal intervals of the boxes' centres along each axis.
 #[derive(Clone, Copy)]
 struct Bins {
     low: Vec3A,
     per_unit: Vec3A,
-    /// How many there are, less one.
+    /// The number of bins minus one.
     most: f32,
 }
 
-/// From here on floats are whole numbers, whose last bits are those of the integer.
+/// From 2²³ on, floats are integers, whose lowest bits are those of the integer.
 const WHOLE: f32 = (1u32 << 23) as f32;
 
 impl Bins {
@@ -331,14 +331,14 @@ impl Bins {
         Self { low: extent.middles.min, per_unit: Vec3A::splat(count as f32) / size, most: count as f32 - 1.0 }
     }
 
-    /// A box's bin along each axis, in the last bits.
+    /// A box's bin along each axis, in the lowest bits.
     fn of(&self, one: &Aabb) -> [u32; 3] {
         let at = (middle(one) - self.low) * self.per_unit - 0.5;
         (at.clamp(Vec3A::ZERO, Vec3A::splat(self.most)) + WHOLE).to_array().map(f32::to_bits)
     }
 }
 
-/// The best way to divide boxes: those up to the bin `last` along an axis, and those after it.
+/// The best split of boxes: those up to the bin `last` along an axis, and those after it.
 struct Split {
     cost: f32,
     bins: Bins,
@@ -346,7 +346,7 @@ struct Split {
     last: usize,
 }
 
-/// `COUNT` bins, a power of two. `None` if all boxes that are looked at are in one bin along each axis.
+/// Uses `COUNT` bins, a power of two. `None` if all sampled boxes are in one bin along each axis.
 fn best_split<const COUNT: usize>(extent: &Extent, boxes: &[Aabb]) -> Option<Split> {
     let bins = Bins::new(extent, COUNT);
     let mut bounds = [[Aabb::INVALID; COUNT]; 3];
@@ -360,7 +360,7 @@ fn best_split<const COUNT: usize>(extent: &Extent, boxes: &[Aabb]) -> Option<Spl
     }
     let (mut cost, mut place) = (f32::INFINITY, None);
     for axis in 0..3 {
-        // The cost of a ray through boxes, times the area of the box that holds them: not a number for no boxes.
+        // The expected cost of a ray through boxes, times the area of their parent's box; NaN for no boxes.
         let mut above = [f32::NAN; COUNT];
         let (mut around, mut count) = (Aabb::INVALID, 0);
         for bin in (1..COUNT).rev() {

@@ -90,7 +90,7 @@ pub(super) fn any_hit(_: &Hit) -> bool {
     true
 }
 
-/// What [`RayCaster::closest`] must answer: the same test on every face.
+/// The expected result of [`RayCaster::closest`]: the same test on every face.
 pub(super) fn closest_of_all(
     positions: &[Vec3],
     faces: &[[u32; 3]],
@@ -111,7 +111,7 @@ pub(super) fn closest_of_all(
     hits
 }
 
-/// Möller & Trumbore 1997: another formula for the same thing.
+/// Möller & Trumbore 1997: an independent formula for the same intersection.
 fn moller_trumbore([a, b, c]: [DVec3; 3], origin: DVec3, direction: DVec3) -> (f64, [f64; 3]) {
     let (e1, e2) = (b - a, c - a);
     let p = direction.cross(e2);
@@ -187,7 +187,7 @@ fn a_cube_has_no_gaps_at_edges_corners_and_diagonals() {
             let hit = caster.closest(inside, spot - inside, EVERYWHERE, any_hit).expect("closed");
             assert!(!hit.front && (hit.t - 1.0).abs() < 1e-12, "{hit:?}");
             assert!(caster.any(inside, spot - inside, EVERYWHERE, any_hit));
-            // From outside, wherever the ray goes on into the cube.
+            // From outside, if the ray continues into the cube.
             if (spot + direction * 0.01).abs().max_element() < 1.0 {
                 let hit = caster.closest(spot - direction * 4.0, direction, EVERYWHERE, any_hit).expect("closed");
                 assert!(hit.front && (hit.t - 4.0).abs() < 1e-6, "{hit:?}");
@@ -202,7 +202,7 @@ fn a_cube_has_no_gaps_at_edges_corners_and_diagonals() {
     }
     for axis in [DVec3::X, DVec3::Y, DVec3::Z, -DVec3::X, -DVec3::Y, -DVec3::Z] {
         let hits = caster.all(axis * 2.0, -axis, EVERYWHERE, any_hit);
-        // Both faces of the near side and both of the far one share the diagonal.
+        // Both faces of the near side and both of the far side share the diagonal.
         assert_eq!(
             hits.iter().map(|hit| (hit.t, hit.front)).collect::<Vec<_>>(),
             [(1.0, true), (1.0, true), (3.0, false), (3.0, false)]
@@ -228,7 +228,7 @@ fn a_closed_sphere_does_not_leak() {
         for spot in positions.iter().map(|p| p.as_dvec3()).chain(middles) {
             let hit = caster.closest(inside, spot - inside, EVERYWHERE, any_hit).expect("no leak");
             assert!((hit.t - 1.0).abs() < 1e-9 && !hit.front, "{hit:?}");
-            // Well off the silhouette: there the facets fall away from a corner by up to 6°.
+            // Not near the silhouette: facets deviate from the tangent at a corner by up to 6°.
             if spot.dot(outside - spot) > 0.2 * (outside - spot).length() {
                 let hits = caster.all(outside, spot - outside, EVERYWHERE, any_hit);
                 assert!((hits[0].t - 1.0).abs() < 1e-9 && hits[0].front, "{hits:?}");
@@ -251,7 +251,7 @@ fn the_hierarchy_loses_nothing() {
             let first = positions.len() as u32;
             positions.extend((0..3).map(|_| (at + random.vector() * size).as_vec3()));
             faces.push([first, first + 1, first + 2]);
-            // Every fifth one lies in a plane of two axes, so that boxes have no thickness.
+            // Every fifth face lies in an axis-aligned plane, so that its box has no thickness.
             if random.bits().is_multiple_of(5) {
                 let axis = random.bits() as usize % 3;
                 for position in &mut positions[first as usize..] {
@@ -280,7 +280,7 @@ fn the_hierarchy_loses_nothing() {
             );
             rays += 1;
             hits += expected.len();
-            // The test itself against another formula, off the borders.
+            // Checks the intersection test against the other formula, away from the borders.
             for (number, face) in (0u32..).zip(&faces).filter(|_| ray % 4 == 3) {
                 let corners = face.map(|v| positions[v as usize].as_dvec3());
                 let (t, weights) = moller_trumbore(corners, origin, direction);
@@ -323,7 +323,7 @@ fn size_and_distance_do_not_matter() {
                 assert!((0.9..1.0 + 1e-6).contains(&radius), "{size} {distance} {radius}");
                 assert!(caster.closest(origin, -direction, EVERYWHERE, any_hit).is_none());
                 assert!(caster.closest(origin, -direction, (f64::NEG_INFINITY, 0.0), any_hit).is_some());
-                // Past the sphere, close by.
+                // A ray that narrowly misses the sphere.
                 let aside = origin.normalize().any_orthonormal_vector() * 1.01 * size;
                 assert!(!caster.any(origin + aside, -origin, EVERYWHERE, any_hit));
             }
@@ -354,14 +354,15 @@ fn nothing_is_hit_where_there_is_nothing() {
     assert!(nothing.closest(DVec3::ZERO, DVec3::X, EVERYWHERE, any_hit).is_none());
     let (mut positions, _) = cube();
     positions.extend([Vec3::splat(f32::NAN), Vec3::new(0.0, f32::INFINITY, 0.0), Vec3::ZERO, Vec3::X * 2.0, Vec3::X]);
-    // Two corners alike, all alike, on a line, not finite; then one good face.
+    // Faces with two equal corners, three equal corners, collinear corners, and corners that are not finite; then a
+    // valid face.
     let mut faces = vec![[0, 0, 1], [3, 3, 3], [10, 11, 12], [0, 1, 8], [9, 1, 2]];
     assert!(!RayCaster::new(&positions, &faces).any(DVec3::ZERO, DVec3::X, EVERYWHERE, any_hit));
     faces.push([0, 1, 3]);
     let caster = RayCaster::new(&positions, &faces);
     let hit = caster.closest(DVec3::new(0.25, -0.25, 5.0), -DVec3::Z, EVERYWHERE, any_hit);
     assert_eq!(hit.map(|hit| (hit.face, hit.t)), Some((5, 6.0)));
-    // In the face's plane there is nothing to see; and no ray without a direction.
+    // A ray in the face's plane hits nothing, and neither does one without a direction.
     assert!(!caster.any(DVec3::new(-5.0, 0.0, -1.0), DVec3::X, EVERYWHERE, any_hit));
     for (origin, direction) in [
         (DVec3::ZERO, DVec3::ZERO),
@@ -376,7 +377,7 @@ fn nothing_is_hit_where_there_is_nothing() {
 #[test]
 fn of_faces_on_each_other_the_first_is_hit() {
     let (positions, faces) = cube();
-    // Enough copies that the hierarchy puts them in many leaves, the second half wound the other way.
+    // Enough copies to fill many leaves; the second half has the opposite winding.
     let copies = 500u32;
     let many: Vec<[u32; 3]> = (0..copies)
         .flat_map(|copy| {
@@ -405,11 +406,11 @@ fn of_faces_on_each_other_the_first_is_hit() {
             assert_eq!(hit.front, normal.dot(direction) < 0.0);
         }
     }
-    // Exactly representable weights: all copies are at one t.
+    // The weights are exactly representable, so all copies are at the same t.
     let hit = caster.closest(DVec3::new(0.25, -0.25, 4.0), -DVec3::Z, EVERYWHERE, any_hit);
     let hit_once = one.closest(DVec3::new(0.25, -0.25, 4.0), -DVec3::Z, EVERYWHERE, any_hit);
     assert_eq!(hit.map(|hit| (hit.t, hit.face)), hit_once.map(|hit| (hit.t, hit.face)));
-    // The answer is the same without the first copies.
+    // The same if the first copies are rejected.
     let late = |hit: &Hit| hit.face >= 12 * 400;
     let hit = caster.closest(DVec3::new(0.25, -0.25, 4.0), -DVec3::Z, EVERYWHERE, late);
     assert_eq!(hit.map(|hit| hit.face), hit_once.map(|hit| hit.face + 12 * 400));
@@ -456,7 +457,7 @@ fn faces_on_or_within_one_another_take_no_quadratic_time() {
     }
 }
 
-/// How deep a hierarchy is. Its boxes must hold those below them, and its leaves all of its primitives, each once.
+/// The depth of a hierarchy. Checks that boxes contain their children and that each primitive is in exactly one leaf.
 fn checked_depth(bvh: &Bvh2) -> usize {
     let (mut deepest, mut open) = (0, vec![(0, 0)]);
     let mut met = vec![false; bvh.primitive_indices.len()];
@@ -482,7 +483,7 @@ fn checked_depth(bvh: &Bvh2) -> usize {
 #[test]
 fn any_number_of_threads_builds_the_same() {
     let (mut positions, mut faces) = icosphere(6);
-    // Some are left out, some are there twice, and beside the sphere are two clusters that become cells.
+    // Some faces are degenerate, some are duplicates, and two clusters next to the sphere become cells.
     faces[100] = [0, 0, 1];
     faces[70_000] = faces[50];
     let mut random = Random(22);

@@ -1,11 +1,11 @@
-//! How work is divided between threads.
+//! Distribution of work over threads.
 
 use std::num::NonZero;
 
-/// Fewer items than this are not worth a thread of their own.
+/// The least number of items per thread.
 const LEAST: usize = 1 << 13;
 
-/// How many threads to use for so many items.
+/// The number of threads to use for a number of items.
 pub fn count(items: usize) -> usize {
     if items < 2 * LEAST {
         return 1;
@@ -13,7 +13,7 @@ pub fn count(items: usize) -> usize {
     std::thread::available_parallelism().map_or(1, NonZero::get).min(items / LEAST)
 }
 
-/// Does both at the same time, `b` on this thread.
+/// Runs both functions concurrently, `b` on the calling thread.
 pub fn join<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> B) -> (A, B) {
     std::thread::scope(|scope| {
         let a = scope.spawn(a);
@@ -22,8 +22,8 @@ pub fn join<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> 
     })
 }
 
-/// Does `work` for all items at the same time, each on a thread of its own, the last on this one. The results are in the
-/// order of the items.
+/// Runs `work` for all items concurrently, each on a separate thread, the last on the calling thread. The results are
+/// in the order of the items.
 pub fn each<T: Send, R: Send>(items: impl IntoIterator<Item = T>, work: impl Fn(T) -> R + Sync) -> Vec<R> {
     let mut items: Vec<T> = items.into_iter().collect();
     let Some(last) = items.pop() else { return Vec::new() };

@@ -1,4 +1,4 @@
-//! What the hierarchy's leaves hold.
+//! The triangles in the hierarchy's leaves.
 
 use glam::Vec3;
 
@@ -7,22 +7,23 @@ use glam::Vec3;
 #[repr(C)]
 pub struct Triangle {
     pub corners: [Vec3; 3],
-    /// The face's number; or, with the bit [`DUPLICATES`], which of the ray caster's lists of duplicates.
+    /// The index of the face; or, with the bit [`DUPLICATES`] set, the index of one of the ray caster's groups of
+    /// duplicates.
     pub face: u32,
 }
 
-/// Faces have fewer numbers.
+/// The bit that marks a group of duplicates; indices of faces are smaller.
 pub const DUPLICATES: u32 = 1 << 31;
 
 /// One of several faces with the same corners.
 #[derive(Clone, Copy)]
 pub struct Duplicate {
     pub face: u32,
-    /// Which of the triangle's corners is the face's first.
+    /// The index of the triangle's corner that is the face's first.
     pub first: usize,
 }
 
-/// The boxes' padding, where the scene's larger half size is 1. A ray's start and direction are rounded to f32
-/// (2⁻²⁴ of at most 2.7), so is a box, its slab test rounds three times on distances of at most 5, and obvhs takes
-/// a direction's component under 1.2e-7 for 1.2e-7: together under 2e-6.
+/// The padding of boxes, where the scene's larger half size is 1. Errors come from rounding a ray's start and direction
+/// to f32 (2⁻²⁴ of at most 2.7), rounding a box, three roundings of the slab test on distances of at most 5, and obvhs,
+/// which replaces components of a direction under 1.2e-7 by 1.2e-7: together under 2e-6.
 pub const PADDING: f64 = 4e-6;

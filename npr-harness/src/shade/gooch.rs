@@ -1,4 +1,4 @@
-//! From cool to warm.
+//! Gooch shading, from cool to warm.
 
 use super::model::{LitPoint, ShadeModel, ShadeOnDevice, ShadeView, Shading};
 use crate::error::HarnessError;
@@ -23,7 +23,7 @@ pub(crate) struct GoochTable {
 
 impl Default for GoochTable {
     fn default() -> Self {
-        // Without a table for it there is no highlight, as with bands.
+        // As for bands, there is no highlight unless the file has a table for it.
         Self::new(&Gooch { highlight: None, ..Gooch::default() })
     }
 }
@@ -89,7 +89,7 @@ impl ShadeModel for Gooch {
         Ok(())
     }
 
-    /// Tones depend on the direction of the light alone.
+    /// Gooch's tones depend only on the direction of the light, not on its brightness.
     fn diffuse(&self, n_dot_l: f64, _brightness: f64) -> f64 {
         n_dot_l
     }

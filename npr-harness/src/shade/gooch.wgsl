@@ -1,4 +1,4 @@
-// From cool to warm. The second number is R.E.
+// Gooch shading, from cool to warm. The second coordinate is R.E.
 
 @group(0) @binding(1) var<uniform> shade: GoochModel;
 
@@ -18,7 +18,7 @@ fn shade_second_interpolated(n: vec3<f32>, l: vec3<f32>, n_dot_l: f32, second: v
     return 2.0 * n_dot_l * dot(n, second) - dot(l, second);
 }
 
-// R.E does not depend on the normal's sign.
+// R.E does not depend on the sign of the normal.
 fn shade_second_of_back(second: f32) -> f32 {
     return second;
 }

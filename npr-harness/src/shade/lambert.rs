@@ -11,7 +11,7 @@ pub(super) const ONE_LIGHT_WGSL: &str = include_str!("one_light.wgsl");
 /// Ambient and diffuse light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lambert {
-    /// What is left where no light falls, 0..=1.
+    /// The fraction of the surface's colour where N·L is not above 0, 0..=1.
     pub ambient: f32,
 }
 

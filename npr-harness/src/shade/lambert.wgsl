@@ -1,6 +1,6 @@
 // Ambient and diffuse light.
 
-// x: what is left where no light falls.
+// x: the fraction of the surface's colour where N.L is not above 0.
 @group(0) @binding(1) var<uniform> shade: vec4<f32>;
 
 fn shade_color(base: vec3<f32>, light_there: vec2<f32>, n: vec3<f32>, at: ShadowAt) -> vec3<f32> {

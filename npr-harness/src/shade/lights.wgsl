@@ -1,17 +1,16 @@
-// The lights, and what a shade is looked up with: the diffuse term, and the shade's second number.
+// The lights, and the lookup coordinates of a shade: the diffuse term and the shade's second coordinate.
 
-// 0: normals are brought to unit length at the pixel; 1: they are used as interpolated; 2: light is computed at the
-// vertices.
+// 0: normals are normalized at the pixel; 1: normals are used as interpolated; 2: light is computed at the vertices.
 override surface_normals: u32 = 0u;
-// Whether the lights' places are positions.
+// Whether the lights are positional instead of directional.
 override surface_first_positional: bool = false;
 override surface_second_positional: bool = false;
-// Whether the light has another colour than white, or another brightness than 1.
+// Whether the light's colour is not white or its brightness is not 1.
 override surface_tinted: bool = true;
 
 @group(0) @binding(3) var<uniform> lights: ToonPainter;
 
-// From a point to the first light: a unit vector.
+// The unit vector from a point to the first light.
 fn to_first_light(at: vec3<f32>) -> vec3<f32> {
     if surface_first_positional {
         return toon_to_light(lights.light_a, at);
@@ -34,7 +33,7 @@ fn by_brightness(n_dot_l: f32) -> f32 {
     return n_dot_l;
 }
 
-// A surface's own colour under the colour of the light.
+// Multiplies a surface's colour by the colour of the light.
 fn by_light_color(base: vec3<f32>) -> vec3<f32> {
     if surface_tinted {
         return base * lights.light_color.rgb;
@@ -42,20 +41,21 @@ fn by_light_color(base: vec3<f32>) -> vec3<f32> {
     return base;
 }
 
-// What a shade is looked up with at a point. The normal is of unit length, the vector to the eye of any.
+// The lookup coordinates at a point. The normal has unit length, the vector to the eye any length.
 fn light_at(n: vec3<f32>, at: vec3<f32>, eye: vec3<f32>) -> vec2<f32> {
     let l = to_first_light(at);
     let n_dot_l = dot(n, l);
     return vec2<f32>(shade_diffuse(n_dot_l), shade_second(n, l, n_dot_l, at, eye));
 }
 
-// The same of vectors as they were interpolated: the normal, to the light, and the shade's second vector.
+// The lookup coordinates, computed from interpolated vectors: the normal, the vector to the light, and the shade's
+// second vector.
 fn light_interpolated(n: vec3<f32>, l: vec3<f32>, second: vec3<f32>) -> vec2<f32> {
     let n_dot_l = toon_n_dot_l_interpolated(n, l);
     return vec2<f32>(shade_diffuse(n_dot_l), shade_second_interpolated(n, l, n_dot_l, second));
 }
 
-// Light that was computed with the normal of the front, on the back.
+// Converts light computed with the normal of the front to the back of the face.
 fn light_of_back(light: vec2<f32>) -> vec2<f32> {
     return vec2<f32>(-light.x, shade_second_of_back(light.y));
 }

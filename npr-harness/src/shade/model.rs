@@ -1,20 +1,20 @@
-//! What a shade is: its functions on the CPU, and what it gives to the shader of surfaces.
+//! The interface of a shade: its functions on the CPU, and its contributions to the surface shader.
 
 use crate::error::HarnessError;
 use glam::{DVec2, DVec3, DVec4};
 use npr_toon::painter::{Painter, toon_diffuse};
 use npr_toon::source::Light;
 
-/// The data of a scene and a view that shades read besides the lights.
+/// The data of a scene and a view that shades use in addition to the lights.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ShadeView {
-    /// The plane (n, d) of which n · p + d is the eye depth of a point p.
+    /// The plane (n, d) such that n · p + d is the eye depth of a point p.
     pub eye_depth: DVec4,
-    /// The eye depths between which the scene lies.
+    /// The range of eye depth that the scene occupies.
     pub depth_range: (f64, f64),
 }
 
-/// A point of a surface under the lights. World space; vectors of any length, the normal on the viewer's side.
+/// A surface point to be lit. World space; vectors of any length, the normal on the viewer's side.
 #[derive(Clone, Copy)]
 pub(crate) struct LitPoint {
     pub(crate) normal: DVec3,
@@ -22,35 +22,35 @@ pub(crate) struct LitPoint {
     pub(crate) to_eye: DVec3,
 }
 
-/// How far a function of the two numbers that a shade is looked up with changes within the pixel.
+/// Returns the change within the pixel of a function of the two lookup coordinates.
 pub(crate) type Widths<'a> = dyn Fn(&dyn Fn(DVec2) -> DVec2) -> DVec2 + 'a;
 
-/// A sample of a surface as a shade colours it.
+/// The inputs for shading a surface sample.
 pub(crate) struct Shading<'a> {
-    /// The surface's own colour, display-referred.
+    /// The surface's unshaded colour, display-referred.
     pub(crate) base: DVec3,
-    /// Of all lights together.
+    /// The combined colour of all lights.
     pub(crate) light_color: DVec3,
-    /// What the shade is looked up with: the diffuse term and the second number, shadow included.
+    /// The lookup coordinates, including shadow: the diffuse term and the second coordinate.
     pub(crate) light: DVec2,
     /// The normal, negated in shadow, of unit length.
     pub(crate) normal: &'a dyn Fn() -> DVec3,
-    /// How far a function of `light` changes within the pixel.
+    /// Returns the change of a function of `light` within the pixel.
     pub(crate) widths: &'a Widths<'a>,
 }
 
-/// What a shade gives the shader of surfaces.
+/// A shade's contributions to the surface shader.
 pub(crate) struct ShadeOnDevice {
-    /// Parts of the shader, by name: libraries first, then the shade's own functions. See `shade/unlit.wgsl` for those that
-    /// a shade has.
+    /// Parts of the shader, by name: libraries first, then the shade's own functions, which are listed in
+    /// `shade/unlit.wgsl`.
     pub(crate) wgsl: &'static [(&'static str, &'static str)],
-    /// Values of the shader's overrides.
+    /// The values of the shader's override constants.
     pub(crate) constants: Vec<(&'static str, f64)>,
-    /// The uniform `shade`, whole vectors; empty if there is none.
+    /// The uniform `shade`, padded to whole vectors; empty if there is none.
     pub(crate) uniform: Vec<u8>,
-    /// The texture `shade_image`, if it is read: width, height, and texels row by row, display-referred.
+    /// The texture `shade_image`, if it is used: width, height, and display-referred texels in row order.
     pub(crate) image: Option<(u32, u32, Vec<[u8; 4]>)>,
-    /// What brings colours of more than 1 into range ([`Painter::light_scale`]).
+    /// The factor that brings colours above 1 into range ([`Painter::light_scale`]).
     pub(crate) light_scale: f32,
 }
 
@@ -60,23 +60,23 @@ impl ShadeOnDevice {
     }
 }
 
-/// What a shade does, on the CPU in f64 and on a device. The functions of numbers have twins of the same name, with the
-/// prefix `shade_`, in the shade's WGSL.
+/// The functions of a shade, on the CPU in f64 and on the GPU. The numeric functions have WGSL versions of the same
+/// name with the prefix `shade_`.
 pub(crate) trait ShadeModel {
-    /// Whether all numbers are in their ranges.
+    /// Checks that all numbers are within their ranges.
     fn validate(&self) -> Result<(), HarnessError>;
 
-    /// How many lights it knows; more are replaced by the one that stands for them all.
+    /// The number of lights that the shade supports; more lights are replaced by one that approximates them.
     fn lights(&self) -> usize {
         1
     }
 
-    /// Whether a material is its colour *or* its texture, whichever its colour's alpha says.
+    /// Whether the alpha of a material's colour selects either the colour or the texture.
     fn material_by_alpha(&self) -> bool {
         false
     }
 
-    /// Whether colours are normals, which no light changes.
+    /// Whether the colours encode normals, which lighting does not change.
     fn is_normals(&self) -> bool {
         false
     }
@@ -86,17 +86,17 @@ pub(crate) trait ShadeModel {
         toon_diffuse(n_dot_l, brightness)
     }
 
-    /// The second number at a point. `to_light`: to the first light, of unit length.
+    /// The second coordinate at a point. `to_light` is the unit vector to the first light.
     fn second(&self, _point: &LitPoint, _to_light: DVec3, _lights: &[Light], _view: &ShadeView) -> f64 {
         0.0
     }
 
-    /// The vector at a vertex that is interpolated for [`Self::second_interpolated`].
+    /// The vector at a vertex that is interpolated as an input for [`Self::second_interpolated`].
     fn second_vector(&self, _point: &LitPoint, _lights: &[Light], _view: &ShadeView) -> DVec3 {
         DVec3::ZERO
     }
 
-    /// The second number of vectors as they were interpolated.
+    /// The second coordinate, computed from interpolated vectors.
     fn second_interpolated(
         &self,
         _normal: DVec3,
@@ -108,7 +108,7 @@ pub(crate) trait ShadeModel {
         0.0
     }
 
-    /// The second number in a cast shadow.
+    /// The second coordinate in a cast shadow.
     fn second_in_shadow(&self, _second: f64) -> f64 {
         -1.0
     }
@@ -116,12 +116,12 @@ pub(crate) trait ShadeModel {
     /// The display-referred colour.
     fn color(&self, shading: &Shading<'_>) -> DVec3;
 
-    /// Whether [`Self::second`] depends on the position, whatever the light.
+    /// Whether [`Self::second`] depends on the position even with directional light.
     fn needs_position(&self) -> bool {
         false
     }
 
-    /// Its shader, and what that needs for a view.
+    /// The shader and its data for a view.
     fn on_device(&self, view: &ShadeView) -> Result<ShadeOnDevice, HarnessError>;
 }
 

@@ -1,4 +1,4 @@
-// Shades that are looked up with the diffuse term alone.
+// Functions for shades that use only the diffuse term.
 
 fn shade_diffuse(n_dot_l: f32) -> f32 {
     return by_brightness(n_dot_l);

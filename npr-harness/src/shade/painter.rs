@@ -1,4 +1,4 @@
-//! Two lights, each an axis of a 2D ramp: the cartoon renderer's painter (*The Evolution of a Cartoon Renderer*).
+//! Two lights, each mapped to an axis of a 2D ramp: the painter of *The Evolution of a Cartoon Renderer*.
 
 use super::model::{LitPoint, ShadeModel, ShadeOnDevice, ShadeView, Shading};
 use super::ramp_table::{FilterName, StopsTable, image_filter, texels_of};
@@ -12,19 +12,19 @@ use npr_toon::{toon_n_dot_l, toon_n_dot_l_interpolated};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
-/// The cartoon renderer's painter, without its lights, which are the style's.
+/// The settings of the painter, without its lights, which belong to the style.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PainterShade {
-    /// The shades.
+    /// The 2D ramp.
     pub ramp: Ramp2dSource,
     /// [`Painter::light_scale`].
     pub light_scale: f32,
-    /// Whether a material is its colour *or* its texture, whichever its colour's alpha says
-    /// ([`npr_toon::painter::toon_material`]), as in listing 2; else the product of both, as files mean it.
+    /// Whether the alpha of a material's colour selects either the colour or the texture
+    /// ([`npr_toon::painter::toon_material`]), as in listing 2; else the two are multiplied, as model files specify.
     pub material_by_alpha: bool,
 }
 
-/// Where a 2D ramp's shades come from.
+/// The source of a 2D ramp.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Ramp2dSource {
     /// Computed from the stops of two ramps.
@@ -67,7 +67,7 @@ struct CornerTable {
 struct ImageTable {
     #[serde(skip_serializing_if = "Option::is_none")]
     file: Option<PathBuf>,
-    /// Row by row, from the dark corner.
+    /// In row order, from the dark corner.
     #[serde(skip_serializing_if = "Option::is_none")]
     texels: Option<Vec<Vec<Texel>>>,
     #[serde(default)]

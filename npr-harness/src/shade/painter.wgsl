@@ -1,4 +1,4 @@
-// Two lights, each an axis of a 2D ramp. The second number is the diffuse term of the second light.
+// Two lights, each mapped to an axis of a 2D ramp. The second coordinate is the diffuse term of the second light.
 
 @group(0) @binding(1) var<uniform> shade: ToonRamp2d;
 
@@ -43,7 +43,7 @@ fn shade_of_table(uv: vec2<f32>, widths: vec2<f32>) -> vec3<f32> {
     ).rgb;
 }
 
-// In uniform control flow.
+// Requires uniform control flow.
 fn shade_color(base: vec3<f32>, light_there: vec2<f32>, n: vec3<f32>, at: ShadowAt) -> vec3<f32> {
     let light = shadow_light(light_there, at);
     let of_first = shadow_border_width(light_there.x, -abs(light_there.x), at);

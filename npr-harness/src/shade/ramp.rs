@@ -1,4 +1,4 @@
-//! Any colours by light, from a 1D ramp.
+//! Colours from a 1D ramp, indexed by light.
 
 use super::model::{ShadeModel, ShadeOnDevice, ShadeView, Shading, flag};
 use super::ramp_table::{FilterName, StopsTable, image_filter, texels_of};
@@ -11,16 +11,16 @@ use npr_toon::row::{RampRow, toon_row};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
-/// A 1D ramp, and what it is looked up with.
+/// A 1D ramp and its lookup coordinate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RampShade {
-    /// The colours, factors on the surface's own.
+    /// The colours, which multiply the surface's colour.
     pub ramp: RampSource,
-    /// What becomes of N·L first; without it the ramp is looked up with N·L itself.
+    /// The transformation applied to N·L before the lookup; `None` uses N·L itself.
     pub half_lambert: Option<HalfLambert>,
 }
 
-/// Where a 1D ramp's colours come from.
+/// The source of a 1D ramp.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RampSource {
     /// Computed from stops.
@@ -46,7 +46,7 @@ pub(crate) struct RampTable {
 struct RowTable {
     #[serde(skip_serializing_if = "Option::is_none")]
     file: Option<PathBuf>,
-    /// Of the file, from the top.
+    /// The row of the image, counted from the top.
     #[serde(default)]
     row: u32,
     #[serde(skip_serializing_if = "Option::is_none")]

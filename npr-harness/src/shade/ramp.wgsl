@@ -1,4 +1,4 @@
-// Any colours by light, from a 1D ramp.
+// Colours from a 1D ramp, indexed by light.
 
 override shade_half_lambert: bool = false;
 
@@ -8,7 +8,7 @@ struct RampShade {
     half_bias: f32,
     half_squared: u32,
     padding: u32,
-    // What the ends of an image's row stand for.
+    // The lookup coordinates at the two ends of the image row.
     row_ends: vec2<f32>,
     padding_b: vec2<u32>,
 }
@@ -27,7 +27,7 @@ fn shade_of_ramp(x: f32, width: f32) -> vec3<f32> {
     return mix(shade_texel(taps.left, 0u).rgb, shade_texel(taps.right, 0u).rgb, taps.share);
 }
 
-// In uniform control flow.
+// Requires uniform control flow.
 fn shade_color(base: vec3<f32>, light_there: vec2<f32>, n: vec3<f32>, at: ShadowAt) -> vec3<f32> {
     var x = light_there.x;
     var dark = -abs(x);

@@ -1,6 +1,6 @@
-// The image that a ramp may be read from.
+// The ramp image.
 
-// 0: there is none, the ramp is computed; 1: nearest texels are read; 2: filtered ones.
+// 0: no image, the ramp is computed; 1: nearest filtering; 2: linear filtering.
 override shade_image_filter: u32 = 0u;
 
 @group(0) @binding(4) var shade_image: texture_2d<f32>;

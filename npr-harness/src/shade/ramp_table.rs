@@ -1,4 +1,4 @@
-//! Tables of a style's file that ramps of one and of two lights have in common.
+//! Tables of a style file that 1D and 2D ramps have in common.
 
 use crate::error::HarnessError;
 use crate::schema::{Color, StyleFile};
@@ -6,7 +6,7 @@ use npr_toon::ramp::{Ramp, RampBlend, RampStop};
 use npr_toon::row::TexelFilter;
 use serde::{Deserialize, Serialize};
 
-/// A ramp by its stops.
+/// A ramp defined by its stops.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct StopsTable {
@@ -49,7 +49,7 @@ impl StopsTable {
     }
 }
 
-/// How an image of a ramp is read.
+/// How a ramp image is filtered.
 #[derive(Clone, Copy, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum FilterName {
@@ -76,7 +76,7 @@ impl From<FilterName> for TexelFilter {
     }
 }
 
-/// The value of the override `shade_image_filter` for a ramp that is computed (`None`) or read from an image.
+/// The value of the override constant `shade_image_filter` for a computed ramp (`None`) or a ramp image.
 pub(super) fn image_filter(filter: Option<TexelFilter>) -> f64 {
     match filter {
         None => 0.0,

@@ -62,7 +62,7 @@ impl ToonTable {
     }
 }
 
-/// Whether the highlight can be seen: only then N·H is computed.
+/// Whether the highlight is visible; N·H is only computed if it is.
 fn has_highlight(bands: &Bands) -> bool {
     bands.highlight.is_some_and(|highlight| highlight.strength > 0.0)
 }
@@ -100,7 +100,7 @@ impl ShadeModel for Bands {
 
     fn on_device(&self, _view: &ShadeView) -> Result<ShadeOnDevice, HarnessError> {
         Ok(ShadeOnDevice {
-            // Loops over the bands are unrolled for as many as there are.
+            // The number of bands is a constant so that loops over them are unrolled.
             constants: vec![
                 (npr_toon::TOON_BANDS_OVERRIDE, self.tones.len() as f64),
                 ("shade_highlight", flag(has_highlight(self))),

@@ -1,4 +1,4 @@
-// Bands of light. The second number is N.H.
+// Bands of light. The second coordinate is N.H.
 
 // Whether there is a highlight.
 override shade_highlight: bool = true;
@@ -33,7 +33,8 @@ fn shade_second_in_shadow(second: f32) -> f32 {
     return -1.0;
 }
 
-// `toon_shade` of npr-toon, with the highlight left out when the pipeline is made. In uniform control flow.
+// `toon_shade` of npr-toon, with the highlight disabled by an override constant if there is none. Requires uniform
+// control flow.
 fn shade_color(base: vec3<f32>, light_there: vec2<f32>, n: vec3<f32>, at: ShadowAt) -> vec3<f32> {
     let light = shadow_light(light_there, at);
     var widths = vec2<f32>(0.0);

@@ -1,4 +1,4 @@
-//! Surfaces that no shade colours: paper, and hatched ones, which take the diffuse term.
+//! Surfaces without a shading function: paper, and hatched surfaces, which use only the diffuse term.
 
 use super::model::{ShadeModel, ShadeOnDevice, ShadeView, Shading};
 use crate::error::HarnessError;

@@ -10,29 +10,30 @@ use npr_toon::source::Light;
 use npr_toon::x_toon::{Detail, toon_depth_detail, toon_silhouette_detail, toon_x_toon};
 use serde::{Deserialize, Serialize};
 
-/// Two ramps, and what decides between them.
+/// Two ramps, and the level of detail that blends between them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct XToon {
-    /// Where there is all detail: factors on the surface's own colour.
+    /// The ramp at full detail; its colours multiply the surface's colour.
     pub detailed: Ramp,
-    /// Where there is none.
+    /// The ramp at no detail.
     pub abstracted: Ramp,
-    /// How much detail there is.
+    /// The level of detail.
     pub detail: XToonDetail,
 }
 
-/// How much detail there is.
+/// The level of detail.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub enum XToonDetail {
-    /// All at one depth, none at another. Depths are counted through the scene: 0 is its nearest point, 1 its farthest.
+    /// Detail decreases from full at depth `from` to none at depth `to`. Depths are relative to the scene: 0 is its
+    /// nearest point, 1 its farthest.
     Depth {
         /// −10..=10.
         from: f32,
         /// Above `from`, up to 10.
         to: f32,
     },
-    /// None at the silhouette: |N·V|^exponent.
+    /// Detail |N·V|^exponent, which is 0 at the silhouette.
     Silhouette {
         /// Above 0, up to 64.
         exponent: f32,
@@ -40,12 +41,12 @@ pub enum XToonDetail {
 }
 
 impl XToonDetail {
-    /// The same in eye depths.
+    /// Converts relative depths to eye depths.
     fn in_view(self, view: &ShadeView) -> Detail {
         match self {
             Self::Depth { from, to } => {
                 let (near, far) = view.depth_range;
-                // A share below 0 may lie behind the eye.
+                // A relative depth below 0 may lie behind the eye.
                 let at = |share: f32| (near + (far - near) * f64::from(share)).max(near * 1e-3) as f32;
                 Detail::Depth { near: at(from), far: at(to).max(at(from) * 1.001) }
             }

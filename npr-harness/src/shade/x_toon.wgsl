@@ -1,12 +1,12 @@
-// Bands that fade with depth or near the silhouette. The second number is the detail.
+// Bands that fade with depth or near the silhouette. The second coordinate is the level of detail.
 
-// Whether detail depends on depth, else on the angle to the viewer.
+// Whether the level of detail depends on depth, else on |N.V|.
 override shade_by_depth: bool = true;
 
 struct XToonShade {
     detailed: ToonRamp,
     abstracted: ToonRamp,
-    // The plane (n, d) of which n.p + d is the eye depth of a point p.
+    // The plane (n, d) such that n.p + d is the eye depth of a point p.
     eye_depth: vec4<f32>,
     near: f32,
     far: f32,
@@ -50,7 +50,7 @@ fn shade_second_in_shadow(second: f32) -> f32 {
     return second;
 }
 
-// In uniform control flow.
+// Requires uniform control flow.
 fn shade_color(base: vec3<f32>, light_there: vec2<f32>, n: vec3<f32>, at: ShadowAt) -> vec3<f32> {
     let light = shadow_light(light_there, at);
     let width = shadow_border_width(light_there.x, -abs(light_there.x), at);

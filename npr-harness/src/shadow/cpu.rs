@@ -1,4 +1,4 @@
-//! Shadows by rays: the reference. The twin of `shadow.wgsl`.
+//! Shadows by ray casting, the reference implementation. The GPU version is `shadow.wgsl`.
 
 use super::plan::{ShadowPlan, casts};
 use crate::rays::Hit;
@@ -6,18 +6,18 @@ use crate::scene::Scene;
 use glam::DVec3;
 use npr_imagespace::shadow::ShadowState;
 
-/// What shadows make of a hit. [`Default`] is a surface on which no shadow can fall.
+/// The shadow state of a hit. [`Default`] is that of a surface that receives no shadows.
 #[derive(Clone, Copy, Default, PartialEq)]
 pub(crate) struct ShadowAt {
-    /// For its light: in a cast shadow.
+    /// For shading: whether it is in a cast shadow.
     pub(crate) dark: bool,
-    /// For printed normals: in any shadow, its own included.
+    /// For negated normals as printed: whether it is in a cast shadow or back-facing.
     pub(crate) negated: bool,
-    /// For lines.
+    /// For lines: the shadow state.
     pub(crate) state: ShadowState,
 }
 
-/// What shadows make of a hit at `at`, whose normal, of any length, is on the viewer's side.
+/// The shadow state of a hit at `at`, whose normal, of any length, is on the viewer's side.
 pub(crate) fn shadow_at(shadow: &ShadowPlan, scene: &Scene, hit: &Hit, at: DVec3, normal: DVec3) -> ShadowAt {
     let light = shadow.light;
     let way = light.truncate() - at * light.w;
@@ -27,7 +27,7 @@ pub(crate) fn shadow_at(shadow: &ShadowPlan, scene: &Scene, hit: &Hit, at: DVec3
     if of_face.dot(way) <= 0.0 {
         return ShadowAt { negated: true, ..ShadowAt::default() };
     }
-    // What is nearer is the surface itself, or a copy of it.
+    // Nearer hits are the surface itself or a duplicate of it.
     let nearest = scene.radius() * 1e-9;
     let range = (nearest / way.length(), if light.w == 0.0 { f64::INFINITY } else { 1.0 });
     let is_itself = |other: &Hit| (other.object, other.face) == (hit.object, hit.face);

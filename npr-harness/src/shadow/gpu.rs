@@ -1,4 +1,5 @@
-//! Shadows on the device: volumes in a stencil or a map of depths, and the uniform and textures that surfaces read them from.
+//! Shadows on the GPU: volumes in a stencil buffer or a shadow map, and the uniform and textures that the surface
+//! shader reads.
 
 use super::plan::{ShadowPlan, ShadowTechnique, VolumeMethod};
 use crate::camera::{Camera, Projection};
@@ -28,21 +29,21 @@ pub(crate) struct ShadowUniform {
     pub(crate) padding2: f32,
 }
 
-/// What the geometry pass binds.
+/// The shadow resources that the geometry pass binds.
 pub(crate) struct ShadowOnDevice {
     pub(crate) uniform: wgpu::Buffer,
-    /// Which pixels of the picture are in shadow, [`MASK_FORMAT`].
+    /// The shadow mask of the picture's pixels, in [`MASK_FORMAT`].
     pub(crate) mask: Option<wgpu::TextureView>,
-    /// The map.
+    /// The shadow map.
     pub(crate) map: Option<wgpu::TextureView>,
 }
 
-/// What is bound where there are no shadows.
+/// Placeholder resources, bound if there are no shadows.
 pub(crate) struct BlankShadow {
     pub(crate) uniform: wgpu::Buffer,
     pub(crate) mask: wgpu::TextureView,
     pub(crate) map: wgpu::TextureView,
-    /// What the map is read with, blank or not.
+    /// The sampler of the shadow map or of its placeholder.
     pub(crate) nearest: wgpu::Sampler,
 }
 
@@ -70,14 +71,14 @@ fn texture(device: &wgpu::Device, label: &str, format: wgpu::TextureFormat, size
     })
 }
 
-/// Depth and stencil, and the mask that is made of them, of one size, made when first needed.
+/// A depth-stencil target and the shadow mask made from it, of one size, created on first use.
 #[derive(Default)]
 pub(crate) struct StencilTarget {
     views: OnceCell<(wgpu::TextureView, wgpu::TextureView)>,
 }
 
 impl StencilTarget {
-    /// Depth and stencil, and the mask.
+    /// Views of the depth-stencil target and of the mask.
     fn views(
         &self,
         device: &wgpu::Device,
@@ -91,40 +92,40 @@ impl StencilTarget {
     }
 }
 
-/// What casts, on the device.
+/// The shadow casters on the GPU.
 pub(crate) enum ShadowCasting {
-    /// Per mesh all of it; the device sorts out what casts under a light.
+    /// Per mesh: all faces and edges; the GPU selects those that bound the volumes for a light.
     OnDevice(Vec<CastersOnDevice>),
-    /// Per object what casts under the light of the last frame, in the space of its mesh.
+    /// Per object: the faces and edges that bound the volumes for the light of the last frame, in mesh space.
     Scanned(RefCell<Vec<(DVec4, CastersOnDevice)>>),
 }
 
-/// The passes, made when they are first needed.
+/// The passes, created on first use.
 #[derive(Default)]
 pub(crate) struct ShadowPasses {
-    /// For perspective and for parallel views.
+    /// Index 0: perspective views; index 1: parallel views.
     volumes: [OnceCell<ShadowPass>; 2],
     mask: OnceCell<ShadowMaskPass>,
     map: OnceCell<MapPass>,
     map_texture: RefCell<Option<wgpu::Texture>>,
 }
 
-/// Shadows of a picture, or of the surfaces of its ink: what the passes take.
+/// The inputs of the shadow passes, for a picture or for the geometry pass of its ink.
 #[derive(Clone, Copy)]
 pub(crate) struct ShadowFrame<'a> {
     pub(crate) context: &'a GpuContext,
     pub(crate) scene: &'a Scene,
     pub(crate) plan: &'a ShadowPlan,
     pub(crate) camera: &'a Camera,
-    /// Of the targets, px.
+    /// The size of the targets, px.
     pub(crate) size: (u32, u32),
-    /// The shadow casters, where volumes are drawn.
+    /// The shadow casters, if volumes are drawn.
     pub(crate) casting: Option<&'a ShadowCasting>,
-    /// What casts into a map: positions of vertices, 24 bytes apart, faces, and where they are placed.
+    /// The casters of a shadow map: vertex positions with a stride of 24 bytes, faces, and instances.
     pub(crate) vertices: &'a wgpu::Buffer,
     pub(crate) indices: Option<&'a wgpu::Buffer>,
     pub(crate) instances: &'a Instances,
-    /// Per mesh its faces in [`Self::indices`].
+    /// Per mesh: the range of its faces in [`Self::indices`].
     pub(crate) solid: &'a [Range<u32>],
 }
 
@@ -165,14 +166,14 @@ fn px_from_clip(size_px: DVec2) -> DMat4 {
     )
 }
 
-/// What the light sees: all of the model's sphere, no more.
+/// The camera of the shadow map, which covers exactly the model's bounding sphere.
 fn map_camera(scene: &Scene, light: DVec4) -> Camera {
-    // A model without extent has no shadow, and the camera must have a size.
+    // A model without extent casts no shadow, but the camera must have a size.
     let (middle, radius) = (scene.middle(), scene.radius().max(f64::MIN_POSITIVE.sqrt()));
     let away = if light.w == 0.0 { light.truncate() } else { light.truncate() - middle };
     let up = if away.y.abs() < 0.9 * away.length() { DVec3::Y } else { DVec3::X };
     if light.w == 0.0 {
-        // From one radius before the sphere to one behind it.
+        // The depth range extends one radius before and behind the sphere.
         let projection = Projection::Orthographic { height: 2.0 * radius, far: 4.0 * radius };
         return Camera { eye: middle + away * (2.5 * radius), target: middle, up, projection, near: radius };
     }
@@ -182,7 +183,7 @@ fn map_camera(scene: &Scene, light: DVec4) -> Camera {
 }
 
 impl ShadowPasses {
-    /// Uploads what casts, or gets ready to do so for each light where the CPU decides what bounds the volumes.
+    /// Uploads the casters, or prepares to do so for each light if the CPU selects what bounds the volumes.
     pub(crate) fn upload(
         &self,
         context: &GpuContext,
@@ -198,7 +199,7 @@ impl ShadowPasses {
         })
     }
 
-    /// Volumes counted against the depth that `draw_depth` draws into the view that it is given; or the map.
+    /// Records shadow volumes against the depth that `draw_depth` draws into the view it is given, or the shadow map.
     pub(crate) fn record(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -215,7 +216,7 @@ impl ShadowPasses {
                 return Ok(ShadowOnDevice { uniform, mask: None, map: Some(map) });
             }
             ShadowTechnique::Volumes { casters, float_depth, .. } => (casters, *float_depth),
-            // A ray caster's plan.
+            // The plan was made for the CPU.
             ShadowTechnique::Rays => return Err(HarnessError::RayPlan),
         };
         let format = stencil_format(float_depth);
@@ -280,10 +281,10 @@ impl ShadowPasses {
     }
 }
 
-/// Why a pass takes the formats of [`stencil_format`].
+/// Panic message for passes that fail only for formats without a stencil.
 const STENCIL: &str = "the format has a stencil";
 
-/// Depth with a stencil.
+/// The depth-stencil format.
 fn stencil_format(float_depth: bool) -> wgpu::TextureFormat {
     if float_depth { wgpu::TextureFormat::Depth32FloatStencil8 } else { wgpu::TextureFormat::Depth24PlusStencil8 }
 }
@@ -293,7 +294,7 @@ pub(crate) const SHADOW_WGSL: (&str, &str) = ("shadow.wgsl", include_str!("shado
 
 const MAP_WGSL: &str = include_str!("shadow_map.wgsl");
 
-/// Depths as a light sees them.
+/// The pipeline that draws the shadow map.
 struct MapPass {
     layout: wgpu::BindGroupLayout,
     pipeline: wgpu::RenderPipeline,
@@ -344,9 +345,9 @@ impl MapPass {
                 depth_write_enabled: Some(true),
                 depth_compare: Some(wgpu::CompareFunction::Greater),
                 stencil: Default::default(),
-                // A texel stands for what lies up to half a texel from its middle along both axes, where a plane's depth
-                // differs by up to the larger of its slopes: so far away from the light (reversed: less) nothing shadows
-                // itself. The rest is for rounding.
+                // A texel represents points up to half a texel from its centre along both axes, where the depth of a
+                // plane differs by up to the larger of its slopes. With a bias of that slope away from the light (depth
+                // is reversed, so the bias is negative), no plane shadows itself. The constant covers rounding.
                 bias: wgpu::DepthBiasState { constant: -16, slope_scale: -1.0, clamp: 0.0 },
             }),
             multisample: Default::default(),
@@ -380,7 +381,7 @@ impl MapPass {
             }),
             ..Default::default()
         });
-        // What is not blended casts.
+        // Unblended faces cast shadows.
         if let Some(indices) = frame.indices {
             pass.set_pipeline(&self.pipeline);
             pass.set_bind_group(0, &group, &[]);

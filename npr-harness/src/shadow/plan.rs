@@ -1,4 +1,4 @@
-//! The part of a plan that is about shadows.
+//! The part of a plan for shadows.
 
 use super::style::{ShadowMethod, ShadowStyle};
 use crate::error::HarnessError;
@@ -14,49 +14,49 @@ use std::sync::Arc;
 /// Shadows of the first light.
 #[derive(Clone, Debug)]
 pub struct ShadowPlan {
-    /// World space: a point with w = 1, or the unit direction to it with w = 0.
+    /// The light in scene space: a point with w = 1, or the unit direction to it with w = 0.
     pub light: DVec4,
-    /// Where N·L is not above this, shadows have no lines.
+    /// The N·L at or below which shadows have no lines.
     pub terminator: f32,
-    /// How they are found.
+    /// The technique.
     pub technique: ShadowTechnique,
-    /// Whether they are seen in the picture, by its colours or by lines that are found with them.
+    /// Whether shadows appear in the picture, in its colours or in lines found with it.
     pub in_picture: bool,
-    /// Whether they are seen by lines in the image that have surfaces of their own.
+    /// Whether shadows appear in image-space lines that have their own geometry pass.
     pub in_lines: bool,
 }
 
-/// How shadows are found.
+/// How shadows are computed.
 #[derive(Clone, Debug)]
 pub enum ShadowTechnique {
-    /// The CPU follows rays to the light.
+    /// Shadow rays on the CPU.
     Rays,
     /// Shadow volumes, counted in a stencil buffer.
     Volumes {
-        /// Per mesh the faces and edges that cast.
+        /// Per mesh: the faces and edges that cast shadows.
         casters: Vec<Arc<ShadowCasters>>,
-        /// Who decides which faces and edges bound the volumes.
+        /// The executor that selects the faces and edges that bound shadow volumes.
         method: VolumeMethod,
-        /// Whether they are counted against depths of 32-bit floats, else of 24 bits.
+        /// Whether the depth buffer holds 32-bit floats, else 24 bits.
         float_depth: bool,
     },
-    /// A picture of depths as the light sees them.
+    /// A shadow map.
     Map {
-        /// Texels along a side.
+        /// Its side in texels.
         side: u32,
     },
 }
 
-/// Who decides which faces and edges bound shadow volumes.
+/// The executor that selects the faces and edges that bound shadow volumes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VolumeMethod {
-    /// The device, in each frame.
+    /// The GPU, in each frame.
     OnDevice,
-    /// The CPU, once for a light.
+    /// The CPU, once per light.
     OnCpu,
 }
 
-/// The key of the casters among what is derived of a mesh.
+/// The cache key of the casters.
 #[derive(PartialEq)]
 struct CastersKey;
 
@@ -67,7 +67,7 @@ pub fn casters(mesh: &Mesh) -> Arc<ShadowCasters> {
         if model.face_polygon.is_empty() {
             return Ok::<_, Infallible>(shadow_casters(model, mesh.edges()));
         }
-        // With the diagonals of polygons, which may be warped.
+        // Includes the diagonals of polygons, which need not be planar.
         let edges = find(&model.positions, &model.faces, &[], &[], &EdgeOptions::default());
         Ok(shadow_casters(model, &edges))
     });
@@ -76,8 +76,8 @@ pub fn casters(mesh: &Mesh) -> Arc<ShadowCasters> {
 }
 
 impl ShadowTechnique {
-    /// The light `light` is checked: a shadow map takes none from within. `device`: how it makes volumes, and whether it
-    /// counts them against depths of 32-bit floats; `None` for the CPU.
+    /// Selects the technique for an executor, and checks that a shadow map can be rendered from `light`. `device` says
+    /// how the GPU makes volumes, and whether it has a depth buffer of 32-bit floats; `None` for the CPU.
     pub(crate) fn new(
         scene: &Scene,
         style: &ShadowStyle,
@@ -94,13 +94,13 @@ impl ShadowTechnique {
     }
 }
 
-/// Whether what a ray hits casts a shadow.
+/// Whether the surface at a hit casts a shadow.
 pub(crate) fn casts(scene: &Scene, hit: &Hit) -> bool {
     scene.material(hit.object, hit.face).alpha_mode != AlphaMode::Blend
 }
 
-/// Whether one picture of depths can hold all that a light shines on: not from within the model's sphere, nor from right
-/// beside it.
+/// Checks that one shadow map can cover all that a light shines on: the light must not lie within the model's bounding
+/// sphere, nor close to it.
 fn check_map_light(scene: &Scene, light: DVec4) -> Result<(), HarnessError> {
     if light.w != 0.0 {
         let radii = light.truncate().distance(scene.middle()) / scene.radius();
@@ -111,5 +111,5 @@ fn check_map_light(scene: &Scene, light: DVec4) -> Result<(), HarnessError> {
     Ok(())
 }
 
-/// From here a sphere is seen under 133°.
+/// The least distance of the light from the sphere's centre, in radii; there the sphere subtends 133°.
 const MAP_LEAST_RADII: f64 = 1.09;

@@ -1,4 +1,4 @@
-//! The table `[shadow]` of a style's file.
+//! The table `[shadow]` of a style file.
 
 use super::style::{ShadowMethod, ShadowStyle};
 use serde::{Deserialize, Serialize};
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
 pub(crate) struct ShadowTable {
     method: MethodName,
-    /// Of a map, texels along a side.
+    /// The side of a shadow map in texels.
     #[serde(skip_serializing_if = "Option::is_none")]
     side: Option<u32>,
     terminator: f32,
@@ -26,7 +26,7 @@ impl Default for ShadowTable {
     }
 }
 
-/// Of a map whose file does not say.
+/// The default side of a shadow map, in texels.
 const SIDE: u32 = 2048;
 
 impl ShadowTable {

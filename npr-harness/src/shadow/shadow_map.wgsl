@@ -1,4 +1,4 @@
-// Depths as a light sees them.
+// Draws the shadow map.
 
 @group(0) @binding(0) var<uniform> clip_from_world: mat4x4<f32>;
 

@@ -4,16 +4,15 @@ use crate::error::HarnessError;
 use npr_imagespace::composite::Composite;
 use npr_imagespace::morphology::disc::Disc;
 
-/// How a device finds what is in shadow.
+/// How the GPU computes shadows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum ShadowMethod {
     /// Shadow volumes in a stencil buffer: exact.
     #[default]
     Volumes,
-    /// A picture of depths as the light sees them: its cost does not depend on edges, its borders are as coarse as its
-    /// texels.
+    /// A shadow map. Its cost does not depend on the number of edges; its borders are as coarse as its texels.
     Map {
-        /// Texels along a side, 16..=16384.
+        /// The side in texels, 16..=16384.
         side: u32,
     },
 }
@@ -21,9 +20,9 @@ pub enum ShadowMethod {
 /// The settings of shadows in a style.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShadowStyle {
-    /// How a device finds them; the CPU follows rays.
+    /// How the GPU computes shadows; the CPU casts rays.
     pub method: ShadowMethod,
-    /// Where N·L is not above this, 0..1, shadows have no lines.
+    /// The N·L at or below which shadows have no lines, 0..1.
     pub terminator: f32,
 }
 
@@ -56,20 +55,20 @@ pub enum ShadowLines {
     None,
     /// As in Card & Mitchell 2002: normals are negated in shadow, also on surfaces that face away from the light.
     Negated,
-    /// Like the objects' lines, by the same pass.
+    /// With the style of the objects' lines, by the same pass.
     Lines,
     /// By a separate pass, below the objects' lines.
     Separate {
-        /// How they are composited over the picture.
+        /// How the lines are composited over the picture.
         composite: Composite,
-        /// The disc by which they are dilated, if they are.
+        /// The disc by which the lines are dilated, if any.
         dilation: Option<Disc>,
     },
 }
 
 impl ShadowLines {
-    /// Whether texels hold a state of shadow.
-    pub fn has_states(self) -> bool {
+    /// Whether texels hold a shadow state.
+    pub(crate) fn has_states(self) -> bool {
         matches!(self, Self::Lines | Self::Separate { .. })
     }
 }

@@ -1,7 +1,7 @@
 //! Styles as TOML: `npr style NAME` prints one, `--style FILE.toml` reads one.
 //!
-//! What is left out has its default; a key that is not known is an error that names it. Colours are `[r, g, b]`, 0 to 1,
-//! or `"#rrggbb"`. Images are PNG files, named relative to the style's file.
+//! Omitted keys have defaults; an unknown key is an error that names it. Colours are `[r, g, b]`, 0 to 1, or
+//! `"#rrggbb"`. Images are PNG files, whose paths are relative to the style's file.
 
 use super::Style;
 use super::schema::StyleTable;
@@ -12,11 +12,11 @@ use std::io;
 use std::path::Path;
 use toml::de::{DeTable, DeValue};
 
-/// Longer files are no styles.
+/// The largest file that is read, bytes.
 const MOST_BYTES: u64 = 1 << 20;
 
 impl Style {
-    /// Reads a style and checks it. Without a name it is called what the file is.
+    /// Reads and validates a style. A style without a name gets the name of its file.
     ///
     /// # Errors
     /// [`HarnessError::Read`], and those of [`Style::from_toml`].
@@ -25,7 +25,7 @@ impl Style {
         Self::from_toml(&text, path)
     }
 
-    /// A style from the text of a file that stands, or would stand, at `path`.
+    /// Parses a style from the text of a file at `path`, which need not exist.
     ///
     /// # Errors
     /// [`HarnessError::StyleToml`], [`HarnessError::TwoKinds`], [`HarnessError::StyleTable`],
@@ -50,7 +50,7 @@ impl Style {
         Ok(style)
     }
 
-    /// The style as the text of a file. Images are written as texels.
+    /// Writes the style as TOML. Images are written as texels.
     ///
     /// # Errors
     /// [`HarnessError::StyleWrite`].
@@ -59,7 +59,7 @@ impl Style {
     }
 }
 
-/// Tables that hold one other table, whose key says of which kind something is.
+/// Tables that contain exactly one table, whose key selects a variant.
 const ONE_KIND: [(&str, &str); 4] = [
     ("shade", "shade"),
     ("lines.image.shadows", "lines around shadows"),
@@ -67,7 +67,7 @@ const ONE_KIND: [(&str, &str); 4] = [
     ("lines.image.composite", "composite of lines"),
 ];
 
-/// The first two keys of a table, with the offsets at which they stand, if it has more than one.
+/// The first two keys of a table with their offsets, if it has more than one key.
 fn two_kinds(document: &DeTable<'_>, table: &str) -> Option<[(usize, String); 2]> {
     let table = table.split('.').try_fold(document, |outer, key| match outer.get(key)?.get_ref() {
         DeValue::Table(inner) => Some(inner),
@@ -86,10 +86,9 @@ fn position(text: &str, offset: usize) -> (usize, usize) {
     (before.matches('\n').count() + 1, line.chars().count() + 1)
 }
 
-/// Names what was probably meant, where the parser says which names it knows:
-/// "unknown field `a`, expected one of `b`, `c`".
+/// Adds a suggestion to an error if the parser lists the known names: "unknown field `a`, expected one of `b`, `c`".
 fn with_suggestion(message: &str) -> String {
-    // What serde says of an empty table for one of several kinds.
+    // serde's message for an empty table that should select a variant.
     if message.starts_with("wanted exactly 1 element, found 0") {
         return "the table is empty: it holds one table, whose name says of which kind it is".to_owned();
     }

@@ -1,4 +1,4 @@
-//! The styles there are.
+//! The built-in styles.
 
 use super::{Lines, Style};
 use crate::edge_lines::plan::INK;
@@ -44,19 +44,20 @@ fn ramp<const N: usize>(blend: RampBlend, stops: [(f32, [f32; 3]); N]) -> Ramp {
     Ramp { stops: stops.map(|(at, color)| RampStop { at, color: Vec3::from(color) }).to_vec(), blend }
 }
 
-/// From a violet dark over a cool half-tone to the surface's own colour, which only what faces the light has.
+/// A ramp from dark violet over a cool half-tone to the surface's colour, which is reached only where it faces the
+/// light.
 fn wash() -> RampShade {
     let stops = [(0.1, [0.30, 0.26, 0.48]), (0.5, [0.62, 0.58, 0.74]), (0.85, [0.97, 0.93, 0.90]), (0.98, [1.0; 3])];
     RampShade { ramp: RampSource::Stops(ramp(RampBlend::Smooth, stops)), half_lambert: Some(HalfLambert::HALF_LIFE) }
 }
 
-/// Four steps, none of them at the terminator: the far side keeps its form.
+/// Four steps, none at the terminator, so that the unlit side keeps its shape.
 fn wrapped() -> RampShade {
     let stops = [(0.0, [0.42, 0.40, 0.55]), (0.12, [0.58, 0.56, 0.68]), (0.36, [0.82, 0.80, 0.84]), (0.72, [1.0; 3])];
     RampShade { ramp: RampSource::Stops(ramp(RampBlend::Hard, stops)), half_lambert: Some(HalfLambert::SOURCE) }
 }
 
-/// What the first light alone gives, what the second alone gives, and a shade for what is brightly lit.
+/// The colour for the first light alone, for the second light alone, and for both.
 fn two_lights() -> PainterShade {
     let first = ramp(RampBlend::Hard, [(-1.0, [0.34, 0.32, 0.46]), (0.06, [0.55, 0.54, 0.60]), (0.55, [0.68; 3])]);
     let second = ramp(RampBlend::Hard, [(-1.0, [0.34, 0.32, 0.46]), (0.2, [0.44, 0.44, 0.58])]);
@@ -68,7 +69,7 @@ fn two_lights() -> PainterShade {
     }
 }
 
-/// Three bands in front, and hardly any at the back of the scene.
+/// Three bands in the foreground, which nearly vanish in the background.
 fn fading() -> XToon {
     XToon {
         detailed: ramp(RampBlend::Hard, [(-1.0, [0.34, 0.32, 0.46]), (0.05, [0.72, 0.71, 0.78]), (0.55, [1.0; 3])]),
@@ -77,7 +78,7 @@ fn fading() -> XToon {
     }
 }
 
-/// Bright and warm from the upper left; dim and cool, from a lamp low at the right, near the model.
+/// A bright warm light from the upper left, and a dim cool lamp at the lower right, near the model.
 fn warm_and_cool() -> Vec<StyleLight> {
     let warm = Light { color: Vec3::new(1.0, 0.98, 0.93), brightness: 1.2, ..StyleLight::KEY.light };
     let lamp =
@@ -85,10 +86,10 @@ fn warm_and_cool() -> Vec<StyleLight> {
     [warm, lamp].map(|light| StyleLight { light, frame: LightFrame::View }).to_vec()
 }
 
-/// Strokes along the texture's x axis, which a field turns.
+/// Strokes along the texture's x axis, which the direction field rotates.
 static ALONG: LazyLock<HatchMap> = LazyLock::new(|| HatchMap::new(HatchSource::Parameters(fine_strokes())));
 
-/// Oblique strokes, as a right hand draws them.
+/// Oblique strokes, as a right-handed artist draws them.
 static OBLIQUE: LazyLock<HatchMap> =
     LazyLock::new(|| HatchMap::new(HatchSource::Parameters(TamParameters { angle_deg: 35.0, ..fine_strokes() })));
 
@@ -103,7 +104,7 @@ fn fine_strokes() -> TamParameters {
     }
 }
 
-/// Strokes that follow the form, and solid black where no light falls.
+/// Strokes that follow the surface, and solid black where no light falls.
 fn hatching() -> HatchShade {
     HatchShade {
         map: ALONG.clone(),
@@ -117,7 +118,7 @@ fn hatching() -> HatchShade {
     }
 }
 
-/// The styles there are; the first is the default.
+/// The built-in styles.
 pub fn styles() -> Vec<Style> {
     let style = |name: &str, about: &str, shade, lines| Style {
         name: name.to_owned(),
@@ -132,9 +133,9 @@ pub fn styles() -> Vec<Style> {
     };
     let hard = Bands { antialias: false, ..Bands::hard_shading() };
     let shadow = Some(ShadowStyle::default());
-    // Low enough for shadows that are seen, and high enough for them to end on the ground.
+    // Low enough for visible shadows, and high enough for them to end on the ground.
     let from_the_left = vec![StyleLight { light: Light::directional(Vec3::new(-0.75, 0.95, 0.35)), ..StyleLight::KEY }];
-    // Nearly at a right angle to the view: all of the way from cool to warm is seen.
+    // Nearly perpendicular to the view, so that the whole range from cool to warm is visible.
     let from_the_side = vec![StyleLight { light: Light::directional(Vec3::new(-0.7, 0.6, 0.3)), ..StyleLight::KEY }];
     vec![
         style("cartoon", "banded light, highlight, ink lines", Shade::Toon(Bands::default()), ink_lines(2.0, 1.3)),
@@ -330,7 +331,7 @@ pub fn styles() -> Vec<Style> {
     ]
 }
 
-/// The style of a name.
+/// Finds a built-in style by name.
 pub fn style(name: &str) -> Option<Style> {
     styles().into_iter().find(|style| style.name == name)
 }

@@ -1,4 +1,4 @@
-//! A style's file, key by key.
+//! The serde schema of a style file.
 
 use super::{Lines, Style};
 use crate::edge_lines::schema::EdgesTable;
@@ -99,7 +99,7 @@ impl StyleTable {
         }
     }
 
-    /// `path` is the file's: images are named relative to it.
+    /// `path` is that of the file; the paths of images are relative to it.
     pub(super) fn style(self, path: &Path) -> Result<Style, HarnessError> {
         let file = StyleFile { path };
         let lights = self.light.into_iter().enumerate().map(|(index, light)| light.light(index, &file));

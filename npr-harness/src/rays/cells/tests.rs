@@ -10,7 +10,8 @@ fn apart(triangles: Vec<[Vec3; 3]>) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     (triangles.into_flattened(), faces)
 }
 
-/// Faces as large as the scene; long and thin ones; one within the next; around one edge; a stack of slanted sheets.
+/// The kinds: faces as large as the scene; long thin faces; nested faces; faces around one edge; a stack of slanted
+/// sheets.
 fn crowded(kind: usize, count: usize, random: &mut Random) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let mut triangles: Vec<[Vec3; 3]> = (0..count)
         .map(|number| {
@@ -27,7 +28,7 @@ fn crowded(kind: usize, count: usize, random: &mut Random) -> (Vec<Vec3>, Vec<[u
             }
         })
         .collect();
-    // On one another, and without area.
+    // Adds duplicates and faces without area.
     for number in 0..count / 10 {
         let [a, b, c] = triangles[number];
         triangles.push([[a, b, c], [a, c, b], [a, a, c]][number % 3]);
@@ -102,7 +103,7 @@ fn what_is_clipped_covers_its_triangle_and_no_more() {
     let mut both = 0;
     for round in 0..20_000 {
         let mut corners = [0; 3].map(|_| random.vector().as_vec3a());
-        // Such as run nearly along the plane.
+        // Every fourth triangle has an edge nearly parallel to the plane.
         if round % 4 == 0 {
             corners[1][0] = corners[0][0] + random.signed() as f32 * 1e-7;
         }
@@ -130,7 +131,7 @@ fn what_is_clipped_covers_its_triangle_and_no_more() {
         both += usize::from(parts[0].valid() && parts[1].valid());
     }
     assert!(both > 5_000, "{both}");
-    // The half of a right triangle: what is below has its full width, what is above half of it.
+    // A right triangle split at half its height: the part below has its full width, the part above half of it.
     let corners = [Vec3A::ZERO, Vec3A::new(1.0, 0.0, 0.0), Vec3A::new(0.0, 1.0, 0.0)];
     let [below, above] = clipped(corners, &Aabb { min: Vec3A::splat(-1.0), max: Vec3A::splat(2.0) }, 1, 0.5);
     assert!(below.max.abs_diff_eq(Vec3A::new(1.0, 0.5, 0.0), 2.0 * padding), "{below:?}");
@@ -154,7 +155,7 @@ fn references_and_time_are_bounded() {
         assert!(references <= (1 + REFERENCES.0) * faces.len() + REFERENCES.1, "kind {kind}: {references}");
         assert!(level <= LEVELS, "kind {kind}: {level}");
     }
-    // Where none are left the answers stay.
+    // The hits are the same when no references are left.
     let (positions, faces) = crowded(0, 2_000, &mut random);
     let caster = RayCaster::new(&positions, &faces);
     let faces_in_all = caster.tree.count().0;
