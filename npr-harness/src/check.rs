@@ -1,6 +1,6 @@
-//! The device against the reference, and both against what is exactly true.
+//! Checks of the GPU against the reference, and of both against exact solutions.
 //!
-//! All tolerances of the project's pictures are here.
+//! All tolerances for the project's pictures are defined here.
 
 mod image_lines;
 mod light;
@@ -32,31 +32,33 @@ use serde::Serialize;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-/// Px; what pictures are checked at.
+/// The size of the pictures that are checked, px.
 pub const SIZE: (u32, u32) = (640, 360);
 
-/// Outside the exempt pixels, of 255: what two roundings to bytes (lines blend twice) can add up to.
+/// The largest difference outside the exempt pixels, of 255: two roundings to bytes (lines blend twice) can add up to
+/// this.
 pub(crate) const SHADING_MAGNITUDE: u8 = 2;
-/// The same where a texture is looked up: samplers interpolate with 8 bits of fraction.
+/// The largest difference if a texture is sampled: samplers interpolate with 8 fraction bits.
 pub(crate) const TEXTURE_MAGNITUDE: u8 = 4;
-/// At most this share of the pixels may be exempt.
+/// The largest fraction of the pixels that may be exempt.
 pub const EXEMPT_SHARE: f64 = 0.03;
-/// Over the whole picture, exempt or not: at most [`GROSS_SHARE`] of the pixels may differ by more than this, of 255.
+/// Over the whole picture, including exempt pixels, at most [`GROSS_SHARE`] of the pixels may differ by more than this,
+/// of 255.
 pub(crate) const GROSS_MAGNITUDE: u8 = 16;
 /// See [`GROSS_MAGNITUDE`].
 pub(crate) const GROSS_SHARE: f64 = 0.005;
-/// Lines are compared within this distance, px.
+/// The distance within which lines agree, px.
 pub const WITHIN_PX: f64 = 1.5;
-/// The least precision and the least recall of lines.
+/// The least precision and recall of lines.
 pub(crate) const LINE_ACCURACY: f64 = 0.98;
 
-/// At most this share of (edge, view) pairs may be misclassified by the plane records.
+/// The largest fraction of (edge, view) pairs that the plane records may misclassify.
 pub(crate) const PLANES_MISCLASSIFIED: f64 = 1e-6;
-/// How many views around a model the formats are measured over.
+/// The number of views around a model over which the formats are measured.
 pub(crate) const FORMAT_VIEWS: usize = 32;
-/// Formats are not measured on models with more edges, for the time it takes.
+/// The number of edges above which formats are not measured, to limit the time.
 pub(crate) const LARGEST_FORMAT_EDGES: usize = 200_000;
-/// How far the width of a line may be off, in widths.
+/// The largest relative error of a line's width.
 pub(crate) const WIDTH_ERROR: f64 = 0.10;
 
 /// Three views around a model: yaw, pitch in degrees.
@@ -67,17 +69,17 @@ pub(crate) const VIEWS: [(f64, f64); 3] = [(30.0, 20.0), (150.0, -10.0), (270.0,
 pub struct Metric {
     /// The model, or "scene".
     pub model: String,
-    /// Yaw and pitch in degrees, or the composed view.
+    /// Yaw and pitch in degrees, or the name of the view.
     pub view: String,
-    /// What is checked; of pictures, the style.
+    /// The technique; for pictures, the style.
     pub technique: String,
-    /// What is measured.
+    /// The name of the metric.
     pub metric: &'static str,
-    /// What was measured.
+    /// The value.
     pub value: f64,
-    /// What is allowed, or `None` where the number is only reported.
+    /// The limit; `None` if the value is only reported.
     pub limit: Option<Limit>,
-    /// Whether it is.
+    /// Whether the value is within the limit.
     pub pass: bool,
 }
 
@@ -103,20 +105,20 @@ impl Limit {
 /// All metrics.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
-    /// Where the pictures were made.
+    /// The executor that rendered the pictures.
     pub executor: String,
-    /// Whether a device made them.
+    /// Whether a GPU rendered them.
     pub on_device: bool,
-    /// What could not be checked, and why.
+    /// The checks that were skipped, and why.
     pub skipped: Vec<String>,
-    /// One after the other.
+    /// The metrics, in the order of the checks.
     pub metrics: Vec<Metric>,
-    /// The page with the pictures of failed comparisons, and the pictures.
+    /// The report page for failed comparisons, and its pictures.
     pub left_behind: Vec<PathBuf>,
 }
 
 impl Report {
-    /// Whether every limit holds, and not everything was skipped.
+    /// Whether every limit holds and at least one check was not skipped.
     pub fn passed(&self) -> bool {
         self.metrics.iter().all(|metric| metric.pass) && !(self.metrics.is_empty() && self.on_device)
     }
@@ -129,13 +131,13 @@ impl fmt::Display for Metric {
             Some(Limit::AtLeast(limit)) => (format!(">= {limit}"), if self.pass { "pass" } else { "FAIL" }),
             Some(Limit::AtMost(limit)) => (format!("<= {limit}"), if self.pass { "pass" } else { "FAIL" }),
         };
-        // The names of models that can be foreseen are shorter.
+        // Wide enough for the names of the known models.
         let Metric { model, view, technique, metric, value, .. } = self;
         write!(f, "{model:22}  {view:12} {technique:15} {metric:44} {value:>10.5}  {limit:10} {verdict}")
     }
 }
 
-/// All of it; [`Report::summary`] after the metrics.
+/// The metrics, followed by [`Report::summary`].
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "on {}", self.executor)?;
@@ -147,7 +149,7 @@ impl fmt::Display for Report {
 }
 
 impl Report {
-    /// What was skipped, where pictures lie, and how many limits hold: a line each.
+    /// One line each for the skipped checks, the location of pictures, and the number of limits that hold.
     pub fn summary(&self) -> String {
         let skipped = self.skipped.iter().map(|skipped| format!("skipped: {skipped}\n"));
         let left_behind = self.left_behind.iter().map(|path| format!("see {}\n", path.display()));
@@ -158,7 +160,7 @@ impl Report {
     }
 }
 
-/// Where a check's numbers go.
+/// The state of a running check.
 struct Checker<'a> {
     executor: &'a Executor,
     styles: &'a [Style],
@@ -169,11 +171,11 @@ struct Checker<'a> {
     rows: Vec<ReportRow>,
 }
 
-/// Checks the models, read as `loading` says, or without any the built-in scenes; if there are `styles`, only the pictures
-/// of these. `tell` is called with each metric as soon as it is known.
+/// Checks models, loaded with the options `loading`, or the built-in scenes if there are none. With `styles`, only
+/// pictures of these styles are checked. `tell` is called with each metric as soon as it is known.
 ///
 /// # Errors
-/// [`HarnessError`]; an exceeded limit is none.
+/// [`HarnessError`]; exceeding a limit is not an error.
 pub fn run(
     executor: &Executor,
     inputs: &[PathBuf],
@@ -224,10 +226,10 @@ pub fn run(
     checker.finish()
 }
 
-/// Checks one scene from some views, named, without [`run`]'s checks of the width, of normals and of borders.
+/// Checks one scene from the given named views, without [`run`]'s checks of line widths, normals and band borders.
 ///
 /// # Errors
-/// [`HarnessError`]; an exceeded limit is none.
+/// [`HarnessError`]; exceeding a limit is not an error.
 pub fn scene(
     executor: &Executor,
     name: &str,
@@ -242,7 +244,7 @@ pub fn scene(
     checker.finish()
 }
 
-/// The largest difference, of 255, that is allowed outside the exempt pixels.
+/// The largest difference allowed outside the exempt pixels, of 255.
 pub fn magnitude(plan: &Plan) -> u8 {
     if plan.looks_up || plan.hatch().is_some() { TEXTURE_MAGNITUDE } else { SHADING_MAGNITUDE }
 }
@@ -283,7 +285,8 @@ impl Checker<'_> {
                 "artist" => artist,
                 _ => true,
             };
-            // In every view, and those that differ from them in light, in a number or in size, in the first alone.
+            // `often` is rendered in every view; the styles of `light`, which differ from those in light, parameters or
+            // size, only in the first.
             let often = ["cartoon", "lines", "printed-fins", "ink-image", "artist"];
             let light = ["gooch", "two-lights", "wash", "wrapped", "vertex-light", "printed-bands", "printed-gooch"];
             let once = ["ink-thick", "ink-fine"].iter().chain(light.iter().filter(|_| !artist));
@@ -330,7 +333,7 @@ impl Checker<'_> {
         Ok(())
     }
 
-    /// The device's picture against the reference.
+    /// Compares the GPU's picture with the reference.
     fn picture(&mut self, model: &str, view: &str, hits: &PrimaryHits<'_>, style: &Style) -> Result<(), HarnessError> {
         let technique = style.name.as_str();
         if self.executor.is_cpu() {
@@ -384,7 +387,8 @@ impl Checker<'_> {
         Ok(())
     }
 
-    /// A picture and its plan, or `None`, noted as skipped, where it is beyond the device's limits and no device is required.
+    /// Renders a picture with its plan. Returns `None` and records a skipped check if the picture exceeds the device's
+    /// limits and no device is required.
     fn render(
         &mut self,
         model: &str,
@@ -419,7 +423,7 @@ impl Checker<'_> {
         Ok(())
     }
 
-    /// Lines 1 px wide against the exact visible contours.
+    /// Compares lines 1 px wide with the exact visible contours.
     fn lines(
         &mut self,
         model: &str,
@@ -431,8 +435,8 @@ impl Checker<'_> {
         let corrected = one_px_style(Lines::edges(look));
         let printed = one_px_style(Lines::printed(PrintedLines { width_px: 1.0, ink: Vec3::ZERO }));
         let truth = true_lines(flat, camera, SIZE, f64::from(corrected.crease_angle_rad));
-        // Where alpha cuts a face out, its edges are drawn only where something of it is left, and a file's edges say
-        // nothing of the new border: the truth does not know of either.
+        // The edges of an alpha-tested face are drawn only where a part of the face is visible, and the edges of the
+        // file do not include the border that alpha creates. The exact contours account for neither.
         let exact = !scene.materials().iter().any(|m| matches!(m.alpha_mode, AlphaMode::Mask { .. }));
         if !exact {
             self.skipped
@@ -465,7 +469,7 @@ impl Checker<'_> {
     }
 }
 
-/// Lines alone, black on white.
+/// Only lines, black on white.
 fn one_px_style(lines: Lines) -> Style {
     Style {
         name: "one-px".into(),
@@ -480,7 +484,7 @@ fn one_px_style(lines: Lines) -> Style {
     }
 }
 
-/// Per pixel how far from white, 0..=1.
+/// Per pixel: the darkness, 0 (white) to 1.
 fn darkness(image: &Image) -> Vec<f64> {
     image.rgba8.chunks_exact(4).map(|p| 1.0 - f64::from(p[1]) / 255.0).collect()
 }

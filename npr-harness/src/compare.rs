@@ -1,8 +1,8 @@
-//! The one comparer of images, and what it leaves behind.
+//! Comparison of images, and its report.
 //!
-//! Differences are counted per pixel, as the largest of its four channels' differences (0..=255), alpha being a
-//! channel like any other. Pixels at which the reference itself is not stable can be exempt ([`exempt_mask`]); both
-//! counts, with and without them, are kept, so that what was exempt can be stated and bounded.
+//! The difference of a pixel is the largest of its four channels' differences (0..=255), including alpha. Pixels at
+//! which the reference itself is not stable can be exempt ([`exempt_mask`]). Both counts, with and without exempt
+//! pixels, are kept, so that exemptions can be reported and limited.
 
 use crate::error::HarnessError;
 use crate::picture::{Image, ImageError, byte_count};
@@ -16,41 +16,41 @@ use std::path::{Path, PathBuf};
 /// At most `count` pixels may differ by more than `magnitude` in any channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tolerance {
-    /// Difference that is of no account, of 255.
+    /// The largest difference that is ignored, of 255.
     pub magnitude: u8,
-    /// Pixels.
+    /// The number of pixels.
     pub count: u64,
 }
 
 /// How two images differ.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Comparison {
-    /// All of them, exempt or not.
+    /// The number of pixels, including exempt ones.
     pub pixels: u64,
-    /// How many of them are exempt.
+    /// The number of exempt pixels.
     pub exempt: u64,
-    /// How many pixels that are not exempt differ by exactly the index, in the channel that differs most.
+    /// The number of pixels that are not exempt, by their difference.
     pub histogram: [u64; 256],
-    /// The same for all pixels.
+    /// The number of all pixels, by their difference.
     pub histogram_all: [u64; 256],
     /// The largest difference of a pixel that is not exempt.
     pub worst: u8,
-    /// The first pixel that differs so much (column and row, from the upper left); `None` if none differs.
+    /// The first pixel with that difference (column and row, from the upper left); `None` if none differs.
     pub worst_at: Option<(u32, u32)>,
 }
 
 impl Comparison {
-    /// Pixels that are not exempt and differ by more than `magnitude`.
+    /// The number of pixels that are not exempt and differ by more than `magnitude`.
     pub fn over(&self, magnitude: u8) -> u64 {
         self.histogram[usize::from(magnitude) + 1..].iter().sum()
     }
 
-    /// Pixels, exempt or not, that differ by more than `magnitude`.
+    /// The number of pixels, including exempt ones, that differ by more than `magnitude`.
     pub(crate) fn over_all(&self, magnitude: u8) -> u64 {
         self.histogram_all[usize::from(magnitude) + 1..].iter().sum()
     }
 
-    /// Whether every one of the tolerances is kept. Without any, no pixel may differ at all.
+    /// Whether all tolerances are met. Without any, no pixel may differ at all.
     pub fn passes(&self, tolerances: &[Tolerance]) -> bool {
         if tolerances.is_empty() {
             return self.over(0) == 0;
@@ -58,7 +58,7 @@ impl Comparison {
         tolerances.iter().all(|tolerance| self.over(tolerance.magnitude) <= tolerance.count)
     }
 
-    /// The share of the pixels that is exempt, 0..=1.
+    /// The fraction of the pixels that is exempt, 0..=1.
     pub fn exempt_share(&self) -> f64 {
         if self.pixels == 0 { 0.0 } else { self.exempt as f64 / self.pixels as f64 }
     }
@@ -96,8 +96,8 @@ pub fn compare(expected: &Image, actual: &Image, exempt: &[bool]) -> Result<Comp
     Ok(result)
 }
 
-/// Per pixel, row by row: whether any of the `shifted` renders of the reference differs from the reference by more
-/// than `magnitude` in any channel. What the pixel shows there hangs on where exactly it is sampled.
+/// Per pixel, in row order: whether any of the `shifted` renders of the reference differs from the reference by more
+/// than `magnitude` in any channel, that is, whether the pixel is sensitive to sampling.
 ///
 /// # Errors
 /// [`CompareError::Size`] where one of the images has another size.
@@ -112,8 +112,8 @@ pub fn exempt_mask(reference: &Image, shifted: &[Image], magnitude: u8) -> Resul
     Ok(mask)
 }
 
-/// A picture of the channels' differences, on black and opaque: a difference of 1 is shown as 64, of 255 as 255. A
-/// difference in alpha is shown in all three colours. Exempt pixels are on dark teal (0, 32, 48).
+/// A picture of the channels' differences, on opaque black: a difference of 1 is shown as 64, of 255 as 255. A
+/// difference in alpha appears in all three colours. Exempt pixels are on dark teal (0, 32, 48).
 ///
 /// # Errors
 /// [`CompareError`] where the sizes or the mask's length do not fit.
@@ -154,16 +154,16 @@ fn pixels(image: &Image) -> impl Iterator<Item = &[u8]> {
     image.rgba8.chunks_exact(4)
 }
 
-/// Per pixel the largest difference of its channels.
+/// Per pixel: the largest difference of its channels.
 fn differences<'a>(expected: &'a Image, actual: &'a Image) -> impl Iterator<Item = u8> + 'a {
     pixels(expected).zip(pixels(actual)).map(|(e, a)| (0..4).fold(0, |worst, c| worst.max(e[c].abs_diff(a[c]))))
 }
 
-/// Writes `name`-expected.png, `name`-actual.png and `name`-difference.png into `dir`, which is made if need be, and
-/// returns their paths in this order. In the names every character but ASCII letters, digits, `.`, `_` and `-`
+/// Writes `name`-expected.png, `name`-actual.png and `name`-difference.png into `dir`, which is created if necessary,
+/// and returns their paths in this order. In the names, every character except ASCII letters, digits, `.`, `_` and `-`
 /// becomes `_`.
 ///
-/// Images of different sizes have no difference: the first two are written, and then it is an error.
+/// For images of different sizes, the first two are written and an error is returned.
 ///
 /// # Errors
 /// [`HarnessError::Image`], which names the file, and [`HarnessError::Compare`].
@@ -187,18 +187,18 @@ pub(crate) fn leave_behind(
 /// One comparison of a report.
 #[derive(Clone, Debug)]
 pub(crate) struct ReportRow {
-    /// What was compared.
+    /// The name of the comparison.
     pub name: String,
     /// Files of the expected, actual and difference images, as [`leave_behind`] returns them.
     pub images: [PathBuf; 3],
-    /// The numbers.
+    /// The comparison.
     pub comparison: Comparison,
-    /// What was allowed.
+    /// The tolerances.
     pub tolerances: Vec<Tolerance>,
 }
 
-/// Writes `index.html` into `dir`, which is made if need be, and returns its path: the three images of every row
-/// side by side, with the numbers. The images are copied into the page, so that it can be passed on by itself.
+/// Writes `index.html` into `dir`, which is created if necessary, and returns its path. The page shows the three images
+/// of every row side by side, with the numbers. The images are embedded, so that the page is self-contained.
 ///
 /// # Errors
 /// [`ImageError::Read`] for an image and [`ImageError::Write`] for the page.
@@ -251,7 +251,7 @@ pub(crate) fn html_report(dir: &Path, rows: &[ReportRow]) -> Result<PathBuf, Ima
     Ok(path)
 }
 
-/// Text for an element or a quoted attribute of HTML.
+/// Escapes text for an element or a quoted attribute of HTML.
 fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;").replace('\'', "&#39;")
 }

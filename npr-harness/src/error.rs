@@ -1,23 +1,23 @@
-//! What can go wrong on the way to a picture.
+//! The errors of this crate.
 
 use crate::picture::PictureFormat;
 use std::fmt;
 
-/// What a path that a command was given is for.
+/// The role of a path in a command's arguments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum PathRole {
-    /// A file with a model.
+    /// A model file.
     Model,
-    /// A file with a style.
+    /// A style file.
     Style,
-    /// A folder with files that a model names.
+    /// A folder with files that a model refers to.
     AssetRoot,
     /// A file with a tonal art map.
     Map,
-    /// A picture of a stroke.
+    /// An image of a stroke.
     StrokePicture,
-    /// What is written.
+    /// The output.
     Output,
 }
 
@@ -43,173 +43,173 @@ impl fmt::Display for PathRole {
     }
 }
 
-/// The beginning of a list of known names.
+/// The first part of a list of known names.
 fn did_you_mean(nearest: &Option<String>) -> String {
     nearest.as_ref().map(|nearest| format!("did you mean {nearest:?}? ")).unwrap_or_default()
 }
 
-/// Why there is no picture.
+/// The reason why a picture could not be made.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum HarnessError {
-    /// The model.
+    /// The model could not be loaded.
     #[error(transparent)]
     Load(#[from] npr_mesh::LoadError),
-    /// The lines.
+    /// An error from npr-outline, about edge lines, fins or shadow volumes.
     #[error(transparent)]
     Outline(#[from] npr_outline::OutlineError),
-    /// The lines in the image.
+    /// An error from npr-imagespace, about image-space lines.
     #[error(transparent)]
     ImageSpace(#[from] npr_imagespace::ImageSpaceError),
-    /// Bands, ramps or lights.
+    /// An error from npr-toon, about bands, ramps or lights.
     #[error(transparent)]
     Toon(#[from] npr_toon::ToonError),
-    /// The cool and warm tones.
+    /// An error from npr-gooch, about Gooch shading.
     #[error(transparent)]
     Gooch(#[from] npr_gooch::GoochError),
-    /// A tonal art map.
+    /// An error from npr-hatch, about a tonal art map.
     #[error(transparent)]
     Hatch(#[from] npr_hatch::HatchError),
-    /// A map that should have six tones.
+    /// A map with another number of tones where six are needed.
     #[error("a map of {tones} tones: listings 4 and 5 know six (thresholds with a linear transfer know any number)")]
     SixTones {
-        /// How many it has.
+        /// The number of tones.
         tones: usize,
     },
-    /// A map that takes long to draw, in a style, which is drawn anew for each run.
+    /// A style's map takes too long to draw; it is drawn again in each run.
     #[error(
         "a map of {side} × {side} texels, {tones} tones and {candidates} candidates takes long: draw it once with npr tam, and name its file"
     )]
     MapEffort {
-        /// Texels.
+        /// The side of the map, texels.
         side: u32,
-        /// How many.
+        /// The number of tones.
         tones: usize,
-        /// For each stroke.
+        /// The number of candidates per stroke.
         candidates: u32,
     },
-    /// A file without thresholds where they are to be drawn.
+    /// A map file without thresholds, for a style that uses them.
     #[error("{}: the map has no thresholds; its six tones can be drawn", path.display())]
     NoThresholds {
-        /// Which.
+        /// The map file.
         path: std::path::PathBuf,
     },
-    /// A file with a tonal art map.
+    /// A map file that is not valid.
     #[error("{}: {source}", path.display())]
     Map {
-        /// Which.
+        /// The map file.
         path: std::path::PathBuf,
-        /// Why.
+        /// The cause.
         source: npr_hatch::HatchError,
     },
     /// Only some of a folder's files could be written.
     #[error("{source}; {} is incomplete", folder.display())]
     Incomplete {
-        /// Which.
+        /// The folder.
         folder: std::path::PathBuf,
-        /// What failed first.
+        /// The first failure.
         source: Box<HarnessError>,
     },
-    /// A light from within, and one picture of depths to hold all that it shines on.
+    /// A shadow map for a light within or too close to the model's bounding sphere.
     #[error(
         "a shadow map holds what a light sees from outside: it is {radii} radii from the model's middle, and needs {least} (volumes take any light)"
     )]
     ShadowMapLight {
-        /// Halves of the diagonal of the model's box.
+        /// The distance of the light from the sphere's centre, in halves of the bounding box's diagonal.
         radii: f64,
-        /// The same.
+        /// The least distance allowed, in the same unit.
         least: f64,
     },
-    /// Lines around shadows that nothing casts.
+    /// A style with shadow lines but without shadows.
     #[error("style {style} draws lines around shadows, and has none (the table `shadow`)")]
     NoShadow {
-        /// Which.
+        /// The name of the style.
         style: String,
     },
     /// A style without a light.
     #[error("a style needs one light or two")]
     NoLight,
-    /// A style's file that is not TOML, or has keys or values that a style does not have.
+    /// A style file that is not TOML, or has unknown keys or invalid values.
     #[error("{}:{line}:{column}: {message}", path.display())]
     StyleToml {
-        /// Which file.
+        /// The file.
         path: std::path::PathBuf,
-        /// From 1.
+        /// The line, from 1.
         line: usize,
-        /// From 1.
+        /// The column, from 1.
         column: usize,
-        /// In the parser's words.
+        /// The parser's message.
         message: String,
     },
-    /// A style's file with two tables of which a style has one.
+    /// A style file with two alternative tables.
     #[error(
         "{}:{line}:{column}: a style has one kind of {what}: [{table}.{first}] and [{table}.{second}] are both there",
         path.display()
     )]
     TwoKinds {
-        /// Which file.
+        /// The file.
         path: std::path::PathBuf,
-        /// Of the second table, from 1.
+        /// The line of the second table, from 1.
         line: usize,
-        /// The same.
+        /// The column of the second table, from 1.
         column: usize,
-        /// What there is one kind of.
+        /// What the tables are alternatives for.
         what: &'static str,
-        /// The key above both.
+        /// The key that contains both.
         table: &'static str,
-        /// A key.
+        /// The key of the first table.
         first: String,
-        /// Another one.
+        /// The key of the second table.
         second: String,
     },
-    /// A style's file that says something twice or leaves out what is needed.
+    /// A style file with contradictory or missing keys.
     #[error("{}: {what}", path.display())]
     StyleTable {
-        /// Which file.
+        /// The file.
         path: std::path::PathBuf,
         /// What is wrong.
         what: String,
     },
-    /// A style's file with a number out of its range.
+    /// A style file with a number out of its range.
     #[error("{}: {source}", path.display())]
     StyleRule {
-        /// Which file.
+        /// The file.
         path: std::path::PathBuf,
-        /// Which rule is broken.
+        /// The rule that is violated.
         source: Box<HarnessError>,
     },
-    /// The image of a ramp, named in a style's file.
+    /// The image of a ramp that a style file refers to could not be read.
     #[error("a ramp's image: {0}")]
     RampImage(crate::picture::ImageError),
-    /// A style that has no TOML form.
+    /// A style that cannot be written as TOML.
     #[error("a style could not be written: {0}")]
     StyleWrite(#[from] toml::ser::Error),
-    /// A picture file.
+    /// A picture file could not be read or written.
     #[error(transparent)]
     Image(#[from] crate::picture::ImageError),
     /// Pictures that cannot be compared.
     #[error(transparent)]
     Compare(#[from] crate::picture::CompareError),
-    /// No adapter that can do what every picture needs.
+    /// No adapter meets the requirements.
     #[error("no usable graphics adapter (seen: {})", if seen.is_empty() { "none".to_owned() } else { seen.join("; ") })]
     NoAdapter {
-        /// Those that were found and are not enough.
+        /// The adapters that were found and rejected.
         seen: Vec<String>,
     },
-    /// The adapter gave no device.
+    /// The adapter could not be opened.
     #[error("{adapter} gave no device: {fault}")]
     NoDevice {
-        /// Which.
+        /// The adapter.
         adapter: String,
-        /// Why, in its own words.
+        /// The driver's message.
         fault: String,
     },
-    /// A texture larger than the device's can be.
+    /// A texture that exceeds the device's limit.
     #[error(
         "{what} of {width} × {height} px: this device's textures have at most {limit} × {limit} px (the CPU has no such limit)"
     )]
     TextureTooLarge {
-        /// What of the picture.
+        /// The use of the texture.
         what: &'static str,
         /// Px.
         width: u32,
@@ -218,114 +218,114 @@ pub enum HarnessError {
         /// Px.
         limit: u32,
     },
-    /// A ramp's image larger than the device's textures can be.
+    /// A ramp image that exceeds the device's limit.
     #[error(
         "a ramp of {width} × {height} texels: this device's textures are at most {limit} × {limit} (the CPU has no such limit)"
     )]
     RampTooLarge {
-        /// Columns.
+        /// The width in texels.
         width: u32,
-        /// Rows.
+        /// The height in texels.
         height: u32,
-        /// Texels along a side.
+        /// The largest side in texels.
         limit: u32,
     },
-    /// A buffer larger than the device's can be.
+    /// A buffer that exceeds the device's limit.
     #[error("{what} needs {bytes} bytes, this device's buffers hold at most {limit}")]
     BufferTooLarge {
-        /// What it holds.
+        /// The content of the buffer.
         what: &'static str,
-        /// How much it holds.
+        /// Its size, bytes.
         bytes: u64,
-        /// How much is allowed.
+        /// The limit, bytes.
         limit: u64,
     },
-    /// More draws than a software adapter has memory for: it keeps half a MiB for each until a picture is finished
+    /// More draws than a software adapter has memory for: it keeps half a MiB per draw until a picture is finished
     /// (lavapipe, Mesa 22.3).
     #[error("{draws} draws, one for each material or blended face: {limit} at most on a software adapter")]
     TooManyDraws {
-        /// How many there would be.
+        /// The number of draws.
         draws: usize,
-        /// How many are made.
+        /// The limit.
         limit: usize,
     },
-    /// Shadow volumes in a parallel view, whose depth ends, on a device that cuts off what is farther.
+    /// Shadow volumes in a parallel view, which has a far plane, on a device that cannot disable depth clipping.
     #[error("this device cannot draw shadow volumes in a parallel view (a shadow map, or the CPU, can)")]
     ParallelVolumes,
-    /// An environment variable that names no limits.
+    /// The environment variable `NPR_GPU_LIMITS` has an unknown value.
     #[error("NPR_GPU_LIMITS={name:?}: it must be adapter or webgl2")]
     GpuLimits {
-        /// What it says.
+        /// The value.
         name: String,
     },
-    /// The device is there no more.
+    /// The device was lost.
     #[error("the graphics device was lost: {reason}")]
     Lost {
-        /// In its own words.
+        /// The driver's message.
         reason: String,
     },
-    /// The device has no memory left.
+    /// The device is out of memory.
     #[error("the graphics device is out of memory: {fault}")]
     OutOfMemory {
-        /// In its own words.
+        /// The driver's message.
         fault: String,
     },
-    /// The device reported a fault.
+    /// The device reported an error.
     #[error("the graphics device failed: {fault}")]
     Device {
-        /// In its own words.
+        /// The driver's message.
         fault: String,
     },
-    /// Faces that cannot be cut into more.
+    /// Faces that cannot be tessellated.
     #[error(transparent)]
     Tessellate(#[from] npr_mesh::pn_triangles::TessellateError),
     /// A material that the model does not have.
     #[error("no material is called {name:?} ({}there are: {known})", did_you_mean(nearest))]
     UnknownMaterial {
-        /// What was asked for.
+        /// The value requested.
         name: String,
-        /// The material that was probably meant, if one is called nearly the same.
+        /// A material with a similar name, if there is one.
         nearest: Option<String>,
-        /// Those there are.
+        /// The existing names.
         known: String,
     },
-    /// A plan for the CPU, given to a device.
+    /// A plan for the CPU was passed to the GPU executor.
     #[error("the plan is for the CPU: shadows are to be found by rays")]
     RayPlan,
-    /// An object that a transform would make flat.
+    /// A singular transform of an object.
     #[error("the transform of object {object} has no inverse")]
     SingularTransform {
-        /// The number of the object.
+        /// The index of the object.
         object: usize,
     },
-    /// A material of an object's own that cannot replace those of its mesh.
+    /// A material override that is not compatible with the materials of the mesh.
     #[error(
         "material {material:?} cannot replace those of object {object}: it has a texture that the scene does not have, or \
          another alpha mode"
     )]
     ObjectMaterial {
-        /// The number of the object.
+        /// The index of the object.
         object: usize,
         /// The name of the material.
         material: String,
     },
-    /// A cut scene, and lines that do not know of the cut.
+    /// A scene with a clipping plane, and a style with lines that do not support it.
     #[error("style {style} draws a model's edges, which a clip plane does not cut; lines in the image are cut with it")]
     ClippedEdges {
-        /// Which.
+        /// The name of the style.
         style: String,
     },
     /// A style that does not exist.
     #[error("no style is called {name:?} ({}there are: {known})", did_you_mean(nearest))]
     UnknownStyle {
-        /// What was asked for.
+        /// The value requested.
         name: String,
-        /// The style that was probably meant, if one is called nearly the same.
+        /// A style with a similar name, if there is one.
         nearest: Option<String>,
-        /// Those there are.
+        /// The existing names.
         known: String,
     },
-    /// A picture without pixels, or longer than any.
+    /// A picture without pixels, or with a side that exceeds the limit.
     #[error("a picture of {width} × {height} px: each side must lie in 1..={limit}")]
     Size {
         /// Px.
@@ -335,7 +335,7 @@ pub enum HarnessError {
         /// Px.
         limit: u32,
     },
-    /// A picture that takes more memory than is allowed.
+    /// A picture that needs more memory than allowed.
     #[error(
         "a picture of {width} × {height} px with {samples} × {samples} samples takes about {} MiB, and {} are allowed (--max-memory)",
         bytes >> 20,
@@ -346,115 +346,115 @@ pub enum HarnessError {
         width: u32,
         /// Px.
         height: u32,
-        /// Per pixel along each axis.
+        /// Samples per pixel along each axis.
         samples: u32,
-        /// What it takes.
+        /// The memory needed, bytes.
         bytes: u64,
-        /// What is allowed.
+        /// The memory allowed, bytes.
         limit: u64,
     },
     /// A number out of its range.
     #[error("{what} of {value}: it must lie in {range}")]
     Range {
-        /// What it is.
+        /// The name of the number.
         what: &'static str,
-        /// What was asked for.
+        /// The value requested.
         value: f64,
-        /// What is allowed.
+        /// The range.
         range: &'static str,
     },
-    /// The build has no device executor.
+    /// The build does not include the GPU executor.
     #[error("this build has no GPU executor (the feature `gpu` is off)")]
     NoGpuInBuild,
-    /// A device was asked for, and none is to be looked for.
+    /// The GPU was requested, but `NPR_GPU` disables it.
     #[error("a device was asked for (--backend gpu), and NPR_GPU=off says to look for none")]
     GpuOff,
-    /// A device was required and there is none.
+    /// The GPU was required, but there is no adapter.
     #[error("NPR_GPU=required, but {0}")]
     GpuRequired(String),
-    /// An environment variable that says nothing.
+    /// The environment variable `NPR_GPU` has an unknown value.
     #[error("NPR_GPU={0:?}: it must be required, auto or off")]
     Policy(String),
-    /// A file or directory that a command was given and that is not there.
+    /// A file or directory in a command's arguments that does not exist.
     #[error("{role} {}: no such {}", path.display(), role.kind())]
     NoSuchPath {
-        /// What it is for.
+        /// Its role.
         role: PathRole,
-        /// Which.
+        /// The path.
         path: std::path::PathBuf,
     },
     /// A directory where a command needs a file.
     #[error("{role} {}: is a directory", path.display())]
     IsDirectory {
-        /// What it is for.
+        /// Its role.
         role: PathRole,
-        /// Which.
+        /// The path.
         path: std::path::PathBuf,
     },
-    /// A file or directory that a command was given and that the system does not let it use.
+    /// A file or directory in a command's arguments that cannot be accessed.
     #[error("{role} {}: {source}", path.display())]
     Unusable {
-        /// What it is for.
+        /// Its role.
         role: PathRole,
-        /// Which.
+        /// The path.
         path: std::path::PathBuf,
-        /// Why.
+        /// The cause.
         source: std::io::Error,
     },
-    /// A picture's file whose extension names no format that can be written.
+    /// A picture file whose extension is not that of a supported format.
     #[error(
         "output {}: unknown picture format (expected {}, or - for PNG on standard output)",
         path.display(),
         PictureFormat::EXTENSIONS.map(|(extension, _)| format!(".{extension}")).join(", ")
     )]
     PictureFormat {
-        /// Which file.
+        /// The file.
         path: std::path::PathBuf,
     },
-    /// A picture that is larger than its file's format can say.
+    /// A picture that exceeds the largest size of its file format.
     #[error("a picture of {width} × {height} px: each side of a {format} picture must lie in 1..={limit}")]
     FormatSize {
         /// Px.
         width: u32,
         /// Px.
         height: u32,
-        /// Of the file.
+        /// The format of the file.
         format: PictureFormat,
         /// Px.
         limit: u32,
     },
-    /// Two things that would be written to standard output, one into the other.
+    /// Two outputs that would both be written to standard output.
     #[error("--json and -o - would both write to standard output")]
     StandardOutputTwice,
     /// A file that could not be read.
     #[error("{}: {source}", path.display())]
     Read {
-        /// Which.
+        /// The path.
         path: std::path::PathBuf,
-        /// Why.
+        /// The cause.
         source: std::io::Error,
     },
     /// A file that could not be written.
     #[error("{}: {source}", path.display())]
     Write {
-        /// Which.
+        /// The path.
         path: std::path::PathBuf,
-        /// Why.
+        /// The cause.
         source: std::io::Error,
     },
-    /// A picture that would be written over what it is made of.
+    /// A picture that would overwrite one of its inputs.
     #[error("{}: it is read for the picture, and would be overwritten by it", path.display())]
     Overwrites {
-        /// Which file.
+        /// The file.
         path: std::path::PathBuf,
     },
-    /// A table that could not be written as JSON.
+    /// Data that could not be written as JSON.
     #[error("could not write JSON: {0}")]
     Json(#[from] serde_json::Error),
 }
 
 impl HarnessError {
-    /// Whether the fault lies with a device, and the CPU may make the picture.
+    /// Whether the error is the GPU's, so that the CPU can render the picture.
     pub(crate) fn is_of_the_device(&self) -> bool {
         matches!(
             self,
@@ -466,7 +466,7 @@ impl HarnessError {
         ) || self.is_device_limit()
     }
 
-    /// Whether a device cannot make the picture for a limit that it has, without a fault.
+    /// Whether the picture exceeds a limit of the GPU, without a failure.
     pub(crate) fn is_device_limit(&self) -> bool {
         use npr_outline::OutlineError;
         match self {
@@ -482,7 +482,7 @@ impl HarnessError {
         }
     }
 
-    /// Whether the device makes no further picture.
+    /// Whether the GPU cannot render any further picture.
     pub(crate) fn is_final(&self) -> bool {
         matches!(self, Self::Lost { .. } | Self::OutOfMemory { .. })
     }

@@ -1,5 +1,5 @@
-//! What is exactly right: lines, bands, tones, shadows and normals by definitions of their own, and how far pictures are
-//! from them.
+//! Ground truth: lines, bands, tones, shadows and normals computed by independent definitions, and the errors of
+//! pictures relative to them.
 
 pub mod bands;
 pub mod hatch;
@@ -7,8 +7,8 @@ pub mod lines;
 pub mod normal_use;
 pub mod shadows;
 
-/// How far a reference's samples are moved to find out where it is sensitive, px.
+/// The shift of a reference's samples that finds where it is sensitive to sampling, px.
 pub const SHIFT_PX: f64 = 1.0 / 32.0;
-/// What the corners of faces are rounded to on a device, px: Vulkan asks for a 16th at least, all that were seen have
+/// The grid to which a GPU rounds the corners of faces, px: Vulkan requires at least 1/16, all tested devices have
 /// this.
 pub const ROUNDED_PX: f64 = 1.0 / 256.0;

@@ -437,9 +437,9 @@ impl ContourEdges {
     /// What kind of line an edge is for this eye (in the planes' own coordinates, [`ContourEdges::local_eye`]),
     /// or `None` if it is none.
     pub fn kind(&self, edge: usize, eye: Vec4) -> Option<LineKind> {
-        let (own, planes) = (self.edges[edge].own_kind(), &self.edge_planes(edge));
-        let is_line = own != LineKind::Silhouette || outline_is_silhouette(planes, eye);
-        is_line.then(|| outline_kind(own, planes, eye))
+        let (record, planes) = (&self.edges[edge], &self.edge_planes(edge));
+        let is_line = record.is_always() || outline_is_silhouette(planes, eye);
+        is_line.then(|| outline_kind(record.own_kind(), planes, eye))
     }
 }
 

@@ -1,10 +1,10 @@
-//! Lines in the image against the exact contours, filter by filter.
+//! Image-space lines against the exact contours, filter by filter.
 //!
-//! The default filter has a limit on the models that are measured in docs/accuracy.md, and one as recorded on some others;
-//! the rest are numbers without limits: how good a filter can be depends on the model. What they miss, most of it, is creases with
-//! one patch on both sides (their share is told), unless the shading normals are split there; what they draw too much
-//! is what lies nearer behind than is asked for, borders of coplanar patches, and the third pixel of a line where a
-//! surface turns away steeply.
+//! The default filter has a limit on the models of docs/accuracy.md and recorded limits on some others. The other
+//! values have no limits, because the quality of a filter depends on the model. Most missed lines are creases with one
+//! region on both sides (their fraction is reported), unless the shading normals are split there. Spurious lines are
+//! depth steps smaller than [`LEAST_STEP`], borders between coplanar regions, and the third pixel of a line where a
+//! surface curves away steeply.
 
 use super::{Checker, Limit, SIZE, WITHIN_PX, darkness, one_px_style};
 use crate::camera::Camera;
@@ -35,12 +35,12 @@ use npr_imagespace::picture::{Taps, filter_picture};
 use npr_mesh::edges::NO_FACE;
 use npr_outline::LineKind;
 
-/// Silhouettes and boundaries behind which the next surface is nearer than this share of the model's size, the
-/// diagonal of its box, are not asked of a filter.
+/// Silhouettes and boundaries whose next surface behind is nearer than this, relative to the diagonal of the model's
+/// bounding box, are not required of a filter.
 pub(crate) const LEAST_STEP: f64 = 0.01;
 
-/// The least F1 of the default filter, by the name of the model's file: 0.95 on the models of docs/accuracy.md, elsewhere
-/// what was recorded, rounded down.
+/// The least F1 of the default filter, by the model's file name: 0.95 on the models of docs/accuracy.md, elsewhere the
+/// recorded value, rounded down.
 pub(crate) const LEAST_F1: [(&str, f64); 11] = [
     ("stanford-bunny.obj", 0.95),
     ("fandisk.obj", 0.95),
@@ -129,7 +129,7 @@ impl Checker<'_> {
     }
 }
 
-/// The filters of 2002 over the RGBA8 target that they were made for, as printed and corrected, and what it is cleared to.
+/// The filters of 2002 on their original RGBA8 target, as printed and corrected, and the clear colour of the target.
 fn printed_filters() -> [(&'static str, PrintedFilter, [u8; 4]); 4] {
     let corrected = PrintedEdges::default();
     let printed = PrintedEdges {
@@ -146,7 +146,7 @@ fn printed_filters() -> [(&'static str, PrintedFilter, [u8; 4]); 4] {
     ]
 }
 
-/// Their ink 0..=1, from packed texels whose depths lie within the code's range.
+/// The ink of a printed filter, 0..=1, from packed texels whose depths lie within the code's range.
 fn printed_ink(
     texels: &[[u32; 2]],
     plan: &Plan,
@@ -182,8 +182,8 @@ fn printed_ink(
     Ok(ink.into_iter().map(|ink| f64::from(ink) / 255.0).collect())
 }
 
-/// The share of the lines' length that are creases with one region on both sides: found only if the shading normals
-/// say so.
+/// The fraction of the lines' length that are creases with one region on both sides, which are found only if the
+/// shading normals differ.
 fn uncarried_share(scene: &Scene, lines: &TrueLines, plan: &Plan) -> f64 {
     let Some(image) = &plan.image else { return 0.0 };
     let is_uncarried = |segment: &&TrueSegment| {

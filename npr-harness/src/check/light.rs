@@ -1,4 +1,4 @@
-//! Borders of bands, and the three uses of normals, against supersampled truths.
+//! Band borders, and the three uses of normals, against supersampled references.
 
 use super::Checker;
 use crate::camera::Camera;
@@ -9,13 +9,14 @@ use crate::truth::normal_use::normal_use_errors;
 use npr_toon::Bands;
 use npr_toon::normal::NormalUse;
 
-/// Px: what is 16 times finer, too, fits into memory.
+/// The picture size for band borders, px; a picture 16 times finer must fit into memory.
 const BORDER_SIZE: (u32, u32) = (320, 180);
-/// Px.
+/// The picture size for uses of normals, px.
 const NORMALS_SIZE: (u32, u32) = (480, 270);
 
 impl Checker<'_> {
-    /// The default bands on a model in white. Told without limits: what they are depends on how rough a model is.
+    /// Measures the default bands on a white model. Reported without limits, because they depend on how rough a model
+    /// is.
     pub(super) fn borders(
         &mut self,
         model: &str,
@@ -37,7 +38,7 @@ impl Checker<'_> {
         Ok(())
     }
 
-    /// The teapot, coarse to fine.
+    /// Measures the teapot, from coarse to fine tessellations.
     pub(super) fn normals(&mut self) -> Result<(), HarnessError> {
         for error in normal_use_errors(NORMALS_SIZE)? {
             let technique = match error.normals {

@@ -1,4 +1,4 @@
-//! Which edges are lines, and how wide lines are.
+//! Classification of edges, and widths of lines.
 
 use super::{
     Checker, FORMAT_VIEWS, LARGEST_FORMAT_EDGES, Limit, PLANES_MISCLASSIFIED, SIZE, WIDTH_ERROR, one_px_style,
@@ -18,15 +18,15 @@ use npr_mesh::Model;
 use npr_outline::line_style::LineStyle;
 use npr_outline::normal_format::{NormalFormat, misclassified_share, misclassified_share_of_planes};
 
-/// Units: how far away the segments lie whose width is measured.
+/// The distances of the segments whose width is measured, scene units.
 pub(crate) const WIDTH_DISTANCES: [f64; 7] = [0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0];
-/// Px: the widths that are asked for.
+/// The widths requested, px.
 pub(crate) const WIDTHS_PX: [f32; 4] = [1.0, 2.0, 4.0, 8.0];
-/// How much the segments rise over half of their length, in half lengths: level, nearly level, and steep.
+/// The slopes of the segments: level, nearly level, and steep.
 const RISES: [f64; 3] = [0.0, 0.07, 0.6];
 
 impl Checker<'_> {
-    /// How often silhouettes are misclassified, by the format of the face normals, and by the plane records.
+    /// Measures how often silhouettes are misclassified, by the format of face normals and by the plane records.
     pub(super) fn formats(&mut self, model: &str, scene: &Scene) -> Result<(), HarnessError> {
         let edges = scene.single().edges().edges.len();
         if edges > LARGEST_FORMAT_EDGES {
@@ -51,7 +51,7 @@ impl Checker<'_> {
         Ok(())
     }
 
-    /// The lines that the compute pass finds against those of the scan.
+    /// Compares the lines that the compute pass finds with those of the scan.
     #[cfg(feature = "gpu")]
     pub(super) fn line_finder(
         &mut self,
@@ -80,13 +80,13 @@ impl Checker<'_> {
         let found = renderer.found_lines(&uploaded)?.unwrap_or_default();
         let on_device: BTreeSet<[u32; 2]> = found.iter().copied().collect();
         let scanned: BTreeSet<[u32; 2]> = plan.lines(scene).0.into_iter().collect();
-        // A line found twice is as wrong as one found wrongly.
+        // Lines found twice count as errors.
         let wrong = on_device.symmetric_difference(&scanned).count() + (found.len() - on_device.len());
         self.add(model, view, "line finder", "edges in one set only", wrong as f64, Some(Limit::AtMost(0.0)));
         Ok(())
     }
 
-    /// The width of isolated segments, measured from the picture, against the width asked for.
+    /// Measures the width of isolated segments in the picture against the width requested.
     pub(super) fn widths(&mut self) -> Result<(), HarnessError> {
         let limit = Some(Limit::AtMost(WIDTH_ERROR));
         let metric = "largest relative error";
@@ -99,7 +99,8 @@ impl Checker<'_> {
         self.add("segments", "on the CPU", "width", metric, on_cpu, limit);
         #[cfg(feature = "gpu")]
         if let Executor::Gpu(context) = self.executor {
-            // A driver that refuses what it promised is found out by this picture, which falls to the next method.
+            // This picture detects a driver that rejects compute shaders although it reports support; the next method
+            // is used then.
             let scene = Scene::new(npr_mesh::embedded::cube());
             let style = one_px_style(Lines::edges(black(1.0)));
             let camera = Camera::framed(scene.corners(), 1.0, &Default::default());
@@ -123,7 +124,7 @@ fn black(width_px: f32) -> LineStyle {
     LineStyle { width_px: [width_px; 4], ink: [0.0, 0.0, 0.0, 1.0] }
 }
 
-/// Over all distances, widths and rises, how far the width is off, in widths.
+/// The largest relative error of the width over all distances, widths and slopes.
 fn largest_width_error(
     size_px: DVec2,
     render: impl Fn(&Scene, f32, &Camera) -> Result<crate::picture::Image, HarnessError>,
@@ -138,7 +139,7 @@ fn largest_width_error(
     let mut worst = 0.0f64;
     for distance in WIDTH_DISTANCES {
         for rise in RISES {
-            // The sides that meet the base's ends leave it at so large an angle that they are far away in its middle.
+            // The other two sides leave the ends of the base at large angles, so that they are far from its middle.
             let corners = [[-0.3, -0.3 * rise - 0.11], [0.3, 0.3 * rise - 0.11], [0.0, 0.4]];
             let corners = corners.map(|[x, y]| DVec3::new(x, y, -1.0) * distance);
             let scene = Scene::new(triangle(corners.map(|corner| corner.as_vec3())));
@@ -166,7 +167,7 @@ fn triangle(corners: [Vec3; 3]) -> Model {
     }
 }
 
-/// The mean over the middle third's columns of the darkness across a line from end to end, perpendicular to it.
+/// The mean, over the columns of the middle third, of the darkness across a line from end to end, perpendicular to it.
 fn width_in_the_middle(darkness: &[f64], width: u32, [from, to]: [DVec2; 2], asked_px: f64) -> f64 {
     let along = to - from;
     let (first, end) = ((from.x + along.x / 3.0) as u32, (to.x - along.x / 3.0) as u32);

@@ -1,4 +1,4 @@
-//! The reference picture of a shot, and where it is sensitive.
+//! The reference picture of a shot, and the pixels where it is sensitive to sampling.
 
 use super::magnitude;
 use crate::capabilities::Capabilities;
@@ -19,44 +19,44 @@ use glam::DVec2;
 use npr_imagespace::shadow::ShadowState;
 use npr_outline::segment::MAX_SLOPE;
 
-/// What is rendered, whatever renders it.
+/// The inputs of a picture, independent of the executor.
 #[derive(Clone, Copy)]
 pub struct Shot<'a> {
-    /// The scene, and what is known of its primary hits in the plan's view.
+    /// The scene, and its cached primary hits in the plan's view.
     pub hits: &'a PrimaryHits<'a>,
-    /// How it looks.
+    /// The style.
     pub style: &'a Style,
-    /// Made of these.
+    /// The plan for the scene and the style.
     pub plan: &'a Plan,
 }
 
-/// In how many places a reference's samples lie, for [`PrimaryHits::kept`], but for a closer look.
+/// The number of sample offsets of a reference, for [`PrimaryHits::kept`], not counting [`Reference::look_closer`].
 pub const PLACES: usize = 17;
 
-/// The reference picture of a shot, and the pixels in which it is sensitive to where its samples are: those in which its
-/// colour changes by more than the allowed difference, or, where surfaces are painted, its depth by more than a slope
-/// of [`MAX_SLOPE`] explains.
+/// The reference picture of a shot, and its sensitive pixels: those whose colour changes by more than the allowed
+/// difference when the samples are shifted, or, if surfaces are painted, whose depth changes by more than a slope of
+/// [`MAX_SLOPE`] explains.
 ///
-/// Strokes are as narrow as pixels, so a hatched picture changes nearly everywhere when its samples are moved, and
-/// would nearly all be exempt. There the same picture in plain light says what is sensitive; strokes are moved by
-/// [`ROUNDED_PX`] alone.
+/// Strokes are as narrow as pixels, so shifting the samples would change nearly every pixel of a hatched picture, and
+/// nearly all would be exempt. Instead, the same picture with plain lighting determines the sensitive pixels; strokes
+/// are shifted only by [`ROUNDED_PX`].
 pub struct Reference<'a> {
     shot: Shot<'a>,
     frame: CpuFrame,
-    /// Of a hatched shot: the same in plain light.
+    /// For a hatched shot: the same with plain lighting.
     plain: Option<Plain>,
     magnitude: u8,
     /// The picture.
     pub image: Image,
-    /// Per pixel whether it is sensitive.
+    /// Per pixel: whether it is sensitive.
     pub exempt: Vec<bool>,
 }
 
 impl<'a> Reference<'a> {
-    /// Renders it nine times: as it is, and with samples moved by [`SHIFT_PX`] in eight directions.
+    /// Renders the shot nine times: unshifted, and with samples shifted by [`SHIFT_PX`] in eight directions.
     ///
     /// # Errors
-    /// None that can occur with pictures of one size.
+    /// None in practice: all pictures have the same size.
     pub fn new(shot: Shot<'a>) -> Result<Self, HarnessError> {
         let frame = shot.reference(&CpuOptions::default());
         let magnitude = magnitude(shot.plan);
@@ -74,14 +74,14 @@ impl<'a> Reference<'a> {
         Ok(reference)
     }
 
-    /// Moves samples by less than [`SHIFT_PX`] too, and in more directions, 64 renders: a sliver that is thinner than
-    /// 1/100 px passes between the eight, and a rasteriser, whose corners lie on a grid of 1/256 px, hits it or not. One
-    /// more render ends faces [`ROUNDED_PX`] before their boundaries: between two that touch and are not joined, no
-    /// sample of the reference falls, wherever it is moved, and one of a device may. For shadows and for lines in the
-    /// image 16 more say what changes where an edge runs as close to a pixel's centre.
+    /// Renders 64 more pictures with smaller shifts in more directions: a sliver thinner than 1/100 px passes between
+    /// the eight samples, but a rasteriser, which rounds corners to a grid of 1/256 px, may hit it. One more render
+    /// ends faces [`ROUNDED_PX`] before their boundaries: no shifted sample falls between two adjacent faces that are
+    /// not connected, but a sample on a GPU may. For shadows and image-space lines, 16 more renders find what changes
+    /// where an edge passes as close to a pixel's centre.
     ///
     /// # Errors
-    /// None that can occur with pictures of one size.
+    /// None in practice: all pictures have the same size.
     pub fn look_closer(&mut self) -> Result<(), HarnessError> {
         for share in [1.0, 0.5, 0.25, 0.125] {
             self.exempt_where_moved(share * SHIFT_PX, 16)?;
@@ -90,17 +90,17 @@ impl<'a> Reference<'a> {
         self.exempt_around_edges()
     }
 
-    /// Where an edge passes within [`ROUNDED_PX`] of a pixel's centre a device may show there what no sample of the
-    /// reference does: at a contour the face that turns away, and where shadows change at a fold light or shadow, whatever
-    /// is on both sides of it, since the volume that begins at that edge is as deep as the surface itself. Such a pixel is
-    /// exempt where shadows change. Lines in the image look at their neighbours: what would change if any one such pixel
-    /// showed something else is exempt too.
+    /// Where an edge passes within [`ROUNDED_PX`] of a pixel's centre, a GPU may show a surface or shadow state there
+    /// that no sample of the reference has: at a contour, the back-facing face; where shadows change at a fold, light
+    /// or shadow regardless of both sides, because the volume that starts at that edge has the depth of the surface
+    /// itself. Such pixels are exempt if shadows change. Image-space lines depend on neighbours, so pixels that would
+    /// change if any one such pixel changed are exempt too.
     fn exempt_around_edges(&mut self) -> Result<(), HarnessError> {
         let Shot { hits, plan, .. } = self.shot;
         if plan.image.is_none() && plan.shadow.is_none() {
             return Ok(());
         }
-        // One sample a pixel, as lines in the image have.
+        // One sample per pixel, as for image-space lines.
         let one_sample = Plan { view: View { samples: 1, ..plan.view }, ..plan.clone() };
         let seen = |options: &CpuOptions| -> (Vec<f64>, Vec<ShadowAt>) {
             let seen = cpu::seen(hits, &one_sample, options);
@@ -122,7 +122,7 @@ impl<'a> Reference<'a> {
             ShadowLines::Lines | ShadowLines::Separate { .. } => &states,
         };
         let blank = cpu::without_ink(hits, plan, &CpuOptions::default(), &|_| {});
-        // One of nine at a time: beside another one that differs too, one may differ from nothing.
+        // Perturbs one of nine pixels at a time, because the effects of adjacent perturbations can cancel.
         let (width, _) = plan.view.size;
         for group in 0..9 {
             let is_of_group = |&pixel: &usize| {
@@ -138,7 +138,7 @@ impl<'a> Reference<'a> {
         Ok(())
     }
 
-    /// Per pixel whether its depth changes by more than a slope explains when its sample is moved.
+    /// Per pixel: whether its depth changes by more than a slope explains when its sample is shifted.
     fn shows_another_surface(&self, here: &[f64], moved: &[f64], by_px: f64) -> Vec<bool> {
         let View { camera, size: (width, height), .. } = &self.shot.plan.view;
         let per_px = camera.line_view(DVec2::new(f64::from(*width), f64::from(*height))).depth_per_px;
@@ -156,7 +156,7 @@ impl<'a> Reference<'a> {
         Ok(())
     }
 
-    /// Where the picture, or in plain light the same one, changes.
+    /// Exempts the pixels where the picture, or its version with plain lighting, changes.
     fn exempt_changes(&mut self, options: &CpuOptions) -> Result<(), HarnessError> {
         let (moved, image) = match &self.plain {
             Some(plain) => (self.shot.in_light(plain).reference(options), &plain.image),
@@ -165,8 +165,8 @@ impl<'a> Reference<'a> {
         let changes = exempt_mask(image, &[moved.image()], self.magnitude)?;
         join(&mut self.exempt, &changes);
         if self.shot.plan.paint.is_some() {
-            // Another surface, even one that happens to have the same colour: a rasteriser may show a third one
-            // there, turned away and hidden by exact arithmetic.
+            // A different surface is exempt even if it has the same colour: a rasteriser may show a third surface
+            // there, back-facing and hidden with exact arithmetic.
             let other = self.shows_another_surface(&self.frame.depth, &moved.depth, SHIFT_PX);
             join(&mut self.exempt, &other);
         }
@@ -174,7 +174,7 @@ impl<'a> Reference<'a> {
     }
 }
 
-/// A shot with Lambert's light instead of strokes.
+/// A shot with Lambert shading instead of strokes.
 struct Plain {
     style: Style,
     plan: Plan,
@@ -191,14 +191,14 @@ impl Plain {
     }
 }
 
-/// What is in either.
+/// The union of two masks.
 fn join(all: &mut [bool], more: &[bool]) {
     for (all, more) in all.iter_mut().zip(more) {
         *all |= more;
     }
 }
 
-/// Places on a circle, px.
+/// Evenly spaced points on a circle, px.
 fn around(radius_px: f64, directions: u32) -> impl Iterator<Item = DVec2> {
     let angle = move |number| f64::from(number) / f64::from(directions) * std::f64::consts::TAU;
     (0..directions).map(move |number| radius_px * DVec2::from_angle(angle(number)))

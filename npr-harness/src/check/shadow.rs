@@ -1,19 +1,19 @@
-//! Shadows: pictures of the styles that have them, and states of pixels against shadow rays.
+//! Shadows: pictures of the styles that have them, and shadow states of pixels against shadow rays.
 
 use super::Checker;
 use crate::cpu::PrimaryHits;
 use crate::error::HarnessError;
 use crate::style::style;
 
-/// At most this share of the pixels may be in another state of shadow than rays find.
+/// The largest fraction of the pixels whose shadow state may differ from that of shadow rays.
 #[cfg(feature = "gpu")]
 const STATES_SHARE: f64 = 1e-3;
-/// No such pixel may be farther from an edge of a shadow, px.
+/// The largest distance of such a pixel from a shadow edge, px.
 #[cfg(feature = "gpu")]
 const STATES_PX: f64 = 2.0;
 
 impl Checker<'_> {
-    /// The pictures of the styles with shadows.
+    /// Checks the pictures of the styles with shadows.
     pub(super) fn shadows(&mut self, model: &str, view: &str, hits: &PrimaryHits<'_>) -> Result<(), HarnessError> {
         for name in ["toon-shadow", "hatch-shadow", "shadow-lines", "normals", "printed-shadow"] {
             self.picture(model, view, hits, &style(name).expect("a style of this crate"))?;
@@ -23,7 +23,7 @@ impl Checker<'_> {
         Ok(())
     }
 
-    /// Eight lights and views, two of them with the eye in the shadow.
+    /// Checks eight lights and views, two of them with the eye in shadow.
     #[cfg(feature = "gpu")]
     fn shadow_states(&mut self, model: &str, scene: &crate::scene::Scene) -> Result<(), HarnessError> {
         use super::{Limit, SIZE};

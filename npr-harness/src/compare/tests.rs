@@ -1,6 +1,6 @@
 use super::*;
 
-/// No two neighbouring pixels alike, nor any channel like another, and no symmetry.
+/// An image without symmetry, in which neighbouring pixels and channels differ.
 fn pattern(width: u32, height: u32) -> Image {
     let rgba8 = (0..height)
         .flat_map(|y| (0..width).flat_map(move |x| [x * 7 + y * 3, x * 3 + y * 11 + 50, x * y + 100, 200 - x - y]))
@@ -82,7 +82,7 @@ fn neither_image_is_read_twice() {
         assert_eq!((result.over(254), result.over(255), result.worst), (45, 0, 255));
         assert_eq!(difference_image(a, b, &[]).expect("same size"), Image::filled(9, 5, [255; 4]));
     }
-    // Each pixel of the one against the same pixel of the other, and no other.
+    // Each pixel is compared only with the same pixel of the other image.
     let mut grey = black.clone();
     (0..45u8).for_each(|i| grey.set_pixel(u32::from(i) % 9, u32::from(i) / 9, [i; 4]));
     let result = compare(&black, &grey, &[]).expect("same size");
@@ -115,7 +115,7 @@ fn the_count_of_a_tolerance_is_its_limit() {
     let result = compare(&expected, &actual, &[]).expect("same size");
     assert!(result.passes(&at_most(2, 3)) && !result.passes(&at_most(2, 2)));
     assert!(result.passes(&at_most(3, 0)) && result.passes(&at_most(255, 0)));
-    // All must be kept.
+    // All tolerances must be met.
     let both = |count| [at_most(0, 50)[0], at_most(2, count)[0]];
     assert!(result.passes(&both(3)) && !result.passes(&both(2)));
     actual.set_pixel(3, 0, [100, 100, 100, 97]);
@@ -152,7 +152,7 @@ fn exempt_pixels_hide_themselves_only() {
     assert_eq!((shown.pixel(2, 3), shown.pixel(3, 3)), ([0, 32, 48, 255], [0, 0, 0, 255]));
 }
 
-/// A fresh folder that goes when the test is over.
+/// A new folder that is deleted when dropped.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -188,7 +188,7 @@ fn what_is_left_behind_can_be_read_again() {
     assert!(page.contains("1 of 1 failed") && page.contains("over 3: 1 of at most 0"));
     assert_eq!(page.matches("data:image/png;base64,iVBORw0KGgo").count(), 3);
     assert!(!page.contains("http"));
-    // Nothing unfinished lies about.
+    // No temporary file remains.
     assert_eq!(fs::read_dir(&folder.0).expect("a folder").count(), 4);
 
     let other = Image::filled(3, 3, [0; 4]);

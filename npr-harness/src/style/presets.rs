@@ -57,7 +57,7 @@ fn wrapped() -> RampShade {
     RampShade { ramp: RampSource::Stops(ramp(RampBlend::Hard, stops)), half_lambert: Some(HalfLambert::SOURCE) }
 }
 
-/// The colour for the first light alone, for the second light alone, and for both.
+/// The tones of the first light alone, those of the second light alone, and one for brightly lit surfaces.
 fn two_lights() -> PainterShade {
     let first = ramp(RampBlend::Hard, [(-1.0, [0.34, 0.32, 0.46]), (0.06, [0.55, 0.54, 0.60]), (0.55, [0.68; 3])]);
     let second = ramp(RampBlend::Hard, [(-1.0, [0.34, 0.32, 0.46]), (0.2, [0.44, 0.44, 0.58])]);

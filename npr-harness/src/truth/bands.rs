@@ -1,11 +1,11 @@
-//! How well the borders of bands are drawn, against 256 samples a pixel.
+//! Accuracy of band borders, against 256 samples per pixel.
 //!
-//! The reference draws N·L itself, 16 × 16 times finer than the picture. From it follow what is exactly true of the picture
-//! wherever its pixels lie, by steps of 1/16 px: the mean tone of each, where borders are, and where silhouettes. The
-//! picture is drawn by the same executor, with one sample a pixel, so that nothing but its borders is at fault, or with
-//! several.
+//! The reference renders N·L at 16 × 16 times the resolution of the picture. From it follow, for pixel positions in
+//! steps of 1/16 px, the true mean tone of each pixel, and the positions of borders and silhouettes. The picture is
+//! rendered by the same executor, with one sample per pixel, so that only its borders cause errors, or with several
+//! samples.
 //!
-//! # What flicker is
+//! # Definition of flicker
 //!
 //! While a border moves over a pixel, the pixel's tone goes from one to the other, all at once or little by little: what
 //! its changes add up to is the same, and so is their mean, for any border that does not turn back. What the eye
@@ -27,29 +27,29 @@ use npr_mesh::Model;
 use npr_toon::ramp::{Ramp, RampBlend, RampStop};
 use npr_toon::{Bands, toon_band_hard};
 
-/// Samples along each side of a pixel, and steps of a pan to a pixel.
+/// Samples per pixel along each axis, and steps of the pan per pixel.
 const FINE: usize = 16;
-/// Steps of the pan.
+/// The number of steps of the pan.
 const STEPS: usize = 64;
-/// What is judged lies within this distance of a border, and farther than this from any silhouette, px.
+/// Pixels within this distance of a border and farther than this from any silhouette are evaluated, px.
 const NEAR_PX: f64 = 2.0;
-/// So much between the N·L of two samples that are 1/16 px apart is no band's border but a crease.
+/// A larger difference of N·L between two samples 1/16 px apart is a crease, not a band border.
 const LARGEST_STEP: f64 = 0.05;
 
-/// Where borders are judged, besides within 2 px of one.
+/// Which pixels are evaluated, in addition to lying within 2 px of a border.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Where {
     /// More than 2 px from any silhouette.
     AwayFromSilhouettes,
-    /// And as far from any crease: there one surface ends and another, under another light, begins, which no border of
-    /// bands can know of; lines cover it.
+    /// Also more than 2 px from any crease, where one surface ends and another, with different lighting, begins. Band
+    /// borders cannot smooth that step; lines cover it.
     AndFromCreases,
 }
 
-/// Hard bands, antialiased ones, and the truth. Numbers are of 1, a component's range.
+/// Errors of hard and of antialiased bands. Values are relative to a component's range of 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BandAccuracy {
-    /// How many pixels were judged, all steps counted.
+    /// The number of pixels evaluated, over all steps.
     pub pixels: usize,
     /// Root mean square error: hard, antialiased.
     pub rmse: [f64; 2],
@@ -61,7 +61,7 @@ pub struct BandAccuracy {
     pub excess: [f64; 2],
 }
 
-/// The model in white, so that its tones are the bands'.
+/// A white copy of the model, whose tones are those of the bands.
 pub fn white(model: &Model) -> Model {
     let mut model = model.clone();
     model.colors.clear();
@@ -74,28 +74,28 @@ pub fn white(model: &Model) -> Model {
 }
 
 impl BandAccuracy {
-    /// The antialiased borders' root mean square error, of the hard ones'.
+    /// The root mean square error of antialiased borders, relative to that of hard ones.
     pub fn rmse_ratio(&self) -> f64 {
         self.rmse[1] / self.rmse[0]
     }
 
-    /// The antialiased borders' change from step to step, of the hard ones'.
+    /// The change per step of antialiased borders, relative to that of hard ones.
     pub fn change_ratio(&self) -> f64 {
         self.change[1] / self.change[0]
     }
 
-    /// The antialiased borders' flicker, of the hard ones'.
+    /// The flicker of antialiased borders, relative to that of hard ones.
     pub fn excess_ratio(&self) -> f64 {
         self.excess[1] / self.excess[0]
     }
 }
 
-/// Measures `bands`, without their highlight, on a scene made of a [`white`] model, over a pan by 4 px to the right: the
-/// two [`Where`] in turn. `samples`, along each axis of a pixel, are the antialiased borders'; the hard ones have one.
-/// Takes 10 KB a pixel.
+/// Measures `bands`, without their highlight, on a scene made of a [`white`] model, over a pan by 4 px to the right,
+/// for both values of [`Where`]. `samples` is the number of samples along each axis of a pixel for the antialiased
+/// borders; the hard ones have one. Takes 10 KB per pixel.
 ///
 /// # Errors
-/// A rule that the bands break.
+/// An error if a number of the bands is out of range.
 pub fn band_accuracy(
     scene: &Scene,
     camera: &Camera,
@@ -109,7 +109,7 @@ pub fn band_accuracy(
     let n_dot_l = of(Shade::Ramp(RampShade { ramp: RampSource::Stops(n_dot_l), half_lambert: None }));
     let drawn = |style: &Style, size, shift_px, samples| {
         let view = View { camera: *camera, size, samples };
-        // The limit is on single pictures of users; here the caller knows what it takes.
+        // The memory limit is for single pictures of users; callers of this function know its needs.
         let capabilities = Capabilities { memory_bytes: u64::MAX, ..Capabilities::RAY_CASTER };
         let plan = Plan::new(scene, style, &view, &capabilities)?;
         let options = CpuOptions { shift_px, ..Default::default() };
@@ -153,7 +153,7 @@ struct Sums {
 }
 
 impl Sums {
-    /// A pixel's tones, hard, antialiased and true, in this step and in the one before.
+    /// Adds a pixel's tones, hard, antialiased and true, in this step and in the previous one.
     fn add(&mut self, now: [f64; 3], before: Option<[f64; 3]>) {
         self.pixels += 1;
         for which in 0..2 {
@@ -188,14 +188,14 @@ fn mean(color: DVec3) -> f64 {
     color.element_sum() / 3.0
 }
 
-/// What the fine samples show.
+/// The data derived from the fine samples.
 struct Truth {
-    /// Of the picture, px.
+    /// The width of the picture, px.
     width: usize,
     height: usize,
-    /// Per fine sample its tone, 1 where there is nothing.
+    /// Per fine sample: its tone, 1 for background.
     tone: Vec<f32>,
-    /// Places of borders, of silhouettes and of creases, in fine samples.
+    /// Positions of borders, of silhouettes and of creases, in fine samples.
     borders: Vec<(u32, u32)>,
     silhouettes: Vec<(u32, u32)>,
     creases: Vec<(u32, u32)>,
@@ -204,7 +204,7 @@ struct Truth {
 impl Truth {
     fn new(fine: &CpuFrame, camera: &Camera, bands: &Bands) -> Self {
         let (columns, rows) = (fine.width as usize, fine.height as usize);
-        // What a slope as steep as 1 in 64 px changes between two samples; a depth step is more.
+        // The largest change of depth between two samples on a slope of 1 in 64 px; a larger one is a depth step.
         let view = camera.line_view(DVec2::new(f64::from(fine.width), f64::from(fine.height)));
         let light = |at: usize| 2.0 * fine.color[at].x - 1.0;
         let band = |at: usize| bands.thresholds.iter().filter(|&&t| light(at) >= f64::from(t)).count();
@@ -236,7 +236,7 @@ impl Truth {
         Self { width: columns / FINE, height: rows / FINE, tone, borders, silhouettes, creases }
     }
 
-    /// The mean tones of the pixels after a step of the pan; of what leaves the picture nothing is known, and 0 is said.
+    /// The mean tones of the pixels after a step of the pan; 0 for pixels outside the sampled area.
     fn picture(&self, step: usize) -> Vec<f64> {
         let columns = self.width * FINE;
         let pixel = |x: usize, y: usize| {
@@ -250,13 +250,13 @@ impl Truth {
         (0..self.height).flat_map(|y| (0..self.width).map(move |x| (x, y))).map(|(x, y)| pixel(x, y)).collect()
     }
 
-    /// Which pixels are judged after a step of the pan.
+    /// Which pixels are evaluated after a step of the pan.
     fn judged(&self, step: usize, place: Where) -> Vec<bool> {
         let near = |places: &[(u32, u32)]| {
             let mut near = vec![false; self.width * self.height];
             let px = |at: u32| (f64::from(at) + 1.0) / FINE as f64;
             for &(x, y) in places {
-                // Where the step between the two samples is, in the moved picture.
+                // The position of the step between the two samples in the panned picture.
                 let at = DVec2::new(px(x) - step as f64 / FINE as f64, px(y));
                 let (low, high) = ((at - NEAR_PX - 0.5).ceil().max(DVec2::ZERO), (at + NEAR_PX - 0.5).floor());
                 for row in low.y as i64..=(high.y as i64).min(self.height as i64 - 1) {
@@ -275,7 +275,7 @@ impl Truth {
                 *judged &= !near;
             }
         }
-        // What the pan brings in from beyond the picture was not sampled.
+        // Pixels that the pan moves into the picture were not sampled.
         let margin = STEPS / FINE + 1;
         for row in judged.chunks_exact_mut(self.width) {
             let inside = self.width.saturating_sub(margin);

@@ -1,11 +1,11 @@
-//! How well hatching keeps to the tone that is asked for, and to its place on a surface: in f64, on the CPU executor.
+//! Accuracy of hatching: its tone, and its stability on a surface, in f64, on the CPU executor.
 //!
-//! - [`patch`]: flat squares under one tone, seen from several distances and at a slant.
+//! - [`patch`]: flat squares of one tone, from several distances and at several tilts.
 //! - [`sphere`]: spheres of several tessellations against the tone of the exact sphere.
 //! - [`stability`]: two pictures from cameras that differ a little, compared at the same points of the surface.
 //!
-//! Everything is hatched in black on white, without lines, by a light whose direction is the model's, so that a
-//! picture's colour is its tone and a camera that moves changes no tone.
+//! Everything is hatched in black on white, without lines, with a light that is fixed to the model, so that a picture's
+//! colour is its tone and moving the camera changes no tone.
 
 pub mod patch;
 pub mod sphere;
@@ -22,15 +22,15 @@ use npr_toon::normal::NormalUse;
 use npr_toon::source::Light;
 use std::f64::consts::TAU;
 
-/// What of a map is looked up: all there is.
+/// All encodings of a map.
 pub const ENCODINGS: [HatchEncoding; 2] = [HatchEncoding::SixTones, HatchEncoding::Thresholds];
-/// Where a map lies: all there is.
+/// All mappings of a map.
 pub const MAPPINGS: [HatchMapping; 3] = [HatchMapping::Coordinates, HatchMapping::Planes, HatchMapping::Form];
-/// Tones by N·L itself.
+/// Tones equal to N·L.
 pub const LINEAR: HatchTransfer = HatchTransfer::Linear { ambient: 0.0 };
-/// The same with some light everywhere, so that there are strokes on all of a surface, and nowhere black alone.
+/// Linear with some ambient light, so that there are strokes on the whole surface and no area is black.
 pub const LIT: HatchTransfer = HatchTransfer::Linear { ambient: 0.15 };
-/// Listing 4 with the brightness that makes tones N·L, but for the darkest.
+/// Listing 4 with the brightness that makes tones equal to N·L, except for the darkest.
 pub const LISTING_4: HatchTransfer = HatchTransfer::Listing4 { brightness: 7.0 };
 
 /// The default strokes, drawn from a seed.
@@ -38,7 +38,7 @@ pub fn strokes(seed: u64) -> HatchMap {
     HatchMap::new(HatchSource::Parameters(TamParameters { seed, ..TamParameters::default() }))
 }
 
-/// Black strokes with texels as large as pixels, whose map has a side of `tile` halves of the model's diagonal.
+/// Black strokes with texels of the size of pixels and a map of side `tile`, in halves of the model's diagonal.
 pub fn black(
     map: &HatchMap,
     encoding: HatchEncoding,
@@ -58,7 +58,7 @@ pub fn black(
     }
 }
 
-/// A style of strokes alone, on white, under a light from a direction of the model's axes.
+/// A style with only strokes, on white, with a light from a direction in the model's axes.
 pub fn hatched(shade: &HatchShade, normals: NormalUse, to_light: DVec3) -> Style {
     let light = Light::directional(to_light.as_vec3());
     Style {
@@ -71,9 +71,9 @@ pub fn hatched(shade: &HatchShade, normals: NormalUse, to_light: DVec3) -> Style
     }
 }
 
-/// The tones that count as right where the light asks for `light`, the darkest and the lightest. They differ where six
-/// tones are asked for less than the darkest of them: there that is as dark as one hatching gets, while the product of
-/// several reaches the tone itself.
+/// The range of tones that count as correct for a diffuse term of `light`. Its ends differ where six tones cannot
+/// represent a tone below the darkest one: that is as dark as one layer gets, while the product of several layers
+/// reaches the tone itself.
 pub fn asked(shade: &HatchShade, light: f64) -> [f64; 2] {
     let light = light.clamp(0.0, 1.0);
     let clamped = light.max(1.0 / 7.0);
@@ -84,13 +84,13 @@ pub fn asked(shade: &HatchShade, light: f64) -> [f64; 2] {
     }
 }
 
-/// The torus around the Y axis, 1 from the axis to the middle of the tube, 0.4 the tube's radius, with texture
-/// coordinates: three tiles around the axis, one around the tube, so that no seam is seen.
+/// A torus around the Y axis, with major radius 1 and minor radius 0.4 and with texture coordinates: three tiles around
+/// the axis and one around the tube, so that there is no seam.
 pub fn torus_with_uvs(around_axis: u32, around_tube: u32) -> Model {
     let mut model = Model { materials: vec![Material::default()], ..Model::default() };
     for j in 0..=around_tube {
         for i in 0..=around_axis {
-            // Step n is step 0 to the last bit.
+            // The last step equals step 0 exactly.
             let angle = |step: u32, steps: u32| TAU * f64::from(step % steps) / f64::from(steps);
             let ((sin, cos), tube) = (angle(i, around_axis).sin_cos(), angle(j, around_tube));
             let outwards = DVec3::new(cos, 0.0, -sin);

@@ -620,3 +620,34 @@ fn angles_of_a_placed_model_are_those_of_its_shape() {
     // Sheared along the ridge the angle is another, but not much.
     assert_eq!(creases(DMat3::from_cols(DVec3::X, DVec3::Y, DVec3::new(0.1, 0.0, 1.0))), 1);
 }
+
+/// A flat square of which one half has a vertex in the middle of the diagonal, with a face without area there. However
+/// that face is wound, it has the plane of its neighbours, and the square has no line but its boundary.
+#[test]
+fn a_face_without_area_has_the_plane_of_its_neighbour_however_it_is_wound() {
+    let positions = [[0.0, 0.0], [2.0, 0.0], [1.0, 0.0], [1.0, 1.0], [1.0, -1.0]];
+    for sliver in [[1, 0, 2], [0, 1, 2]] {
+        let model = Model {
+            positions: positions.map(|[x, y]| Vec3::new(x, y, 0.0)).to_vec(),
+            normals: vec![Vec3::Z; 5],
+            faces: vec![[0, 1, 3], sliver, [2, 0, 4], [1, 2, 4]],
+            ..Model::default()
+        };
+        let contours = contours_of(&model, &smooth(0.5));
+        let mut lines = Vec::new();
+        for eye in [DVec4::new(0.3, 0.2, 5.0, 1.0), DVec4::new(0.3, 0.2, -5.0, 1.0)] {
+            contours.scan(eye, &mut lines);
+            let kinds: Vec<_> = lines.iter().map(|&l| contours.kind(l as usize, contours.local_eye(eye))).collect();
+            assert_eq!(kinds, [Some(LineKind::Boundary); 4], "{sliver:?}");
+        }
+    }
+}
+
+#[test]
+fn the_largest_buffer_is_that_of_planes_edges_or_positions() {
+    let cube = embedded::cube();
+    let contours = contours_of(&cube, &ContourOptions::default());
+    // Twelve faces, twelve edges, 24 vertices.
+    assert_eq!(contours.device_bytes(&cube.positions), 12 * 24);
+    assert_eq!(contours.device_bytes(&[]), 16 * 12);
+}

@@ -1,11 +1,11 @@
 //! The mean tone of a flat square.
 //!
-//! The square has a side of 2 and four tiles of the map along it. What is measured are the pixels within its middle
-//! three by three tiles, so that every stroke of the map counts as often as it should; only where it lies across the
-//! planes that it is mapped by, and tiles are cut off somewhere, does the mean depend on which strokes are within.
+//! The square has a side of 2 and four tiles of the map along it. The pixels within its middle three by three tiles are
+//! measured, so that every stroke of the map counts equally. Only if the square is oblique to the mapping planes, where
+//! tiles are cut off, does the mean depend on the choice of strokes.
 //!
-//! Far away the square has a few hundred pixels, and whether these happen to lie on strokes is a matter of chance. So
-//! pictures that are moved by parts of a pixel may be taken together.
+//! At large distances the square has a few hundred pixels, and it is random which of them lie on strokes. Therefore
+//! several pictures, shifted by fractions of a pixel, can be averaged.
 
 use super::{asked, hatched};
 use crate::camera::{Camera, Framing};
@@ -21,36 +21,36 @@ use npr_mesh::{Material, Model};
 use npr_toon::normal::NormalUse;
 use std::f64::consts::SQRT_2;
 
-/// Distances, of that at which the square fits the picture.
+/// Distances, relative to that at which the square fits the picture.
 pub const DISTANCES: [f64; 5] = [1.0, 1.5, 2.0, 4.0, 8.0];
-/// Slants.
+/// Tilts.
 pub const TILTS_DEG: [f64; 3] = [0.0, 45.0, 70.0];
 /// The map's side for four tiles along the square, in halves of its diagonal.
 pub const TILE: f64 = SQRT_2 / 4.0;
-/// The same by which texture coordinates are halfway between two scales, of four tiles and of eight.
+/// The map's side with which texture coordinates lie halfway between two scales, of four tiles and of eight.
 pub const TILE_BETWEEN: f64 = 0.25;
 
-/// What is turned so that the square is seen at a slant.
+/// The object that is rotated to tilt the square.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tilted {
-    /// The camera: one of the planes of a mapping is the square's.
+    /// The camera: one mapping plane is parallel to the square.
     Camera,
-    /// The square, about the y axis: two planes share it.
+    /// The square, about the y axis: two mapping planes share it.
     Square,
 }
 
-/// A square, as it is seen.
+/// A view of a square.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PatchView {
-    /// What is turned.
+    /// The object that is rotated.
     pub tilted: Tilted,
-    /// By how much.
+    /// The tilt.
     pub tilt_deg: f64,
     /// [`Framing::distance`].
     pub distance: f64,
 }
 
-/// All [`DISTANCES`] and [`TILTS_DEG`], and both things that may be turned.
+/// All combinations of [`DISTANCES`], [`TILTS_DEG`] and [`Tilted`].
 pub fn views() -> Vec<PatchView> {
     let mut views = Vec::new();
     for tilted in [Tilted::Camera, Tilted::Square] {
@@ -66,18 +66,18 @@ pub fn views() -> Vec<PatchView> {
 pub struct PatchTone {
     /// N·L.
     pub light: f64,
-    /// The tones that count as right, see [`asked`].
+    /// The range of correct tones, see [`asked`].
     pub asked: [f64; 2],
-    /// The mean of the pixels, of all pictures.
+    /// The mean of the pixels of all pictures.
     pub shown: f64,
-    /// How many there are in all pictures.
+    /// The number of pixels in all pictures.
     pub pixels: usize,
-    /// How many pictures were taken together.
+    /// The number of pictures.
     pub pictures: u32,
 }
 
 impl PatchTone {
-    /// How far the tone is off, positive where it is too light.
+    /// The error of the tone, positive if it is too light.
     pub fn error(&self) -> f64 {
         self.shown - self.shown.clamp(self.asked[0], self.asked[1])
     }
@@ -96,11 +96,11 @@ fn square(right: DVec3, up: DVec3) -> Model {
     }
 }
 
-/// The square's tone under lights of these N·L, 0..=1, in pictures of `size` × `size` px: one, or as many as it takes,
-/// up to 256, for about `least` pixels.
+/// The square's tone for the given values of N·L, 0..=1, in pictures of `size` × `size` px. One picture is rendered, or
+/// up to 256 if needed for about `least` pixels.
 ///
 /// # Errors
-/// A rule that the shade breaks.
+/// An error if a number of the shade is out of range.
 pub fn patch_tones(
     shade: &HatchShade,
     view: PatchView,
@@ -125,7 +125,7 @@ pub fn patch_tones(
         let [left, top, width, height] = camera.area(scene.bounds().expect("it has faces"), (size, size), 1);
         let of_one = f64::from(width * height) * 0.75 * 0.75;
         let along = (least as f64 / of_one).sqrt().ceil().clamp(1.0, 16.0) as u32;
-        // Pictures that are moved by less than a pixel are one picture of so many more.
+        // Pictures shifted by fractions of a pixel form one picture of a higher resolution.
         for y in top * along..(top + height) * along {
             for x in left * along..(left + width) * along {
                 let point_px = (DVec2::new(f64::from(x), f64::from(y)) + 0.5) / f64::from(along);

@@ -1,8 +1,8 @@
 //! The tone of spheres, block by block.
 //!
-//! A block of 32 × 32 px has few strokes, and which ones is a matter of chance: its tone is off by that, however right the
-//! mean of all blocks is. Maps drawn from different seeds have different strokes there, so what they differ by is
-//! the noise, and what remains in their mean is the bias.
+//! A block of 32 × 32 px contains few random strokes, so its tone has an error even if the mean of all blocks is
+//! correct. Maps drawn from different seeds have different strokes there: the deviation between them is the noise, and
+//! the error of their mean is the bias.
 
 use super::{asked, hatched};
 use crate::camera::{Camera, Framing};
@@ -17,38 +17,38 @@ use glam::{DVec2, DVec3};
 use npr_mesh::embedded;
 use npr_toon::normal::NormalUse;
 
-/// Of a block, px.
+/// The side of a block, px.
 pub const BLOCK: u32 = 32;
 /// Segments around the axis.
 pub const SEGMENTS: [u32; 3] = [12, 24, 96];
 
-/// How far the tones of blocks are from those of the exact sphere. Numbers are of 1, from black to white.
+/// Errors of the tones of blocks, relative to the exact sphere, on a scale from 0 (black) to 1 (white).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SphereError {
-    /// Blocks that lie wholly within the sphere.
+    /// The number of blocks entirely within the sphere.
     pub blocks: usize,
-    /// Of a single picture: root mean square over blocks and seeds.
+    /// For single pictures: root mean square over blocks and seeds.
     pub rms: f64,
-    /// The largest.
+    /// The largest error.
     pub worst: f64,
-    /// The same of the mean of all seeds' pictures.
+    /// For the mean of all seeds' pictures: root mean square over blocks.
     pub mean_rms: f64,
-    /// The largest.
+    /// The largest error.
     pub mean_worst: f64,
     /// Standard deviation of a block between seeds, root mean square over blocks; 0 for a single seed.
     pub noise: f64,
-    /// Mean error of everything, positive where it is too light.
+    /// Mean error of all pictures, positive if too light.
     pub bias: f64,
 }
 
 impl SphereError {
-    /// What is left of [`SphereError::mean_rms`] when the noise of so many seeds is taken out.
+    /// [`SphereError::mean_rms`] after subtracting the noise of this number of seeds.
     pub fn bias_rms(&self, seeds: usize) -> f64 {
         (self.mean_rms.powi(2) - self.noise.powi(2) / seeds.max(1) as f64).max(0.0).sqrt()
     }
 }
 
-/// Where the ray through a pixel meets the sphere of radius 1 around the origin: its normal.
+/// The normal where the ray through a pixel intersects the sphere of radius 1 around the origin.
 fn normal(camera: &Camera, point_px: DVec2, size_px: DVec2) -> Option<DVec3> {
     let (origin, direction) = camera.ray(point_px, size_px);
     let (a, b, c) = (direction.length_squared(), origin.dot(direction), origin.length_squared() - 1.0);
@@ -56,10 +56,10 @@ fn normal(camera: &Camera, point_px: DVec2, size_px: DVec2) -> Option<DVec3> {
     (under_root >= 0.0).then(|| origin + direction * ((-b - under_root.sqrt()) / a))
 }
 
-/// The error of a sphere of so many segments, hatched with several maps in turn, which differ in their seed alone.
+/// The error of a sphere with a number of segments, hatched with several maps that differ only in their seed.
 ///
 /// # Errors
-/// A rule that a shade breaks.
+/// An error if a number of a shade is out of range.
 pub fn sphere_error(
     shades: &[HatchShade],
     segments: u32,
@@ -69,7 +69,7 @@ pub fn sphere_error(
     let scene = Scene::new(embedded::sphere(segments));
     let size_px = DVec2::new(f64::from(width), f64::from(height));
     let framing = Framing { yaw_rad: 0.5, pitch_rad: 0.3, ..Framing::default() };
-    // As seen of the finest, so that all pictures have the same sphere.
+    // Framed for the finest sphere, so that the sphere is the same in all pictures.
     let round = embedded::sphere(128);
     let camera = Camera::framed(round.positions.iter().copied(), size_px.x / size_px.y, &framing);
     let to_light = DVec3::new(-0.35, 0.55, 0.75).normalize();

@@ -1,8 +1,8 @@
-//! Whether strokes stay where they are on a surface while the camera moves.
+//! Stability of strokes on a surface while the camera moves.
 //!
-//! Every pixel of the second picture that shows a surface is compared with the first picture at the very place where the
-//! same point of the surface is seen there. That place is between pixels: it is not looked up in the first picture,
-//! whose pixels would have to be resampled, but shaded as if a pixel had its centre there.
+//! Every surface pixel of the second picture is compared with the first picture at the point where the same surface
+//! point appears there. That point lies between pixels. To avoid resampling the first picture, the point is shaded as
+//! if a pixel were centred there.
 
 use super::hatched;
 use crate::camera::{Camera, Framing};
@@ -18,48 +18,49 @@ use glam::{DVec2, DVec3, DVec4, Vec2};
 use npr_mesh::Model;
 use npr_toon::normal::NormalUse;
 
-/// How a camera moves.
+/// The motion of the camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Motion {
-    /// Around the model, by 1°.
+    /// A rotation around the model by 1°.
     Turn,
-    /// Nearer, by 1 %.
+    /// A zoom by 1 %.
     Zoom,
 }
 
-/// Both.
+/// All motions.
 pub const MOTIONS: [Motion; 2] = [Motion::Turn, Motion::Zoom];
 
-/// What two pictures differ by at the same points of the surface.
+/// The difference of two pictures at the same points of the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stability {
-    /// How many were compared.
+    /// The number of pixels compared.
     pub pixels: usize,
     /// Mean |difference|, of 255.
     pub mean: f64,
-    /// Mean difference, of 255: what of it is a change of tone.
+    /// Mean signed difference, of 255: the change of tone.
     pub tone: f64,
 }
 
-/// A picture to be: what is shown, and from where.
+/// The inputs of a picture.
 #[derive(Clone, Copy)]
 pub struct Picture<'a> {
-    /// What.
+    /// The scene.
     pub scene: &'a Scene,
     /// The style.
     pub style: &'a Style,
-    /// From where.
+    /// The camera.
     pub camera: &'a Camera,
 }
 
-/// The cameras before and after a motion that begins at `before`, the ball around a scene fitted to a picture of `aspect`.
+/// The cameras before and after a motion that starts at `before`. The bounding sphere of the scene fits a picture of
+/// `aspect`.
 pub fn cameras(scene: &Scene, before: &Framing, motion: Motion, aspect: f64) -> [Camera; 2] {
     let before = *before;
     let after = match motion {
         Motion::Turn => Framing { yaw_rad: before.yaw_rad + 1f64.to_radians(), ..before },
         Motion::Zoom => Framing { distance: before.distance / 1.01, ..before },
     };
-    // What just fits is nearer from one side than from another; a ball is not.
+    // A sphere fits at the same distance from any side, a model does not.
     let (middle, radius) = (scene.middle(), scene.radius());
     let ball = [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z];
     let ball = ball.map(|axis| (middle + axis * radius).as_vec3());
@@ -73,17 +74,17 @@ pub fn cameras(scene: &Scene, before: &Framing, motion: Motion, aspect: f64) -> 
     })
 }
 
-/// Where a point is seen, px; nothing is known of points behind the eye.
+/// The projection of a point, px; undefined for points behind the eye.
 fn projected(camera: &Camera, at: DVec3, size_px: DVec2) -> DVec2 {
     let clip: DVec4 = camera.clip_from_world(size_px.x / size_px.y) * at.extend(1.0);
     (DVec2::new(clip.x, -clip.y) / clip.w * 0.5 + 0.5) * size_px
 }
 
-/// Compares two pictures of `size` px whose scenes have the same surface. Points that the first one does not show are
-/// left out.
+/// Compares two pictures of `size` px whose scenes have the same surface. Points that are not visible in the first one
+/// are ignored.
 ///
 /// # Errors
-/// A rule that a style breaks.
+/// An error if a number of a style is out of range.
 pub fn stability(before: Picture<'_>, after: Picture<'_>, size: (u32, u32)) -> Result<Stability, HarnessError> {
     let size_px = DVec2::new(f64::from(size.0), f64::from(size.1));
     let plan = |of: Picture<'_>| Plan::new(of.scene, of.style, &View::new(*of.camera, size), &Capabilities::RAY_CASTER);
@@ -113,13 +114,13 @@ pub fn stability(before: Picture<'_>, after: Picture<'_>, size: (u32, u32)) -> R
     Ok(Stability { pixels, mean: sum / n, tone: signed / n })
 }
 
-/// The light for it, from above and in front, wherever the camera is.
+/// The direction to the light for this measurement, from above and in front, independent of the camera.
 pub const TO_LIGHT: DVec3 = DVec3::new(0.1, 0.7, 0.7);
 
-/// How well a hatching stays where it is on a scene, while a camera moves.
+/// The stability of a hatching on a scene while a camera moves.
 ///
 /// # Errors
-/// A rule that the shade breaks.
+/// An error if a number of the shade is out of range.
 pub fn hatch_stability(
     scene: &Scene,
     shade: &HatchShade,
@@ -141,7 +142,7 @@ pub fn on_the_picture(model: &Model, camera: &Camera, (width, height): (u32, u32
     Model { uvs: model.positions.iter().map(uv).collect(), ..model.clone() }
 }
 
-/// A model whose texture coordinates are moved.
+/// A model whose texture coordinates are offset.
 pub fn with_moved_uvs(model: &Model, by: Vec2) -> Model {
     Model { uvs: model.uvs.iter().map(|&uv| uv + by).collect(), ..model.clone() }
 }

@@ -1,7 +1,7 @@
-//! Where surfaces pass through each other: lines that no edge of the model has.
+//! Intersection curves of surfaces, which are lines but not edges of the model.
 //!
-//! Two triangles meet in a piece of the line in which their planes do: T. Möller, "A Fast Triangle-Triangle
-//! Intersection Test", 1997. Candidates are found by a sweep along the model's longest axis.
+//! The intersection of two triangles is a segment of the line in which their planes intersect: T. Möller, "A Fast
+//! Triangle-Triangle Intersection Test", 1997. Candidates are found by a sweep along the model's longest axis.
 
 use super::{NO_EDGE, TrueLines, TrueSegment, Visibility};
 use crate::camera::Camera;
@@ -9,19 +9,18 @@ use crate::scene::Scene;
 use glam::DVec3;
 use npr_outline::LineKind;
 
-/// Models with more faces are not searched, for the time it takes.
+/// The number of faces above which a model is not searched, to limit the time.
 pub const MOST_FACES_INTERSECTED: usize = 250_000;
 
-/// A piece of a line in which two faces meet, world space.
+/// A segment of an intersection curve, world space.
 struct Intersection {
     ends: [DVec3; 2],
     faces: [u32; 2],
 }
 
-/// The visible lines in which faces pass through each other, at an angle of more than `least_angle_rad` between
-/// their sides that are turned to the eye.
+/// The visible intersection curves of faces whose visible sides meet at an angle of more than `least_angle_rad`.
 ///
-/// None of models with more than [`MOST_FACES_INTERSECTED`] faces.
+/// Empty for models with more than [`MOST_FACES_INTERSECTED`] faces.
 pub fn true_intersections(scene: &Scene, camera: &Camera, size: (u32, u32), least_angle_rad: f64) -> TrueLines {
     let visibility = Visibility::new(scene, camera, size);
     let eye = camera.homogeneous_eye();
@@ -82,7 +81,7 @@ fn intersections(scene: &Scene) -> Vec<Intersection> {
     found
 }
 
-/// The piece that two triangles share; none if they only touch, or lie in one plane.
+/// The intersection segment of two triangles; `None` if they only touch or are coplanar.
 fn crossing(first: [DVec3; 3], second: [DVec3; 3]) -> Option<[DVec3; 2]> {
     let normal = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a);
     let (n1, n2) = (normal(first), normal(second));
@@ -94,7 +93,7 @@ fn crossing(first: [DVec3; 3], second: [DVec3; 3]) -> Option<[DVec3; 2]> {
     (from.0 < to.0).then_some([from.1, to.1])
 }
 
-/// Where a plane cuts a triangle: two points, each with its place along `direction`, in order.
+/// The two points where a plane cuts the sides of a triangle, each with its coordinate along `direction`, in order.
 fn cut(triangle: [DVec3; 3], normal: DVec3, on_plane: DVec3, direction: DVec3) -> Option<[(f64, DVec3); 2]> {
     let heights = triangle.map(|corner| normal.dot(corner - on_plane));
     let mut points = [(0.0, DVec3::ZERO); 2];
