@@ -457,3 +457,83 @@ proptest! {
         }
     }
 }
+
+/// Each side of a line has the slope of its own face: a surface in front of the line within it does not hide the line, on
+/// the other side it does.
+#[test]
+fn a_vote_allows_for_the_slope_of_its_own_side() {
+    let (depth, per_px) = (0.5, 0.01);
+    // The face on the positive side rises by 3 px of depth a px towards the eye.
+    let slopes = [0.03, 0.0];
+    let in_front = depth + 2.0 * per_px;
+    assert!(outline_vote(in_front, depth, 1.0, slopes, per_px).0);
+    assert!(!outline_vote(in_front, depth, -1.0, slopes, per_px).0);
+    assert!(outline_vote(in_front, depth, -1.0, [0.0, 0.03], per_px).0);
+    assert!(!outline_vote(in_front, depth, 1.0, [0.0, 0.03], per_px).0);
+    // On the line itself the slack of half a px of depth is all there is.
+    assert!(outline_vote(depth + 0.49 * per_px, depth, 0.0, slopes, per_px).0);
+    assert!(!outline_vote(depth + 0.51 * per_px, depth, 0.0, slopes, per_px).0);
+}
+
+/// A flat surface before a line hides it, but not where it is curved along the row or the column of pixels that is nearest
+/// to the line's point; curvature along the others is farther away and does not count.
+#[test]
+fn only_curvature_beside_the_point_lets_a_line_through_a_surface_in_front() {
+    let view = parallel();
+    let (corner, depth) = (DVec2::new(100.0, 200.0), 0.5);
+    let surface = depth + 10.0 * view.depth_per_px.y;
+    for (right, lower) in [(false, false), (true, false), (false, true), (true, true)] {
+        let within = DVec2::new(if right { 0.8 } else { 0.2 }, if lower { 0.8 } else { 0.2 });
+        let on_line = corner + 0.5 + within;
+        let hidden = |odd: (i64, i64)| {
+            // One pixel of the eight around the four is so much nearer that the surface is curved there.
+            let at = |x: i64, y: i64| if (x, y) == odd { surface + 0.2 } else { surface };
+            outline_plane_hides(DVec4::splat(surface), corner, on_line, depth, &view, at)
+        };
+        let (x, y) = (100 + i64::from(right), 200 + i64::from(lower));
+        assert!(hidden((-1, -1)), "a plane hides");
+        for beside in [(99, y), (102, y), (x, 199), (x, 202)] {
+            assert!(!hidden(beside), "{right} {lower}: curved at {beside:?}");
+        }
+        let (other_x, other_y) = (201 - x, 401 - y);
+        for beside in [(99, other_y), (102, other_y), (other_x, 199), (other_x, 202)] {
+            assert!(hidden(beside), "{right} {lower}: {beside:?} is not beside it");
+        }
+    }
+}
+
+/// Outside the picture there are no depths: of the last four pixels at the lower right border all are inside, of those one
+/// pixel farther only some.
+#[test]
+fn no_surface_hides_a_line_at_the_border_of_the_picture() {
+    let view = parallel();
+    let surface = 0.5 + 10.0 * view.depth_per_px.y;
+    let hides = |x: f64, y: f64| {
+        let corner = DVec2::new(x, y);
+        outline_plane_hides(DVec4::splat(surface), corner, corner + 1.0, 0.5, &view, |_, _| surface)
+    };
+    assert!(hides(0.0, 0.0) && hides(SIZE.x - 2.0, SIZE.y - 2.0));
+    assert!(!hides(-1.0, 5.0) && !hides(5.0, -1.0));
+    assert!(!hides(SIZE.x - 1.0, 5.0) && !hides(5.0, SIZE.y - 1.0));
+}
+
+/// A face seen nearly edge-on covers no pixel, and its slope is none: from 1024 px of depth a px on.
+#[test]
+fn a_face_seen_edge_on_has_no_slope() {
+    for view in [perspective(), parallel()] {
+        let ends = [DVec3::new(-1.0, 0.0, -5.0), DVec3::new(1.0, 0.0, -5.0)];
+        let along_view = if view.depth_per_px.x > 0.0 { DVec3::new(0.0, 0.0, -1.0) } else { DVec3::NEG_Z };
+        // The inward direction of a face below the line, turned away from the line of sight by 1 in `steep`.
+        let slope = |steep: f64| {
+            let inward = (along_view * steep - DVec3::Y).normalize();
+            let edge = ends[1] - ends[0];
+            let normal = edge.cross(inward).normalize();
+            let segment = project(ends, [normal, DVec3::ZERO], &view);
+            segment.slopes[0].max(segment.slopes[1])
+        };
+        // Away from the eye a face's depth falls, so its slope is taken as 0; towards the eye it rises.
+        let rising = |steep: f64| slope(-steep);
+        assert!(rising(100.0) > 0.0 && rising(900.0) > 0.0, "{} {}", rising(100.0), rising(900.0));
+        assert_eq!((rising(1200.0), slope(100.0)), (0.0, 0.0));
+    }
+}

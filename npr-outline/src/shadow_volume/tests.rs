@@ -341,3 +341,22 @@ fn triangles_are_those_of_the_records() {
         }
     }
 }
+
+/// Pages around a spine, wound in every way: the spine sweeps as often as the directions of its faces do not cancel out.
+#[test]
+fn pages_of_a_book_shadow_what_is_behind_them_however_they_are_wound() {
+    let spine = [Vec3::ZERO, Vec3::Z];
+    let tips =
+        [Vec3::new(1.0, 0.3, 0.5), Vec3::new(-0.8, 0.4, 0.5), Vec3::new(0.2, 1.0, 0.5), Vec3::new(-0.3, -0.9, 0.5)];
+    for windings in 0..16u32 {
+        let faces = (0..4u32).map(|page| if windings >> page & 1 == 0 { [0, 1, 2 + page] } else { [1, 0, 2 + page] });
+        let casters = casters_of(&soup([&spine[..], &tips[..]].concat(), faces.collect()));
+        for light in [far(DVec3::new(0.2, 0.9, 0.1)), near(DVec3::new(0.3, 4.0, 0.6))] {
+            for (x, y) in [(0.33, -2.0), (-0.35, -2.0), (0.05, 0.15), (-0.6, -1.5), (2.0, -1.0), (-0.02, -0.4)] {
+                let point = DVec3::new(x, y, 0.47);
+                let count = casters.count_at(point, beyond(light), light);
+                assert_eq!(count, layers(&casters, point, light), "{windings:04b} {light} {point}");
+            }
+        }
+    }
+}
