@@ -1,7 +1,7 @@
-//! A frame's cost: plain Lambert, all other light, and lines, on one adapter, same targets, same culling.
+//! The cost of a frame: Lambert, all other shades, and lines, on one adapter, with the same targets and culling.
 //!
-//! `cargo bench -p npr-harness --bench frame`. Minimum and median of interleaved rounds; read the ratios. The figures
-//! that were measured stand in docs/speed.md.
+//! `cargo bench -p npr-harness --bench frame`. Prints minimum and median of interleaved rounds, and ratios, which are
+//! the meaningful numbers. docs/speed.md has measured figures.
 #![allow(clippy::print_stdout)]
 
 mod common;
@@ -64,7 +64,7 @@ fn main() {
     cases.push(Case { samples: 2, ..Case::new("toon, 2 × 2 samples", with(&base.shade)) });
     cases.push(Case { samples: 4, ..Case::new("toon, 4 × 4 samples", with(&base.shade)) });
     cases.push(Case { samples: 2, ..Case::new("toon + edge lines, 2 × 2 samples", base.clone()) });
-    // What differs from 1 here is noise, and what the case before leaves behind in the caches.
+    // A ratio other than 1 here is noise, and the effect of the previous case on the caches.
     cases.push(Case::new("Lambert again", cases[0].style.clone()));
     common::compare(&context, &scene, &camera, &cases);
 }

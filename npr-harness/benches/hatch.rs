@@ -1,7 +1,7 @@
-//! What strokes cost: encodings, mappings, and weights at vertices or pixels, against a plain Lambert pass.
+//! The cost of strokes: encodings, mappings, and weights at vertices or pixels, relative to a plain Lambert pass.
 //!
-//! `cargo bench -p npr-harness --bench hatch`. Minimum and median of interleaved rounds; read the ratios. The figures
-//! that were measured stand in docs/speed.md.
+//! `cargo bench -p npr-harness --bench hatch`. Prints minimum and median of interleaved rounds, and ratios, which are
+//! the meaningful numbers. docs/speed.md has measured figures.
 #![allow(clippy::print_stdout)]
 
 mod common;
@@ -21,7 +21,7 @@ fn main() {
     };
     println!("on {}", context.describe());
     let (scene, camera) = common::bunny(|model| {
-        // It has no texture coordinates.
+        // The model has no texture coordinates.
         if model.uvs.is_empty() {
             model.uvs = model.positions.iter().map(|p| p.truncate()).collect();
         }

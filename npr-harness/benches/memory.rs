@@ -1,7 +1,7 @@
-//! What a picture of a model takes of memory at most: whole processes of the command, on Linux.
+//! The peak memory for a picture of a model: whole processes of the command, on Linux.
 //!
-//! `cargo bench -p npr-harness --bench memory -- MODEL [STYLE …]`; `cartoon` and `toon-shadow` without styles. Prints rows
-//! of a Markdown table.
+//! `cargo bench -p npr-harness --bench memory -- MODEL [STYLE …]`; by default the styles `cartoon` and `toon-shadow`.
+//! Prints rows of a Markdown table.
 #![allow(clippy::print_stdout)]
 
 use std::fs;
@@ -9,7 +9,7 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 fn main() {
-    // Cargo adds its own.
+    // Cargo adds an argument of its own.
     let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
     let Some((model, styles)) = arguments.split_first() else { return println!("skipped: no model is given") };
     let styles: Vec<&str> = styles.iter().map(String::as_str).collect();
@@ -27,7 +27,7 @@ fn main() {
     }
 }
 
-/// The largest resident set of a process that renders, bytes, and how long it ran.
+/// The largest resident set of a rendering process, bytes, and its running time.
 fn peak(model: &str, style: &str, backend: &str) -> Result<(u64, Duration), std::io::Error> {
     let start = Instant::now();
     let mut process = Command::new(env!("CARGO_BIN_EXE_npr"))
@@ -38,7 +38,7 @@ fn peak(model: &str, style: &str, backend: &str) -> Result<(u64, Duration), std:
     let status = format!("/proc/{}/status", process.id());
     let mut largest = 0;
     while process.try_wait()?.is_none() {
-        // The kernel keeps the maximum; what is read last before the end is nearly that of the whole process.
+        // The kernel tracks the maximum; the last value read before the end is nearly that of the whole process.
         if let Some(bytes) = fs::read_to_string(&status).ok().and_then(|text| high_water_mark(&text)) {
             largest = bytes;
         }

@@ -1,6 +1,7 @@
-//! 60 frames of an orbit by a renderer that is kept, against as many by the CPU executor, in interleaved rounds.
+//! 60 frames of an orbit by a GPU renderer with persistent resources, compared with the CPU executor, in interleaved
+//! rounds.
 //!
-//! `cargo bench -p npr-harness --bench orbit -- [MODEL] [STYLE …]`; the built-in scene and `cartoon` without.
+//! `cargo bench -p npr-harness --bench orbit -- [MODEL] [STYLE …]`; by default the built-in scene and `cartoon`.
 #![allow(clippy::print_stdout)]
 
 use npr_harness::camera::{Camera, Framing};
@@ -13,12 +14,12 @@ use npr_harness::style::style;
 use npr_harness::view::View;
 use std::time::Instant;
 
-/// Px.
+/// The size of the pictures, px.
 const SIZE: (u32, u32) = (1280, 720);
 const FRAMES: u32 = 60;
 
 fn main() {
-    // Cargo adds its own.
+    // Cargo adds an argument of its own.
     let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
     let context = match gpu::open() {
         Ok(context) => context,

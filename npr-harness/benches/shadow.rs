@@ -1,7 +1,8 @@
-//! What shadows cost: volumes and maps against the same frame without, and shadow lines against the objects' alone.
+//! The cost of shadows: volumes and maps relative to the same frame without them, and shadow lines relative to lines of
+//! objects alone.
 //!
-//! `cargo bench -p npr-harness --bench shadow`. Minimum and median of interleaved rounds; read the ratios. The figures
-//! that were measured stand in docs/speed.md.
+//! `cargo bench -p npr-harness --bench shadow`. Prints minimum and median of interleaved rounds, and ratios, which are
+//! the meaningful numbers. docs/speed.md has measured figures.
 #![allow(clippy::print_stdout)]
 
 mod common;
@@ -47,7 +48,7 @@ fn main() {
     let (scene, camera) = common::bunny(|_| {});
     let by_plan = cases.clone().map(|(name, style)| Case::new(name, style));
     common::compare(&context, &scene, &camera, &by_plan);
-    // With bounds of volumes found by the device, as on hardware.
+    // With the bounds of volumes found on the GPU, as on hardware.
     let change = |plan: &mut Plan| {
         if let Some(ShadowTechnique::Volumes { method, .. }) = plan.shadow.as_mut().map(|shadow| &mut shadow.technique)
         {

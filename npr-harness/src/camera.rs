@@ -172,8 +172,8 @@ impl Camera {
         DVec2::new(aspect, 1.0) * half_height
     }
 
-    /// The matrix to clip space with reversed depth: 1 at the near plane; 0 at infinity in perspective, else at the far
-    /// plane.
+    /// The matrix to clip space with reversed depth: 1 at the near plane; in perspective 0 at infinity, else 0 at the
+    /// far plane.
     pub fn clip_from_world(&self, aspect: f64) -> DMat4 {
         let [right, up, back] = self.axes();
         let view_from_world = DMat4::from_cols(

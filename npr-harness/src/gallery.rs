@@ -1,4 +1,4 @@
-//! Every style on the built-in scene, and artists' lines on one that has them.
+//! The gallery: every style on the built-in scene, and artist-controlled lines on a scene that has them.
 
 mod figure_10;
 mod painted;
@@ -17,25 +17,25 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Px.
+/// The size of the pictures, px.
 pub const SIZE: (u32, u32) = (960, 540);
 
 /// A picture of the gallery.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// Where it is.
+    /// The path of the file.
     pub path: PathBuf,
-    /// What it shows.
+    /// A description.
     pub about: String,
     /// Its passes.
     pub passes: Vec<&'static str>,
-    /// From the plan to the picture in memory.
+    /// The time from planning to the picture in memory.
     pub time_ms: f64,
-    /// The reason for which the CPU made it, if a device could not.
+    /// The reason why the CPU rendered it, if the GPU could not.
     pub why_cpu: Option<CpuReason>,
 }
 
-/// The view for which the built-in scene is composed.
+/// The camera for which the built-in scene is composed.
 pub fn still_life_camera() -> Camera {
     Camera {
         eye: DVec3::new(3.0, 6.2, 14.0),
@@ -46,7 +46,7 @@ pub fn still_life_camera() -> Camera {
     }
 }
 
-/// What there is to do for all pictures.
+/// The work for all pictures.
 pub fn work() -> Work {
     let still_life = Scene::new(npr_mesh::embedded::scene());
     let pictures = styles().into_iter().map(|style| (style, SIZE));
@@ -56,8 +56,8 @@ pub fn work() -> Work {
         .fold(Work::default(), |work, (style, size)| work.and(Work::new(&still_life, &style, size, 1)))
 }
 
-/// Renders all styles into `dir`, which is made if need be. Pictures that the device cannot make are made on the CPU, where
-/// `backend` and the environment leave that open.
+/// Renders all styles into `dir`, which is created if necessary. Pictures that the GPU cannot render are rendered on
+/// the CPU if `backend` and the environment allow it.
 ///
 /// # Errors
 /// [`HarnessError`].

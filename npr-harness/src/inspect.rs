@@ -1,4 +1,4 @@
-//! What a model holds, in numbers.
+//! Statistics of a model.
 
 use glam::DVec3;
 use npr_mesh::{
@@ -10,10 +10,10 @@ use std::{collections::HashMap, fmt, ops::Range};
 /// The angle over which [`Inspection::creases_over_30_deg`] counts an edge.
 const CREASE_DEG: f64 = 30.0;
 
-/// Counts of a model. Corners at exactly equal positions are one; edges are those of the file's polygons.
+/// Statistics of a model. Corners at equal positions count as one; edges are those of the file's polygons.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Inspection {
-    /// The name it was given: as a rule the file's, without folder and ending.
+    /// The name of the model, usually that of the file without folder and extension.
     pub model: String,
     /// Meshes; a model in memory is one.
     pub meshes: usize,
@@ -21,55 +21,56 @@ pub struct Inspection {
     pub objects: usize,
     /// Triangles; a polygon of n corners makes n − 2.
     pub faces: usize,
-    /// Faces whose corners lie on one line or at one place.
+    /// Faces whose corners are collinear or coincide.
     pub zero_area_faces: usize,
-    /// Faces with the same three corners, in any order, as an earlier one; of larger polygons, all the faces of one
-    /// with the same corners as an earlier one. Triangles with two corners at one place do not count.
+    /// Faces with the same three corners as an earlier one, in any order; for larger polygons, all faces of a polygon
+    /// with the same corners as an earlier one. Triangles with two coinciding corners do not count.
     pub duplicate_faces: usize,
     /// Unique edges.
     pub edges: usize,
-    /// Those with one face.
+    /// Edges with one face.
     pub boundary_edges: usize,
-    /// Those with two.
+    /// Edges with two faces.
     pub two_face_edges: usize,
-    /// Those with more.
+    /// Edges with more than two faces.
     pub nonmanifold_edges: usize,
-    /// Two-face edges at which the surface turns by more than 30°. Faces of zero area make none.
+    /// Two-face edges at which the surface turns by more than 30°, without those of faces of zero area.
     pub creases_over_30_deg: usize,
-    /// Two-face edges at which it turns by 30° to within 0.01°.
+    /// Two-face edges at which the surface turns by 30° to within 0.01°.
     #[serde(rename = "within_0.01_deg_of_30")]
     pub within_0_01_deg_of_30: usize,
-    /// Shading vertices, whether a face uses them or not.
+    /// Shading vertices, including unused ones.
     pub vertices: usize,
-    /// Different positions of these.
+    /// Distinct positions of the vertices.
     pub positions: usize,
     /// The file's polygons.
     pub polygons: usize,
-    /// How many the model has.
+    /// The number of materials.
     pub materials: usize,
-    /// How many images the model has.
+    /// The number of images.
     pub textures: usize,
     /// Whether every edge has exactly two faces (and there is an edge).
     pub closed: bool,
-    /// Two-face edges whose faces run over them in the same direction.
+    /// Two-face edges whose faces have opposite winding.
     pub wound_oppositely: usize,
-    /// The box around all faces, per axis; zeros without faces.
+    /// The size of the bounding box of all faces, per axis; zeros without faces.
     pub extent: [f32; 3],
     /// The box's lower corner.
     pub min: [f32; 3],
     /// The box's upper corner.
     pub max: [f32; 3],
-    /// What the loader had to repair or leave out; as JSON, objects of `text` and `count`.
+    /// The repairs and omissions of the loader; in JSON, objects of `text` and `count`.
     #[serde(serialize_with = "texts_and_counts")]
     pub warnings: Vec<Warning>,
 }
 
-/// Counts.
+/// Computes the statistics of a model.
 ///
-/// Time is that of one edge search and one sort of the faces; memory, besides the search's, at most 28 bytes a face.
+/// The time is that of one edge search and one sort of the faces; the memory is that of the search plus at most 28
+/// bytes per face.
 ///
 /// # Panics
-/// If a face names a vertex that is not there, or a per-face array has another length than stated in [`Model`].
+/// If a face refers to a vertex that does not exist, or a per-face array does not have the length stated in [`Model`].
 pub fn inspect(name: &str, model: &Model, warnings: Vec<Warning>) -> Inspection {
     let options = EdgeOptions { skip_redundant: false, ..EdgeOptions::default() };
     let found = edges::find(&model.positions, &model.faces, &model.face_polygon, &model.face_material, &options);
@@ -120,12 +121,12 @@ fn texts_and_counts<S: serde::Serializer>(warnings: &[Warning], to: S) -> Result
     to.collect_seq(warnings.iter().map(|Warning { text, count }| Counted { text, count: *count }))
 }
 
-/// Polygons are compared as a whole: two that share three of their corners can be cut so that a triangle of the one
-/// lies on one of the other, and are no duplicates for that.
+/// Polygons are compared as a whole: the triangulations of two polygons that share three corners can have a triangle in
+/// common without being duplicates.
 fn duplicate_faces(model: &Model, representative: &[u32]) -> usize {
     let corner = |&v: &u32| representative[v as usize];
     let mut triangles: Vec<[u32; 3]> = Vec::new();
-    // The corners of all larger polygons one after the other, and where each polygon's lie, with its face count.
+    // The concatenated corners of all larger polygons, and per polygon its range in them and its face count.
     let mut corners: Vec<u32> = Vec::new();
     let mut larger: Vec<(Range<usize>, usize)> = Vec::new();
     let mut rest = model.faces.as_slice();
@@ -184,9 +185,9 @@ fn creases(model: &Model, found: &Edges) -> (usize, usize) {
     (over, near)
 }
 
-/// Along the normal of the face's polygon (Newell's), scaled so that its square is within f64.
+/// The area vector of the face's polygon, along its Newell normal, scaled so that its square is within f64.
 ///
-/// `areas` keeps those already computed, by the polygon's first face: a polygon can have many edges.
+/// `areas` caches the vectors by the polygon's first face, because a polygon can have many edges.
 fn area_vector(model: &Model, face: u32, areas: &mut HashMap<usize, DVec3>) -> DVec3 {
     let face = face as usize;
     let faces = if model.face_polygon.is_empty() {

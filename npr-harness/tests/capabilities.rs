@@ -1,5 +1,6 @@
-//! Each capability of an adapter taken away in turn: the picture stays within the largest difference of `npr check`, and the methods
-//! name the reason; what cannot be known beforehand falls to the next method, and at last to the CPU.
+//! Tests with each capability of an adapter removed in turn: the picture stays within the largest difference of `npr
+//! check`, and the methods name the reason. Failures that cannot be predicted fall back to the next method, and finally
+//! to the CPU.
 #![cfg(feature = "gpu")]
 
 mod common;
@@ -25,11 +26,11 @@ use npr_mesh::{AlphaMode, Material, Texture, Wrap, embedded};
 
 const SIZE: (u32, u32) = (192, 108);
 
-/// Lines from edges, lines in the image, a disc over ink of another size, shadow volumes, both kinds of strokes.
+/// Edge lines, image-space lines, dilation of ink of another size, shadow volumes, and both encodings of strokes.
 const STYLES: [&str; 6] = ["cartoon", "ink-image", "ink-thick", "toon-shadow", "hatch-planes", "hatch-shadow"];
 
 fn context(limits: DeviceLimits) -> Option<GpuContext> {
-    // Says so where there is none, or fails if there must be one.
+    // Reports a missing adapter, or fails if one is required.
     device()?;
     Some(GpuAdapter::find().expect("it was there").open(limits).expect("it opens"))
 }
@@ -51,7 +52,7 @@ impl Shown {
         Self { camera: Camera::framed(scene.corners(), aspect, &framing), scene }
     }
 
-    /// Compares pictures by a device, of which only some capabilities are used, with the reference.
+    /// Compares pictures of a device with some capabilities disabled with the reference.
     fn check<'a>(&self, context: &GpuContext, style: &Style, cases: impl IntoIterator<Item = (&'a str, Capabilities)>) {
         let plan = planned(&self.scene, style, &self.camera, SIZE);
         let hits = PrimaryHits::kept(&self.scene, View::new(self.camera, SIZE), PLACES);
@@ -69,7 +70,7 @@ impl Shown {
             }
             let name = &style.name;
             assert!(comparison.passes(&tolerance), "{name}, {what}: {} of 255", comparison.worst);
-            // A small picture has more edges for its pixels than those of `npr check`.
+            // A small picture has more edges per pixel than those of `npr check`.
             assert!(comparison.exempt_share() < 0.1, "{name}, {what}: {} exempt", comparison.exempt_share());
         }
     }
@@ -97,7 +98,7 @@ fn named(name: &str) -> Style {
     style(name).expect("a style of this crate")
 }
 
-/// What is taken away, and what the methods of some style then say.
+/// The capability removed, and the methods that a style then reports.
 type Case = (&'static str, fn(&mut Capabilities), &'static str, &'static str);
 
 const HARDWARE: ExecutorKind = ExecutorKind::HardwareAdapter;
@@ -142,7 +143,8 @@ fn without_a_capability_the_picture_is_right_and_the_reason_named() {
     }
 }
 
-/// On hardware each of the three things that finding lines on the device takes is the reason if it alone is missing.
+/// On hardware, each of the three capabilities for finding lines on the GPU is reported as the reason if it alone is
+/// missing.
 #[test]
 fn lines_are_found_on_the_cpu_for_the_reason_that_is_there() {
     let all = Capabilities {
@@ -196,7 +198,7 @@ fn under_webgl2_limits_pictures_are_right_or_the_texture_is_named() {
     for name in STYLES {
         shown.check(&context, &named(name), [("WebGL2", context.capabilities.clone())]);
     }
-    // Ink at twice the size of 1280 × 720.
+    // The ink has twice the size of 1280 × 720.
     let style = named("ink-thick");
     let refused = shown.plan_of(&style, capabilities, (1280, 720), 1);
     let Err(HarnessError::TextureTooLarge { what: "the ink", width: 2560, height: 1440, limit: 2048 }) = refused else {
@@ -206,7 +208,7 @@ fn under_webgl2_limits_pictures_are_right_or_the_texture_is_named() {
     samples(2).expect("1920 × 1080 samples");
     assert!(matches!(samples(3), Err(HarnessError::TextureTooLarge { what: "the picture's samples", .. })));
 
-    // A driver that refuses what it promised: the next method is taken.
+    // If the driver rejects compute shaders although it reports support, the next method is used.
     let promised = &mut context.capabilities;
     (promised.kind, promised.compute) = (HARDWARE, true);
     (promised.vertex_storage, promised.indirect_draws, promised.storage_bytes) = (true, true, 1 << 27);
@@ -273,7 +275,7 @@ fn a_texture_beyond_the_limits_is_refused_by_name() {
         let style = named("toon");
         let view = View::new(camera, SIZE);
         let on_device = Plan::new(&scene, &style, &view, &context.capabilities).map(|_| ());
-        // A plan that was made for something else.
+        // A plan for another executor.
         let uploaded = GpuRenderer::new(&context).upload(&scene, &planned(&scene, &style, &camera, SIZE)).map(|_| ());
         for refused in [on_device, uploaded] {
             let named = matches!(

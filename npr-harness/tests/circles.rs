@@ -1,23 +1,23 @@
-//! No file of the workspace depends on itself by way of others.
+//! Tests that the files of the workspace have no cyclic dependencies.
 //!
-//! A file depends on the file in which an item is defined that it names in a `use` or by a path from `crate`, `self`,
-//! `super` or one of its own modules. Aside: a parent's `mod` lines and its `pub use` of its children, which are followed
-//! to the child, and whatever stands under `cfg(test)`.
+//! A file depends on the file that defines an item which it names in a `use` or by a path from `crate`, `self`, `super`
+//! or one of its own modules. Exceptions are a parent's `mod` lines, its `pub use` of its children, which are resolved
+//! to the child, and code under `cfg(test)`.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 use syn::visit::{self, Visit};
 
-/// A module: the names from the crate's root.
+/// The path of a module from the crate's root.
 type Module = Vec<String>;
 
-/// What a file says.
+/// The declarations of a file.
 #[derive(Default)]
 struct Source {
-    /// Its own modules in other files.
+    /// Its child modules in other files.
     children: BTreeSet<String>,
-    /// Names that it hands on from its children, by the name that it gives them; `*` for all of a child.
+    /// The re-exports from its children, by exported name; `*` for all names of a child.
     re_exports: Vec<(String, Vec<String>)>,
     /// Paths to other files, as written.
     paths: Vec<Vec<String>>,
@@ -30,7 +30,7 @@ fn is_test(attributes: &[syn::Attribute]) -> bool {
     })
 }
 
-/// All paths of a tree of `use`, each with the name that it gets.
+/// All paths of a `use` tree, each with the name that it introduces.
 fn flatten(tree: &syn::UseTree, before: &[String], found: &mut Vec<(String, Vec<String>)>) {
     let with = |name: &syn::Ident| [before, &[name.to_string()]].concat();
     match tree {
@@ -114,7 +114,7 @@ fn module_of(root: &Path, file: &Path) -> Module {
     names
 }
 
-/// The module in whose file the item is that a path names in a module, if it is one of these files.
+/// The module whose file defines the item that a path in a module names, if it is one of these files.
 fn target(sources: &BTreeMap<Module, Source>, of: &Module, path: &[String], depth: usize) -> Option<Module> {
     let mut at = match path.first()?.as_str() {
         "crate" => Module::new(),
@@ -145,7 +145,7 @@ fn target(sources: &BTreeMap<Module, Source>, of: &Module, path: &[String], dept
     Some(at)
 }
 
-/// For each module those that it depends on.
+/// For each module: its dependencies.
 fn dependencies(sources: &BTreeMap<Module, Source>) -> BTreeMap<Module, BTreeSet<Module>> {
     let of = |(module, source): (&Module, &Source)| {
         let targets = source.paths.iter().filter_map(|path| target(sources, module, path, 0));
@@ -154,7 +154,7 @@ fn dependencies(sources: &BTreeMap<Module, Source>) -> BTreeMap<Module, BTreeSet
     sources.iter().map(of).collect()
 }
 
-/// Ways from modules back to themselves, one of each set of modules that lie on it.
+/// The dependency cycles, one per set of modules.
 fn circles(dependencies: &BTreeMap<Module, BTreeSet<Module>>) -> Vec<Vec<Module>> {
     let mut found: BTreeMap<BTreeSet<Module>, Vec<Module>> = BTreeMap::new();
     'starts: for start in dependencies.keys() {
@@ -186,7 +186,7 @@ fn circles(dependencies: &BTreeMap<Module, BTreeSet<Module>>) -> Vec<Vec<Module>
 fn read(text: &str) -> Source {
     let file = syn::parse_file(text).expect("it compiles");
     let mut source = Source::default();
-    // Children first: whether a `use` is of one is asked while it is read.
+    // Children first, because a `use` may refer to them.
     for item in &file.items {
         if let syn::Item::Mod(item) = item
             && item.content.is_none()
@@ -242,6 +242,6 @@ fn a_circle_is_found_by_use_by_path_and_through_a_parent() {
     assert!(circle_of(&[root, ("a", "use crate::b::B;"), ("b", "use crate::a::A;")]));
     assert!(circle_of(&[root, ("a", "fn f() { crate::b::g() }"), ("b", "use super::A;")]));
     assert!(circle_of(&[("", "mod a;\nuse a::A;\nstruct B;"), ("a", "use super::B;")]));
-    // What tests name does not count.
+    // References in tests do not count.
     assert!(!circle_of(&[root, ("a", "#[cfg(test)]\nmod tests { use crate::b::B; }"), ("b", "use crate::a::A;")]));
 }

@@ -1,4 +1,4 @@
-//! The `npr` command, as it is run.
+//! Tests of the `npr` command as a process.
 
 mod common;
 
@@ -8,7 +8,7 @@ use npr_harness::style::styles;
 use std::path::Path;
 use std::process::{Command, Output};
 
-/// A cube's corner: three quadrilaterals.
+/// The corner of a cube: three quadrilaterals.
 const OBJ: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\n\
                    vn 0 0 -1\nvn 0 -1 0\nvn -1 0 0\n\
                    f 1//1 4//1 3//1 2//1\nf 1//2 2//2 6//2 5//2\nf 1//3 5//3 7//3 4//3\n";
@@ -27,7 +27,7 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
-/// Where no driver can be found.
+/// An environment in which no driver is found.
 const NO_ADAPTER: [(&str, &str); 3] = [
     ("VK_ICD_FILENAMES", "/there/is/no/such/driver.json"),
     ("VK_DRIVER_FILES", "/there/is/no/such/driver.json"),
@@ -164,7 +164,7 @@ fn a_style_is_printed_changed_and_drawn() {
     let done = render("own.toml", "own.png");
     assert!(done.status.success(), "{}", text(&done.stderr));
     assert_eq!(Image::load_png(&folder.join("own.png")).expect("a PNG").rgba8[..4], [0x30, 0x60, 0xc0, 255]);
-    // What is not known is named, with its place, in one line, and nothing is drawn.
+    // Unknown names are reported with their position in one line, and nothing is rendered.
     std::fs::write(folder.join("own.toml"), own.replace("antialias", "antialais")).expect("written");
     let refused = render("own.toml", "not.png");
     let said = text(&refused.stderr);
@@ -181,14 +181,15 @@ fn a_style_is_printed_changed_and_drawn() {
     assert_eq!(npr(&["style", "no-such"], &[], &folder.0).status.code(), Some(1));
 }
 
-/// Writing fails in its middle: the old picture stays, and no part of the new one.
+/// If writing fails midway, the old picture remains and no partial new one.
 #[cfg(unix)]
 #[test]
 fn a_picture_that_cannot_be_written_leaves_the_old_one() {
     let folder = with_model();
     std::fs::create_dir(folder.join("out")).expect("made");
     std::fs::write(folder.join("out/a.png"), b"the old one").expect("written");
-    // Files may have 512 or 1024 bytes; without the trap the process would be killed instead of told.
+    // The limit on file size is 512 or 1024 bytes; without the trap the process would be killed instead of getting an
+    // error.
     let limited = "trap '' XFSZ; ulimit -f 1; exec \"$0\" render corner.obj -o out/a.png --size 400x300 --backend cpu";
     let done = Command::new("sh")
         .args(["-c", limited, env!("CARGO_BIN_EXE_npr")])

@@ -1,4 +1,4 @@
-//! The `npr` command's manners: where pictures go, what is said of paths and names, and how often.
+//! Tests of the `npr` command's outputs and messages.
 
 mod common;
 
@@ -14,7 +14,7 @@ const OBJ: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 0 0 1\nusemtl red\nf 1
 
 const FORMATS: &str = "unknown picture format (expected .png, .jpg, .jpeg, .webp, or - for PNG on standard output)";
 
-/// A folder with a square of red, in `square.obj`.
+/// A folder with a red square in `square.obj`.
 fn with_model() -> Folder {
     let folder = Folder::new();
     fs::write(folder.join("square.obj"), format!("mtllib m.mtl\n{OBJ}")).expect("written");
@@ -32,7 +32,7 @@ fn npr(arguments: &[&str], folder: &Folder) -> Output {
     command(arguments, &folder.0).output().expect("the command can be run")
 }
 
-/// A small picture of the square, by the CPU, with whatever else.
+/// Renders a small picture of the square on the CPU, with further arguments.
 fn render(more: &[&str], folder: &Folder) -> Output {
     npr(&[&["render", "square.obj", "--size", "40x30", "--backend", "cpu"], more].concat(), folder)
 }
@@ -41,7 +41,7 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
-/// What is said where nothing is done.
+/// The error message of a command that fails.
 fn refused(arguments: &[&str], folder: &Folder) -> String {
     let done = npr(arguments, folder);
     let said = text(&done.stderr);
@@ -87,7 +87,7 @@ fn the_files_extension_says_which_format_is_written() {
 fn an_unknown_format_is_refused_before_anything_is_read() {
     let folder = with_model();
     for name in ["a.gif", "a", "a.obj", ".png", "a.png.txt"] {
-        // The model is not there either: what is said first is what is found first.
+        // The model does not exist either; only the first error is reported.
         let said = refused(&["render", "none.obj", "--style", "none.toml", "-o", name], &folder);
         assert_eq!(said, format!("npr: output {name}: {FORMATS}\n"));
     }
@@ -113,12 +113,12 @@ fn a_dash_is_standard_output() {
     );
     assert!(said.starts_with("-: 40 × 30 px, 2 faces, ") && said.lines().count() > 2, "summary and plan: {said}");
     assert!(!folder.join("-").exists());
-    // Both cannot be there.
+    // The two options exclude each other.
     let both = ["render", "square.obj", "-o", "-", "--json"];
     assert_eq!(refused(&both, &folder), "npr: --json and -o - would both write to standard output\n");
 }
 
-/// Who reads a picture may go before it is there.
+/// The reader of a picture may close the pipe before the picture is written.
 #[cfg(unix)]
 #[test]
 fn a_reader_that_has_gone_is_an_error() {
@@ -213,7 +213,7 @@ fn a_repeated_warning_is_one_with_its_number() {
     for json in [json, inspected] {
         let warnings = json["warnings"].as_array().expect("a list");
         let counts: Vec<_> = warnings.iter().map(|w| (w["text"].is_string(), w["count"].as_u64())).collect();
-        // The other one: no file defines the material.
+        // The second warning: no file defines the material.
         assert_eq!(counts, [(true, Some(9)), (true, Some(1))], "{warnings:?}");
         assert!(warnings[0]["text"].as_str().is_some_and(|text| text.contains("none.mtl") && !text.contains("times")));
     }
@@ -221,7 +221,7 @@ fn a_repeated_warning_is_one_with_its_number() {
     assert_eq!(inspected.lines().filter(|line| line.starts_with("warning") && line.contains("(9 times)")).count(), 1);
 }
 
-/// One file is missing, eight materials with it: two lines.
+/// One missing file with eight materials causes two lines.
 #[test]
 fn a_missing_material_file_is_said_once() {
     let folder = Folder::new();
@@ -265,7 +265,7 @@ fn shells_get_scripts_that_know_every_command_and_flag() {
         }
     }
     assert_eq!(npr(&["completions", "csh"], &folder).status.code(), Some(2));
-    // What is there for bash is bash, if one is here to read it.
+    // The bash completion is checked with bash, if it is installed.
     let script = npr(&["completions", "bash"], &folder).stdout;
     let read = Command::new("bash").arg("-n").stdin(Stdio::piped()).stderr(Stdio::piped()).spawn();
     let Ok(mut read) = read else { return };
@@ -274,7 +274,7 @@ fn shells_get_scripts_that_know_every_command_and_flag() {
     assert!(read.status.success(), "{}", text(&read.stderr));
 }
 
-/// As before `head`.
+/// As with a pipe to `head`.
 #[test]
 fn a_reader_that_has_had_enough_ends_nothing() {
     let folder = Folder::new();

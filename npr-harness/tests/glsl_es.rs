@@ -1,7 +1,7 @@
-//! Every shader that wgpu's GL backend needs translates to GLSL ES 3.00, which is what WebGL2 has.
+//! Tests that every shader for wgpu's GL backend translates to GLSL ES 3.00, the language of WebGL2.
 //!
-//! Mesa's EGL offers desktop GL, and wgpu takes that, so no picture made here shows it. Compute shaders, and the vertex
-//! shader that reads storage buffers, have other methods there and are left out.
+//! Rendering tests do not cover this, because Mesa's EGL offers desktop GL, which wgpu then uses. Compute shaders, and
+//! the vertex shader that reads storage buffers, are replaced by other methods on WebGL2 and are not tested.
 #![cfg(feature = "gpu")]
 
 use naga::back::glsl;
@@ -29,7 +29,7 @@ const FUSED: &str = include_str!("../../npr-imagespace/src/pass/fused.wgsl");
 const RESOLVE: &str = include_str!("../src/gpu/resolve.wgsl");
 const SHADOW_MAP: &str = include_str!("../src/shadow/shadow_map.wgsl");
 
-/// What an overridable constant is where nothing is said.
+/// The value of an override constant without a default.
 fn default_of(module: &naga::Module, constant: &naga::Override) -> f64 {
     let literal = |expression| match &module.global_expressions[expression] {
         naga::Expression::Constant(constant) => &module.global_expressions[module.constants[*constant].init],
@@ -43,8 +43,8 @@ fn default_of(module: &naga::Module, constant: &naga::Override) -> f64 {
     }
 }
 
-/// Translates all entry points of a shader, with its overridable constants at each of a few values: flags off and on,
-/// numbers as they are by default and up to three more, or of counts, whose default is the most there may be, less.
+/// Translates all entry points of a shader, with several values of each override constant: flags off and on; numbers at
+/// their default and up to three higher values, or lower ones for counts, whose default is the maximum.
 fn translate(name: &str, source: &str) -> Result<usize, String> {
     let module = naga::front::wgsl::parse_str(source).map_err(|error| format!("{name}: {error}"))?;
     let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
@@ -117,7 +117,7 @@ fn every_shader_translates() {
     assert!(translated > 4 * 40, "{translated}");
 }
 
-/// Each is what stopped a pass here, so the test above can fail.
+/// Each shader contains a construct that has failed here, so the test above can fail.
 #[test]
 fn what_glsl_es_cannot_say_is_noticed() {
     let fragment = |declarations: &str, body: &str| {

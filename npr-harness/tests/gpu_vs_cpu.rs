@@ -1,4 +1,4 @@
-//! The device against the reference, on models made to be awkward; and comparisons that must fail.
+//! Comparisons of the GPU with the reference on difficult models, and comparisons that must fail.
 #![cfg(feature = "gpu")]
 #![allow(clippy::print_stdout)]
 
@@ -30,7 +30,7 @@ fn framed(scene: &Scene, yaw_deg: f64, pitch_deg: f64, fov_y_rad: Option<f64>) -
     Camera::framed(scene.corners(), f64::from(SIZE.0) / f64::from(SIZE.1), &framing)
 }
 
-/// Checks a scene from two perspective views and a parallel one, and prints what does not pass.
+/// Checks a scene in two perspective views and a parallel one, and prints the metrics that fail.
 fn check_model(name: &str, model: Model) {
     let Some(executor) = device() else { return };
     let scene = Scene::new(model);
@@ -59,7 +59,7 @@ fn the_built_in_scene() {
     }
 }
 
-/// What hides lines there is a plane a few hundredths of a px before them, which rounding must not decide.
+/// There, a plane a few hundredths of a px in front of the lines occludes them, which rounding must not change.
 #[test]
 fn lines_behind_a_ground_seen_from_below() {
     let Some(executor) = device() else { return };
@@ -145,7 +145,7 @@ fn render(executor: &Executor, scene: &Scene, style: &Style, camera: &Camera) ->
     rendered(executor, scene, style, camera, SIZE)
 }
 
-/// The picture with its content moved to the right.
+/// The picture with its content shifted to the right.
 fn shifted(image: &Image) -> Image {
     let mut moved = image.clone();
     for y in 0..image.height {
@@ -172,7 +172,7 @@ fn broken_pictures_do_not_pass() {
         let good = render(&executor, &scene, &style, &camera);
         assert!(is_fine(&good), "{name}");
         assert!(!is_fine(&shifted(&good)), "{name}: a picture moved by a pixel passes");
-        // Another camera, by a third of a pixel; and a model that is 1 % larger.
+        // A camera shifted by a third of a pixel, and a model enlarged by 1 %.
         let mut aside = camera;
         let px = camera.line_view(DVec2::new(640.0, 360.0)).depth_per_px.x * 13.0;
         aside.eye += camera.axes()[0] * (px / 3.0);
@@ -184,12 +184,12 @@ fn broken_pictures_do_not_pass() {
     }
 }
 
-/// The style with another light, where it has one, and with other lines.
+/// The style with another light, if it has one, and with other lines.
 fn broken_styles(style: &Style) -> Vec<Style> {
     let mut broken = Vec::new();
     if let Shade::Toon(bands) = &style.shade {
         let mut other = bands.clone();
-        // As if the light came from about a degree beside.
+        // A light rotated by about a degree.
         other.thresholds.iter_mut().for_each(|threshold| *threshold += 0.02);
         broken.push(Style { shade: Shade::Toon(other), ..style.clone() });
         let mut other = bands.clone();

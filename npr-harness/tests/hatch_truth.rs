@@ -1,4 +1,4 @@
-//! Whether hatching has the tone that is asked for, and stays where it is.
+//! Tests of the tone and the stability of hatching.
 //!
 //! `cargo test --release -p npr-harness --test hatch_truth -- --ignored --nocapture` prints the tables.
 #![allow(clippy::print_stdout)]
@@ -20,26 +20,26 @@ use npr_harness::view::View;
 use npr_mesh::embedded;
 use npr_toon::normal::NormalUse;
 
-/// Of a flat patch's tone.
+/// The largest error of a flat patch's tone.
 const MOST_TONE: f64 = 0.02;
-/// Of 255, from one frame to the next.
+/// The largest mean difference between frames, of 255.
 const MOST_CHANGE: f64 = 4.0;
-/// The map's side, in halves of the model's diagonal, in all but patches.
+/// The map's side, in halves of the model's diagonal, except for patches.
 const SIDE: f64 = 0.5;
 
 fn steps(count: u32) -> Vec<f64> {
     (0..=count).map(|i| f64::from(i) / f64::from(count)).collect()
 }
 
-/// The largest error over lights, view by view.
+/// The largest error over all lights, per view.
 fn worst(found: &[PatchTone]) -> PatchTone {
     *found.iter().max_by(|a, b| a.error().abs().total_cmp(&b.error().abs())).expect("there are lights")
 }
 
 type EachPatch<'a> = dyn FnMut(&str, PatchView, PatchTone) + 'a;
 
-/// All encodings and mappings, and coordinates between two scales, under transfers that each have lights of their own:
-/// the largest error of each view. `size` is told the distance.
+/// The largest error of each view for all encodings and mappings, and for coordinates between two scales, under
+/// transfers with their own lights. `size` returns the picture's size for a distance.
 fn patches(transfers: &[(HatchTransfer, Vec<f64>)], size: fn(f64) -> u32, least: usize, each: &mut EachPatch<'_>) {
     let map = strokes(1);
     for encoding in ENCODINGS {
@@ -80,18 +80,19 @@ fn table_of_patches() {
 fn flat_patches_have_the_tone_that_is_asked_for() {
     let mut held = 0;
     let transfers = [(LINEAR, [0.0, 2.0, 3.0, 5.0, 7.0].map(|i| i / 7.0).to_vec()), (LISTING_4, vec![0.0, 3.0 / 7.0])];
-    // Far away a tile has few pixels: 11 along its side in the larger picture.
+    // At large distances a tile has few pixels: 11 along its side in the larger picture.
     let size = |distance| if distance < 3.0 { 200 } else { 400 };
     patches(&transfers, size, 1500, &mut |name, view, tone| {
         assert!(tone.pixels > 500, "{name} {view:?}: {tone:?}");
         assert!(tone.error().abs() <= MOST_TONE, "{name} {view:?}: {tone:?}");
         held += 1;
     });
-    // Of both transfers and encodings four mappings, seen from 25 sides.
+    // Both transfers and encodings, four mappings, 25 views.
     assert_eq!(held, 2 * 2 * 4 * 25);
 }
 
-/// But for the noise of strokes, blocks are right if the mesh is fine; if it is coarse, they are better by light at pixels.
+/// Except for the noise of strokes, blocks have the correct tone on a fine mesh; on a coarse mesh they are more
+/// accurate with light at pixels.
 #[test]
 fn spheres_have_the_tone_that_is_asked_for() {
     let maps: Vec<_> = (1..=2).map(strokes).collect();
@@ -99,7 +100,7 @@ fn spheres_have_the_tone_that_is_asked_for() {
         let of = |segments, normals| sphere(&maps, encoding, HatchMapping::Form, segments, normals);
         let fine = of(96, NormalUse::PerPixel);
         assert!(fine.blocks > 50 && fine.bias.abs() <= 0.01, "{encoding:?}: {fine:?}");
-        // The mean of two maps has the noise of one by the root of two, and no bias besides.
+        // The mean of two maps has the noise of one divided by √2, and the same bias.
         assert!(fine.mean_rms <= 1.25 * fine.noise / 2f64.sqrt() + 0.005, "{encoding:?}: {fine:?}");
         let [vertex, pixel] = [NormalUse::PerVertex, NormalUse::PerPixel].map(|normals| of(12, normals));
         assert!(vertex.mean_rms > pixel.mean_rms, "{encoding:?}: {vertex:?} {pixel:?}");
@@ -118,7 +119,7 @@ fn sphere(
     sphere_error(&shades, segments, normals, (640, 360)).expect("the shades are valid")
 }
 
-/// How often ink begins or ends along the rows and columns of a square that faces the eye, per px.
+/// The number of ink borders per px along the rows and columns of a square that faces the eye.
 fn borders(encoding: HatchEncoding, texel_px: f32, samples: u32) -> f64 {
     const SIDE_PX: u32 = 240;
     let shade = HatchShade { texel_px, ..black(&strokes(1), encoding, HatchMapping::Planes, LIT, SIDE) };
@@ -177,7 +178,7 @@ fn scenes() -> [(&'static str, Scene, Vec<HatchMapping>); 3] {
     ]
 }
 
-/// From the front and the side, near and far, the eye raised by 20°.
+/// Front and side views, near and far, with the eye raised by 20°.
 fn framings() -> [Framing; 3] {
     [(0.0, 1.0), (30.0, 1.0), (75.0, 2.0)].map(|(yaw_deg, distance)| Framing {
         yaw_rad: f64::to_radians(yaw_deg),
@@ -205,7 +206,7 @@ fn stabilities(framings: &[Framing], size: (u32, u32), each: &mut EachStability<
     }
 }
 
-/// Strokes that lie on the picture, and strokes that are moved by a texel.
+/// Strokes that are fixed to the picture, and strokes shifted by a texel.
 fn unstable(encoding: HatchEncoding, motion: Motion, size: (u32, u32)) -> [Stability; 2] {
     let model = torus_with_uvs(96, 48);
     let shade = black(&strokes(1), encoding, HatchMapping::Coordinates, LIT, SIDE);
@@ -217,7 +218,7 @@ fn unstable(encoding: HatchEncoding, motion: Motion, size: (u32, u32)) -> [Stabi
         stability(of(first, &before), of(second, &after), size).expect("the shade is valid")
     };
     let [first, second] = [&before, &after].map(|camera| Scene::new(on_the_picture(&model, camera, size)));
-    // A texel of the finest level.
+    // One texel of the finest level.
     let moved = Scene::new(with_moved_uvs(&model, Vec2::new(0.0, 1.0 / 256.0)));
     [compared(&first, &second), compared(&still, &moved)]
 }
@@ -254,7 +255,8 @@ fn strokes_stay_where_they_are() {
         assert!(found.pixels > 1000, "{case}");
         assert!(found.mean <= MOST_CHANGE, "{case}");
         assert!(found.tone.abs() <= 1.0, "{case}");
-        // Pictures of different sizes have different levels: nothing at all would mean that nothing was compared.
+        // Pictures of different sizes have different mip levels, so no difference at all would mean that nothing was
+        // compared.
         assert!(found.mean > 0.05, "{case}");
         cases += 1;
     });

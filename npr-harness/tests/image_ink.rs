@@ -1,4 +1,4 @@
-//! Lines in the image on scenes whose lines are known: what is cut, what meets, what is round, what is flat.
+//! Tests of image-space lines on scenes with known lines: clipped, intersecting, round and flat surfaces.
 #![allow(clippy::print_stdout)]
 
 mod common;
@@ -28,7 +28,7 @@ use npr_mesh::{AlphaMode, Material, Model, Texture, Wrap, embedded, pn_triangles
 
 const CREASE_RAD: f64 = std::f64::consts::FRAC_PI_4;
 
-/// The CPU, and a device if there is one.
+/// The CPU, and a GPU if there is one.
 fn executors() -> Vec<Executor> {
     let mut executors = vec![Executor::Cpu { why: None }];
     executors.extend(device());
@@ -80,7 +80,7 @@ fn camera_at(eye: DVec3, target: DVec3, fov_y_deg: f64, near: f64) -> Camera {
     }
 }
 
-/// No region parts anything: only depth and normals do.
+/// Regions make no lines; only depth and normals do.
 fn one_region() -> ImageInk {
     ImageInk { regions: Regions::One, ..ImageInk::default() }
 }
@@ -88,7 +88,7 @@ fn one_region() -> ImageInk {
 #[test]
 fn a_clip_plane_leaves_a_line_where_it_cuts() {
     let mut scene = Scene::new(embedded::sphere(96));
-    // Kept is what is below 0.3.
+    // The part below 0.3 is kept.
     scene.clip = Some(DVec4::new(0.0, -1.0, 0.0, 0.3));
     let camera = camera_at(DVec3::new(0.0, 2.6, 5.0), DVec3::ZERO, 28.0, 0.1);
     let sizes = [InkScale::Half, InkScale::One, InkScale::Double];
@@ -98,7 +98,7 @@ fn a_clip_plane_leaves_a_line_where_it_cuts() {
         let found = share(&are_near(&ink, rim, WITHIN_PX));
         println!("{}, {scale:?}: {found:.4} of the rim has a line", executor.describe());
         assert!(found >= 0.99, "{}, {scale:?}: {found}", executor.describe());
-        // Nothing of what was cut off, whose upper end would be seen here.
+        // No line of the clipped part, whose upper end would be visible here.
         let top = project(&camera, DVec3::new(0.0, 1.0, 0.0)) + DVec2::Y * 4.0;
         assert!(!are_near(&ink, [top].into_iter(), 3.0)[0]);
     }
@@ -117,7 +117,7 @@ fn a_model_s_own_edges_are_refused_where_a_plane_cuts() {
 #[test]
 fn the_near_plane_leaves_a_line_where_it_cuts() {
     let scene = Scene::new(embedded::sphere(96));
-    // The plane z = 0.6 cuts off a cap of radius 0.8.
+    // The plane z = 0.6 clips a cap of radius 0.8.
     let camera = camera_at(DVec3::Z * 4.0, DVec3::ZERO, 30.0, 3.4);
     for executor in executors() {
         let ink = drawn(&executor, &scene, &camera, one_region());
@@ -134,7 +134,7 @@ fn surfaces_that_pass_through_each_other_meet_in_a_line() {
     model.append(&embedded::placed(embedded::sphere(128), Mat4::from_translation(Vec3::X * 0.6), Material::default()));
     let scene = Scene::new(model);
     let camera = camera_at(DVec3::new(0.0, 1.5, 6.0), DVec3::ZERO, 30.0, 0.1);
-    // The spheres meet in the circle of radius 0.8 in the plane x = 0; what is turned away is hidden.
+    // The spheres intersect in the circle of radius 0.8 in the plane x = 0; its back half is hidden.
     let visible = |point: &DVec3| point.dot(camera.eye) > 1.0 - 0.36;
     let seam: Vec<DVec2> =
         circle(DVec3::ZERO, DVec3::X, 0.8).filter(visible).map(|point| project(&camera, point)).collect();
@@ -144,7 +144,8 @@ fn surfaces_that_pass_through_each_other_meet_in_a_line() {
         let found = share(&are_near(&ink, seam.iter().copied(), WITHIN_PX));
         assert!(found >= 0.99, "{}: {found}", executor.describe());
     }
-    // The measure knows of the line, too, and of none that is hidden. The spheres' facets lie a little inside them.
+    // The true intersection curves contain the line too, and no hidden one. The spheres' facets lie slightly inside the
+    // spheres.
     let meeting = true_intersections(&scene, &camera, SIZE, CREASE_RAD);
     let length: f64 = meeting.segments.iter().map(|s| s.ends_px[0].distance(s.ends_px[1])).sum();
     let expected: f64 = seam.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
@@ -206,7 +207,7 @@ fn regions_part_what_depth_and_normals_do_not() {
         assert_eq!(has_line(&scene, Regions::One), 0.0);
         assert_eq!(has_line(&scene, Regions::Material), 0.0);
         assert_eq!(has_line(&scene, Regions::Mesh), 1.0);
-        // Their edge is one and flat, so that they are one patch.
+        // They share a flat edge, so they are one region.
         assert_eq!(has_line(&scene, Regions::Patch), 0.0);
         let mut model = squares_side_by_side();
         model.face_mesh.fill(0);
@@ -247,7 +248,7 @@ fn what_alpha_leaves_has_lines_around_it() {
     }
 }
 
-/// Red and green, meeting at u = 1/2; not filtered, or the colour half way would be found elsewhere.
+/// Red and green with a border at u = 1/2; unfiltered, because the mixed colour would otherwise be detected elsewhere.
 fn two_colored() -> Model {
     let mut model = squares_side_by_side();
     let rgba8 = [[200, 0, 0, 255], [0, 200, 0, 255]].concat();
@@ -271,14 +272,14 @@ fn artists_lines_are_where_they_are_painted_and_nowhere_else() {
         let has_line = |scene: &Scene, x: f64, ink: ImageInk| {
             share(&are_near(&drawn(&executor, scene, &camera, ink), seen(x).into_iter(), WITHIN_PX))
         };
-        // Green and red sort out of R alone; alpha is 1 in both.
+        // The red channel alone distinguishes green from red; alpha is 1 in both.
         for (kind, lines) in
             [(LineKind::Regions, 1.0), (LineKind::Texture, 1.0), (LineKind::Normals, 0.0), (LineKind::None, 0.0)]
         {
             scene.line_kinds = vec![kind];
             assert_eq!(has_line(&scene, -0.5, artist), lines, "{kind:?} on {}", executor.describe());
             assert_eq!(has_line(&scene, -0.2, artist), 0.0, "{kind:?} on {}", executor.describe());
-            // Styles that do not ask do not get them.
+            // Styles that do not use artist-controlled lines do not get them.
             assert_eq!(has_line(&scene, -0.5, ImageInk { artist: false, ..artist }), 0.0, "{kind:?}");
         }
     }
@@ -290,7 +291,7 @@ fn artists_lines_are_where_they_are_painted_and_nowhere_else() {
 
 #[test]
 fn vertex_colour_lines_survive_a_full_turn() {
-    // A sphere in two colours, that meet where x = 0, and turn with it.
+    // A sphere with two colours, with their border at x = 0, which rotates with it.
     let round = embedded::sphere(96);
     let mut model =
         Model { face_material: round.face_material.clone(), materials: round.materials.clone(), ..Model::default() };
@@ -317,12 +318,12 @@ fn vertex_colour_lines_survive_a_full_turn() {
             &camera,
             ImageInk { artist: true, regions: Regions::Material, ..ImageInk::default() },
         );
-        // Away from the contour by a tenth of the radius.
+        // At least a tenth of the radius away from the contour.
         let seam = circle(DVec3::ZERO, DVec3::X, 1.0).filter(|p| p.dot(eye) > 1.0 + 0.1 * eye.length());
         let seam: Vec<DVec2> = seam.map(|point| project(&camera, point)).collect();
         let found = share(&are_near(&ink, seam.iter().copied(), WITHIN_PX));
         assert!(seam.is_empty() || found >= 0.99, "{step}: {found}");
-        // And nothing beside the seam and the contour.
+        // No other line than the seam and the contour.
         let inner = ink.iter().filter(|&&point| project(&camera, DVec3::ZERO).distance(point) < 110.0);
         let stray = inner.filter(|&&point| !are_near(&seam, [point].into_iter(), 2.5)[0]).count();
         assert!(stray < 8, "{step}: {stray} px of line where there is none");
@@ -346,7 +347,7 @@ fn a_ground_at_a_grazing_angle_stays_clean() {
     for grazing_deg in [0.5f64, 1.0, 2.0, 5.0, 10.0] {
         let (sin, cos) = grazing_deg.to_radians().sin_cos();
         let camera = camera_at(DVec3::new(0.0, 14.0 * sin, 14.0 * cos), DVec3::ZERO, 25.0, 0.05);
-        // All lines are true ones, for what is drawn; what is asked for has depth behind it.
+        // All lines count as true for precision; for recall, only those with a depth step.
         let all = true_lines(&scene, &camera, SIZE, CREASE_RAD);
         let asked = true_lines_of_steps(&scene, &camera, SIZE, CREASE_RAD, 0.01 * 2.0 * 3.0);
         for executor in executors() {
@@ -412,7 +413,7 @@ fn the_fused_filter_finds_the_lines_of_real_models() {
         for (yaw, pitch) in views {
             let framing = Framing { yaw_rad: yaw.to_radians(), pitch_rad: pitch.to_radians(), ..Framing::default() };
             let camera = Camera::framed(scene.corners(), f64::from(SIZE.0) / f64::from(SIZE.1), &framing);
-            // 1 % of the model's size, and where surfaces pass through each other.
+            // Depth steps of 1 % of the model's size, and intersection curves.
             let of_edges = true_lines_of_steps(&flat, &camera, SIZE, CREASE_RAD, 0.02 * scene.radius());
             let meetings = true_intersections(&flat, &camera, SIZE, CREASE_RAD);
             let segments = [of_edges.segments, meetings.segments].concat();
@@ -424,7 +425,8 @@ fn the_fused_filter_finds_the_lines_of_real_models() {
     }
 }
 
-/// Normals within a step of their code, regions the same, depths within some codes, but where another surface is seen.
+/// Normals agree within a step of their encoding, regions exactly, depths within some steps, except where another
+/// surface is visible.
 #[cfg(feature = "gpu")]
 #[test]
 fn the_device_packs_what_the_reference_packs() {
@@ -456,13 +458,13 @@ fn the_device_packs_what_the_reference_packs() {
             let apart = |(a, b): &(&[u32; 2], &[u32; 2])| {
                 let (a, b) = (tap(**a), tap(**b));
                 let steps = (a.normal - b.normal).abs().max_element();
-                // A rasteriser's depth is an f32 that it interpolates: of 24 bits it has 18 and more.
+                // A rasteriser interpolates depth as f32, with 18 or more of 24 bits correct.
                 let codes = layout.depth_max() / (1 << 18);
                 a.region != b.region || steps > 2 || a.depth.abs_diff(b.depth) > codes.max(2)
             };
             let share = expected.iter().zip(&actual).filter(apart).count() as f64 / expected.len() as f64;
             println!("{layout:?}, {scale:?}: {share:.5} of the texels differ");
-            // What differs lies at contours, which are a larger share of a smaller picture.
+            // Differences lie at contours, which are a larger fraction of a smaller picture.
             let limit = 1e-4 * f64::from(SIZE.0) / f64::from(scale.size(SIZE).0);
             assert!(expected.len() == actual.len() && share < limit, "{layout:?}, {scale:?}: {share}");
         }

@@ -1,4 +1,4 @@
-//! The counts of real models against those of two other programs.
+//! Comparison of the statistics of real models with those of two other programs.
 #![allow(clippy::print_stdout)]
 
 use npr_harness::inspect::inspect;
@@ -26,7 +26,7 @@ fn the_counts_of_real_models_are_right() {
         for (&column, &expected) in columns.iter().zip(&row).skip(1) {
             let expected: u64 = expected.parse().expect("a number");
             let actual = counted[column].as_u64().unwrap_or_else(|| panic!("{column} is not counted"));
-            // Which side of 30° these edges are on hangs on the order of additions.
+            // The order of additions decides on which side of 30° these edges are.
             let slack = if column == "creases_over_30_deg" { slack } else { 0 };
             if actual.abs_diff(expected) > slack {
                 faults.push(format!("{name}: {column} is {actual}, not {expected}"));

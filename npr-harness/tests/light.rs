@@ -1,4 +1,4 @@
-//! Every light model, on the device and by the reference, on surfaces made to be awkward.
+//! Comparison of every shade on the GPU with the reference, on difficult surfaces.
 #![cfg(feature = "gpu")]
 #![allow(clippy::print_stdout)]
 
@@ -39,18 +39,19 @@ use npr_toon::table::{Corner, Ramp2d, RampTable};
 
 const SIZE: (u32, u32) = (200, 120);
 
-/// A coarse torus, and before it cards seen from both sides: textured, of a material whose alpha is below a half, blended.
+/// A coarse torus, and in front of it cards visible from both sides: textured, with a material whose alpha is below a
+/// half, and blended.
 fn scene() -> Scene {
     let modes = [AlphaMode::Opaque, AlphaMode::Opaque, AlphaMode::Blend, AlphaMode::Mask { cutoff: 0.3 }];
     let mut model = cards(4, 0.8, |n| Material {
         texture: (n % 2 == 1).then_some(0),
         ..plain(Vec4::new(0.9, 0.6, 0.3, 0.45 + 0.15 * n as f32), modes[n as usize], true)
     });
-    // Normals that are spread, so that none of the ways to use them is like another.
+    // Scaled normals, so that all ways to use them give different results.
     for (normal, position) in model.normals.iter_mut().zip(&model.positions) {
         *normal = (*normal + 1.6 * Vec3::new(position.y, -position.y, 0.0)).normalize();
     }
-    // `append` counts textures on.
+    // `append` offsets texture indices.
     for material in &mut model.materials {
         material.texture = material.texture.map(|_| 0);
     }
@@ -84,7 +85,7 @@ fn row(filter: TexelFilter) -> RampRow {
     RampRow::from_ramp(&stops(RampBlend::Smooth), 9, -1.0, 1.0, filter).expect("a row")
 }
 
-/// Every encoding with every mapping; the same with what else can be asked of strokes.
+/// Every encoding with every mapping, and with the other options of strokes.
 fn hatchings() -> Vec<(&'static str, Shade, Vec<StyleLight>)> {
     let parameters = TamParameters { side: 64, length: [0.2, 0.5], ..TamParameters::default() };
     let plain = HatchShade {
@@ -175,7 +176,7 @@ fn of(shade: Shade, lights: Vec<StyleLight>, normals: NormalUse, lines: Lines) -
     Style { shade, lights, normals, lines, ..style("toon").expect("a style of this crate") }
 }
 
-/// Each model with each use of normals agrees with its reference and with no other case's.
+/// Each shade with each use of normals agrees with its reference and with no other case's.
 #[test]
 fn every_light_model_is_the_same_on_both() {
     the_same_on_both(cases(), None);
@@ -186,7 +187,7 @@ fn strokes_are_the_same_on_both() {
     the_same_on_both(hatchings(), None);
 }
 
-/// Of all light models some, in light that casts shadows, with lines around them of each kind.
+/// Some of the shades, with a light that casts shadows, and with each kind of shadow lines.
 #[test]
 fn shadows_are_the_same_on_both() {
     let shadow = Some(ShadowStyle { terminator: 0.1, ..ShadowStyle::default() });
@@ -203,7 +204,7 @@ fn the_same_on_both(cases: Vec<(&'static str, Shade, Vec<StyleLight>)>, shadow: 
         let hits = PrimaryHits::kept(&scene, View::new(camera, SIZE), PLACES);
         let mut before = None;
         for (number, (name, shade, lights)) in cases.clone().into_iter().enumerate() {
-            // In a parallel view one use of normals, of half of the cases.
+            // In a parallel view, one use of normals and half of the cases.
             let all = [NormalUse::PerPixel, NormalUse::Interpolated, NormalUse::PerVertex];
             for normals in all.into_iter().filter(|&n| fov_y_rad.is_some() || n as usize + 3 == number % 6) {
                 let red = Composite::Over { color: Vec3::X, opacity: 0.5 };
@@ -222,7 +223,7 @@ fn the_same_on_both(cases: Vec<(&'static str, Shade, Vec<StyleLight>)>, shadow: 
                     None => Lines::NONE,
                     Some(_) => Lines::image(ImageInk { shadows, layout, ..ImageInk::default() }),
                 };
-                // Normals at pixels are all that this shade knows.
+                // This shade supports only normals at pixels.
                 let normals = if shade == Shade::Normals { NormalUse::PerPixel } else { normals };
                 let style = Style { shadow, ..of(shade.clone(), lights.clone(), normals, lines) };
                 let plan = planned(&scene, &style, &camera, SIZE);
@@ -241,7 +242,7 @@ fn the_same_on_both(cases: Vec<(&'static str, Shade, Vec<StyleLight>)>, shadow: 
                 let (worst, share) = (compared.worst, compared.exempt_share());
                 println!("{name}, {normals:?}: {worst} of 255, {:.2} % exempt", share * 100.0);
                 assert!(agrees(&compared, magnitude), "{name}, {normals:?}: {worst}, {share}");
-                // Under a light from far away, N·L of interpolated normals is that of the vertices, interpolated.
+                // With a distant light, N·L of interpolated normals equals interpolated N·L of the vertices.
                 let other =
                     before.replace(actual).filter(|_| normals != NormalUse::PerVertex && shade != Shade::Normals);
                 if let Some(before) = other {
@@ -270,7 +271,7 @@ fn lights_are_where_their_frame_says() {
         let lights = vec![StyleLight { light, frame }];
         lights_in_world(&lights, 1, &scene, &camera)[0].place
     };
-    // The eye is at +X: right is -Z, and back is +X. The box's half diagonal is the root of 3.
+    // The eye is at +X: right is -Z, back is +X. Half the box's diagonal is √3.
     let direction = |to_light: Vec3| LightKind::Directional { to_light };
     assert_eq!(place(Light::directional(Vec3::Z * 3.0), LightFrame::View), direction(Vec3::X));
     assert_eq!(place(Light::directional(Vec3::X), LightFrame::View), direction(Vec3::NEG_Z));
@@ -279,7 +280,7 @@ fn lights_are_where_their_frame_says() {
     assert!(position.abs_diff_eq(Vec3::new(1.0 + 3f32.sqrt(), 2.0, 3.0), 1e-6), "{position}");
     let at = Vec3::new(4.0, 5.0, 6.0);
     assert_eq!(place(Light::positional(at), LightFrame::World), LightKind::Positional { position: at });
-    // Two that cancel out leave no direction, and no error.
+    // Two lights that cancel out have no direction, which is not an error.
     let both = [Vec3::X, Vec3::NEG_X].map(|v| StyleLight { light: Light::directional(v), frame: LightFrame::World });
     let toon = of(Shade::Toon(Bands::default()), both.to_vec(), NormalUse::PerPixel, Lines::NONE);
     assert_eq!(lights_in_world(&toon.lights, 1, &scene, &camera)[0].place, direction(Vec3::ZERO));

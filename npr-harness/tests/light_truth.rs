@@ -1,4 +1,4 @@
-//! What antialiased borders and per-pixel normals are for, against supersampled truths.
+//! Accuracy of antialiased borders and per-pixel normals against supersampled references.
 #![allow(clippy::print_stdout)]
 
 mod common;
@@ -12,7 +12,7 @@ use npr_mesh::{Model, embedded};
 use npr_toon::Bands;
 use npr_toon::normal::NormalUse;
 
-/// Of the hard borders' error, and of their flicker.
+/// Relative to the hard borders' error and flicker.
 const MOST_ERROR: f64 = 0.25;
 const MOST_FLICKER: f64 = 1.0 / 3.0;
 
@@ -40,7 +40,7 @@ fn antialiased_borders_err_and_flicker_less_than_hard_ones() {
         assert!(found.pixels > 10_000 && found.rmse[0] > 0.02, "{name}: {found:?}");
         assert!(found.rmse_ratio() < MOST_ERROR, "{name}: {found:?}");
         assert!(found.excess_ratio() < MOST_FLICKER, "{name}: {found:?}");
-        // What a border's changes add up to is the same however it is drawn.
+        // The sum of a border's changes does not depend on how it is drawn.
         assert!((found.change_ratio() - 1.0).abs() < 0.05, "{name}: {found:?}");
         assert!((found.change[2] / found.change[0] - 1.0).abs() < 0.05, "{name}: {found:?}");
     }
@@ -52,18 +52,18 @@ fn borders_on_real_models() {
     let load = |file: &str| npr_mesh::load(&folder.join(file), &Default::default()).expect("it loads").into_model();
     let [found, _] = measured("spot", &load("spot.obj"), (240, 135), 1);
     assert!(found.rmse_ratio() < MOST_ERROR && found.excess_ratio() < MOST_FLICKER, "{found:?}");
-    // Where its parts run into each other one tone ends in another, and no border of bands is there to be smoothed.
+    // Where parts of the model intersect, one tone ends at another without a band border to smooth.
     let teapot = load("teapot.obj");
     let [_, found] = measured("teapot", &teapot, (240, 135), 1);
     assert!(found.rmse_ratio() < MOST_ERROR && found.excess_ratio() < MOST_FLICKER, "{found:?}");
-    // Samples smooth those, too, and what bends within a pixel.
+    // Supersampling also smooths those, and curvature within a pixel.
     for (name, model) in [("teapot", teapot), ("bunny", load("stanford-bunny.obj"))] {
         let [found, _] = measured(name, &model, (160, 90), 2);
         assert!(found.rmse_ratio() < MOST_ERROR && found.excess_ratio() < MOST_FLICKER, "{name}: {found:?}");
     }
 }
 
-/// For a table of docs/accuracy.md.
+/// Prints a table of docs/accuracy.md.
 #[test]
 #[ignore = "a table: minutes, and 3 GB of memory"]
 fn table_of_borders() {

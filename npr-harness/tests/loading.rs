@@ -1,11 +1,11 @@
-//! The flags that say what of a model is read.
+//! Tests of the flags for loading models.
 
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-/// A folder of its own, gone when dropped, with a model whose texture and material lie beside its folder.
+/// A temporary folder, deleted when dropped, with a model whose texture and material lie in a folder next to its own.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -76,7 +76,7 @@ fn limits_are_lowered_and_misspelt_ones_refused() {
         let message = String::from_utf8_lossy(&output.stderr);
         assert!(message.contains(said), "{wrong}: {message}");
     }
-    // Every name that the message lists is one.
+    // Every name that the message lists is accepted.
     let listed = String::from_utf8_lossy(&folder.inspect(&["--limit", "=1"]).stderr).into_owned();
     let names = listed.split_once("there are: ").and_then(|(_, rest)| rest.split_once(')')).expect("a list").0;
     let all: Vec<String> =
@@ -85,7 +85,7 @@ fn limits_are_lowered_and_misspelt_ones_refused() {
     json(&folder.inspect(&all.iter().map(String::as_str).collect::<Vec<_>>()));
 }
 
-/// `image` decodes WebP in this build, for pictures that are written: models have PNG and JPEG textures all the same.
+/// In this build `image` decodes WebP, for pictures that are written; models still accept only PNG and JPEG textures.
 #[test]
 fn textures_are_png_or_jpeg() {
     let folder = Folder::new("webp");

@@ -1,4 +1,4 @@
-//! Scenes of objects: meshes that transforms place, mirror, scale, shear and move.
+//! Tests of scenes with several objects: meshes placed, mirrored, scaled, sheared and moved by transforms.
 #![allow(clippy::print_stdout)]
 
 mod common;
@@ -33,7 +33,7 @@ fn colored(model: Model, color: [f32; 3]) -> Model {
     embedded::placed(model, glam::Mat4::IDENTITY, material)
 }
 
-/// An L of three cubes' width, which is not its own mirror image in any plane that does not cut it.
+/// An L three cubes wide, which is not its own mirror image in any plane that does not cut it.
 fn letter() -> Model {
     let mut letter = embedded::cube();
     let mut arm = embedded::cube();
@@ -44,7 +44,7 @@ fn letter() -> Model {
     letter
 }
 
-/// Two meshes in five objects: as it is, turned and larger, mirrored, sheared, flattened to a third.
+/// Two meshes in five objects: untransformed, rotated and enlarged, mirrored, sheared, flattened to a third.
 fn objects() -> Vec<Object> {
     let at = |matrix3: DMat3, x: f64, y: f64, z: f64| DAffine3 { matrix3, translation: DVec3::new(x, y, z) };
     let shear = DMat3::from_cols(DVec3::X, DVec3::new(0.6, 1.0, 0.2), DVec3::new(0.0, -0.3, 1.0));
@@ -74,13 +74,13 @@ fn picture(scene: &Scene, style: &Style, camera: &Camera) -> Image {
     render(scene, &planned(scene, style, camera, SIZE), &CpuOptions::default(), &|_| {}).image()
 }
 
-/// Pixels that differ by more than rounding.
+/// The number of pixels that differ by more than rounding.
 fn differing(a: &Image, b: &Image) -> usize {
     let far = |(a, b): (&[u8], &[u8])| a.iter().zip(b).any(|(a, b)| a.abs_diff(*b) > 1);
     a.rgba8.chunks(4).zip(b.rgba8.chunks(4)).filter(|pair| far(*pair)).count()
 }
 
-/// What is placed is what would be seen of the same triangles in one model: f32 rounds the positions there.
+/// Placed objects look like the same triangles in one model, where f32 rounds the positions.
 #[test]
 fn placed_meshes_look_like_one_model() {
     let scene = scene();
@@ -96,7 +96,7 @@ fn placed_meshes_look_like_one_model() {
             let (placed, flat) = (picture(&scene, &style, &camera), picture(&one, &style, &camera));
             let differing = differing(&placed, &flat);
             println!("{name}: {differing} pixels differ");
-            // At borders, where 1e-7 of a position decides.
+            // At borders, where 1e-7 of a position matters.
             assert!(differing <= 8, "{name}: {differing} pixels differ");
         }
     }
@@ -128,7 +128,7 @@ fn what_is_far_away_keeps_its_digits() {
         Object { world_from_mesh: DAffine3 { translation, ..object.world_from_mesh }, ..object }
     };
     let away = Scene::with_objects(meshes(), objects().into_iter().map(moved).collect());
-    // The origin is the middle rounded to f32, so the camera is placed anew.
+    // The origin is the centre rounded to f32, so the camera is placed again.
     let (from, to) = (near.middle(), away.middle());
     let camera = framed(&near, Some(0.6));
     let there = Camera { eye: camera.eye - from + to, target: camera.target - from + to, ..camera };
@@ -189,7 +189,7 @@ fn lines_of_an_object_are_its_own() {
 fn borders_between_materials_have_lines_where_a_style_gives_them_a_width() {
     let mut model = embedded::cube();
     model.materials.push(Material::default());
-    // The triangles of a side have one material.
+    // The triangles of a side have the same material.
     let top: Vec<usize> = (0..model.faces.len())
         .filter(|&face| model.faces[face].iter().all(|&v| model.positions[v as usize].y > 0.5))
         .collect();
@@ -199,7 +199,7 @@ fn borders_between_materials_have_lines_where_a_style_gives_them_a_width() {
     }
     let scene = Scene::new(model);
     let camera = framed(&scene, Some(0.6));
-    // No angle is a crease.
+    // No edge is a crease.
     let style = |material_border_px| Style {
         crease_angle_rad: 3.0,
         lines: npr_harness::style::Lines::edges(LineStyle {
@@ -210,7 +210,7 @@ fn borders_between_materials_have_lines_where_a_style_gives_them_a_width() {
     };
     let (without, none) = planned(&scene, &style(0.0), &camera, SIZE).lines(&scene);
     let (with, counts) = planned(&scene, &style(2.0), &camera, SIZE).lines(&scene);
-    // Of the four sides of the top two are silhouettes.
+    // Two of the four edges of the top are silhouettes.
     assert_eq!((none[3], counts[3], with.len()), (0, 2, without.len() + 2));
 }
 
@@ -238,7 +238,7 @@ fn a_transform_without_inverse() {
     let flat = DAffine3::from_scale(DVec3::new(1.0, 0.0, 1.0));
     let fault = scene.place(2, &flat);
     assert!(matches!(fault, Err(HarnessError::SingularTransform { object: 2 })));
-    // From a file it is drawn all the same, as the flat thing that it is.
+    // Loaded from a file, it is drawn as a flat object.
     let flat = Scene::with_objects(meshes(), vec![object("flat", 1, flat), object("", 0, DAffine3::IDENTITY)]);
     let (low, high) = flat.bounds().expect("faces");
     assert!(low.is_finite() && high.is_finite() && flat.meshes().len() == 3);
@@ -248,7 +248,7 @@ fn a_transform_without_inverse() {
     picture(&flat, &named("cartoon"), &camera);
 }
 
-/// A thousand of one mesh: a ray finds the nearest of them, and what is planned for them is planned once.
+/// A thousand objects of one mesh: a ray finds the nearest, and data for planning are computed once.
 #[test]
 fn a_thousand_instances() {
     let place = |i: u32| {
@@ -261,7 +261,7 @@ fn a_thousand_instances() {
     let plan = planned(&scene, &named("cartoon"), &camera, SIZE);
     let contours = &plan.edge_lines.as_ref().expect("lines").contours;
     assert!(contours.iter().all(|of_object| std::sync::Arc::ptr_eq(of_object, &contours[0])));
-    // The nearest along each of some rays by trying every object.
+    // The nearest hit along some rays, by trying every object.
     let mut hits = 0;
     for (x, y) in (0..20).flat_map(|x| (0..15).map(move |y| (x, y))) {
         let size_px = glam::DVec2::new(SIZE.0.into(), SIZE.1.into());
@@ -364,7 +364,7 @@ mod on_device {
             let plan = renderer.plan(&moving, &style, &view).expect("a good style");
             let uploaded = renderer.upload(&moving, &plan).expect("it fits");
             renderer.draw(&moving, &uploaded, &plan, &targets).expect("drawn");
-            // Turned, and so that it is mirrored where it was not.
+            // Rotated, and mirrored if it was not.
             let to = DAffine3 {
                 matrix3: turned(1.0, 0.5) * DMat3::from_diagonal(DVec3::new(1.0, -1.0, 1.0)),
                 translation: DVec3::new(-4.0, 1.0, 1.0),

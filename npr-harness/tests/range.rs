@@ -1,4 +1,4 @@
-//! Models of any size, anywhere: what is drawn is what their numbers say.
+//! Tests with models of any size and position.
 
 mod common;
 
@@ -52,7 +52,7 @@ impl Drawing<'_> {
     }
 }
 
-/// Does the same on the CPU and, where there is one, on a device.
+/// Runs the same on the CPU and, if there is one, on a GPU.
 fn on_all(test: impl Fn(&Drawing<'_>)) {
     test(&Drawing::Rays(&Executor::choose(Backend::Cpu).expect("there is a CPU")));
     #[cfg(feature = "gpu")]
@@ -61,7 +61,7 @@ fn on_all(test: impl Fn(&Drawing<'_>)) {
     }
 }
 
-/// A teapot on a floor, not around the origin.
+/// A teapot on a floor, not centred at the origin.
 fn model() -> Model {
     let mut model = embedded::teapot(4);
     model.append(&embedded::ground(3.0));
@@ -83,7 +83,7 @@ fn ink(image: &Image) -> usize {
     image.rgba8.chunks_exact(4).filter(|pixel| pixel[..3].iter().all(|&channel| channel < 90)).count()
 }
 
-/// A power of two rounds nothing, as long as no number is denormal: pictures are the same to the last bit.
+/// Scaling by a power of two rounds nothing unless a number is denormal, so pictures are identical.
 #[test]
 fn every_style_is_the_same_at_sizes_that_are_powers_of_two() {
     on_all(|executor| {
@@ -101,7 +101,8 @@ fn every_style_is_the_same_at_sizes_that_are_powers_of_two() {
     });
 }
 
-/// Any other factor rounds each coordinate to f32: at most one pixel in a thousand may differ by more than 2 of 255.
+/// Scaling by another factor rounds each coordinate to f32: at most one pixel in a thousand may differ by more than 2
+/// of 255.
 #[test]
 fn lines_and_tones_are_those_of_any_other_size() {
     on_all(|executor| {
@@ -118,7 +119,7 @@ fn lines_and_tones_are_those_of_any_other_size() {
     });
 }
 
-/// At 1e7 an f32 has no halves: a model of whole numbers is there as it is, and must look so.
+/// At 1e7 an f32 cannot represent halves. A model with integer coordinates is exact there and must look exact.
 #[test]
 fn a_small_model_far_from_the_origin() {
     let cube = || moved(embedded::cube(), |p| (p * 8.0).round());
@@ -139,7 +140,7 @@ fn a_small_model_far_from_the_origin() {
     });
 }
 
-/// Positions of lights and planes that cut are in the model's own units.
+/// Positions of lights and clipping planes are in the model's units.
 #[test]
 fn lights_and_planes_go_with_a_model() {
     let plane = DVec4::new(0.3, -1.0, 0.2, 1.1);
@@ -150,7 +151,7 @@ fn lights_and_planes_go_with_a_model() {
         style.lights = vec![StyleLight { light: Light::positional(place), frame: LightFrame::World }];
         let mut scene = Scene::new(moved(model(), |p| (p + offset) * scale));
         let offset_of_plane = (plane.w - plane.truncate().dot(offset)) * scale;
-        // The length of the normal says nothing.
+        // The length of the normal has no effect.
         scene.clip = Some(scene.plane_here((plane.truncate().extend(offset_of_plane)) * 1e200));
         picture(executor, &scene, &style, Some(0.6))
     };
@@ -164,14 +165,14 @@ fn lights_and_planes_go_with_a_model() {
             let far = shown(executor, scale, DVec3::ZERO);
             assert_eq!(differing(&plain, &far, 1), 0, "{scale:e} on {}", executor.describe());
         }
-        // 4096 away the positions are rounded to 2^-12; a picture's px is about 2^-5.
+        // At a distance of 4096, positions are rounded to 2^-12; a picture's px is about 2^-5.
         let far = shown(executor, 1.0, DVec3::new(4096.0, 0.0, -4096.0));
         let count = differing(&plain, &far, 64);
         assert!(count <= 200, "{count} px on {}", executor.describe());
     });
 }
 
-/// Of a light that is far away the direction remains. (At 1e19 a style is refused.)
+/// A very distant light keeps its direction. (At 1e19 a style is rejected.)
 #[test]
 fn lights_may_be_far_away() {
     on_all(|executor| {
@@ -206,7 +207,7 @@ fn models_without_extent_give_a_picture_of_paper() {
     });
 }
 
-/// Flat models, also edge-on, single triangles, lines without area, and one vertex far away from all others.
+/// Flat models, also edge-on, single triangles, degenerate lines, and one vertex far away from all others.
 #[test]
 fn awkward_extents_end_in_a_picture_of_finite_numbers() {
     let flat = |axis: usize| {
@@ -256,7 +257,7 @@ fn awkward_extents_end_in_a_picture_of_finite_numbers() {
                     let scene = Scene::new(model.clone());
                     let shown = picture(executor, &scene, &style, fov_y_rad);
                     assert!(scene.meshes()[0].model().positions.iter().all(|p| p.is_finite()));
-                    // All but the triangle without area, and what is a mere dot beside an outlier.
+                    // All except the triangle without area, and models that are a mere dot next to an outlier.
                     if name == "cartoon" && ![4, 7, 8].contains(&number) {
                         let first = &shown.rgba8[..4];
                         let seen = shown.rgba8.chunks_exact(4).filter(|pixel| *pixel != first).count();

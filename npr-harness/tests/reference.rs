@@ -1,4 +1,4 @@
-//! The CPU executor against what is known without it.
+//! Tests of the CPU executor against analytic results.
 #![allow(clippy::print_stdout)]
 
 use glam::{DVec2, DVec3, Vec3};
@@ -39,7 +39,7 @@ fn named(name: &str) -> Style {
     style(name).expect("a style of the crate")
 }
 
-/// Per pixel its centre, and the value there.
+/// The centre and the value of each pixel.
 fn centres<T: Copy>(values: &[T], width: u32) -> impl Iterator<Item = (DVec2, T)> + '_ {
     (0u32..).zip(values).map(move |(i, &v)| (DVec2::new(f64::from(i % width), f64::from(i / width)) + 0.5, v))
 }
@@ -50,7 +50,7 @@ fn a_sphere_is_a_circle() {
     let scene = Scene::new(embedded::sphere(segments));
     let size = (400, 400);
     for (projection, radius) in [
-        // The tangent's angle at a distance of 5: sin = 1 / 5.
+        // The angle of the tangent at a distance of 5: sin = 1 / 5.
         (PERSPECTIVE, 200.0 * (0.2f64.asin().tan()) / 0.3f64.tan()),
         (Projection::Orthographic { height: 3.0, far: 20.0 }, 400.0 / 3.0),
     ] {
@@ -98,7 +98,7 @@ fn a_planes_depth_is_linear_on_the_screen() {
             for x in 0..size.0 {
                 let linear = at(10, 20) + along_x * (f64::from(x) - 10.0) + along_y * (f64::from(y) - 20.0);
                 assert!((at(x, y) - linear).abs() < 1e-9, "({x}, {y}): {} is not {linear}", at(x, y));
-                // And it is the right plane: where the ray meets 4 y + z = -8.
+                // The depth is that of the intersection of the ray with 4 y + z = -8.
                 let centre = DVec2::new(f64::from(x), f64::from(y)) + 0.5;
                 let (origin, direction) = camera.ray(centre, DVec2::new(120.0, 80.0));
                 let depth = (-8.0 - normal.dot(origin)) / normal.dot(direction);
@@ -129,7 +129,7 @@ fn nine_of_a_cubes_twelve_edges_are_seen() {
     assert_eq!(plan.lines(&scene).0.len(), 12);
     let corner = |i: u8| DVec3::from_array([0, 1, 2].map(|axis| f64::from(i >> axis & 1) * 2.0 - 1.0));
     let on_screen = |i| outline_screen(camera.clip_from_world(1.0) * corner(i).extend(1.0), size_px).0;
-    // The eye is in front of the three faces that meet at corner 7; the edges of corner 0 have none of them.
+    // The three faces at corner 7 are front-facing; the edges of corner 0 belong to none of them.
     let edges = (0..8u8).flat_map(|a| [1, 2, 4].map(|bit| (a, a | bit))).filter(|(a, b)| a != b);
     let (hidden, seen): (Vec<_>, Vec<_>) = edges.partition(|&(a, _)| a == 0);
     let segment = |&(a, b): &(u8, u8)| [on_screen(a), on_screen(b)];
@@ -171,7 +171,7 @@ fn bands_lie_where_the_light_says() {
         // The nearer root of |origin + t direction| = 1.
         let (a, b) = (direction.length_squared(), origin.dot(direction));
         let root = b * b - a * (origin.length_squared() - 1.0);
-        // Near the rim, facets turn away from the sphere.
+        // Near the silhouette, facets deviate from the sphere.
         if root < 0.06 * a {
             continue;
         }
@@ -203,8 +203,9 @@ fn more_samples_converge() {
     assert!(rmse[0] < 0.1);
 }
 
-/// A fold too flat for a crease runs through the pixels of one column, within a thousandth of a pixel of their centres: one side of it is in the
-/// light, the other turned away. A device that rounds may find that column in any state, and lines beside it.
+/// A fold too flat for a crease runs through the pixels of one column, within a thousandth of a pixel of their centres.
+/// One side of it is lit, the other back-facing. A GPU that rounds may find any shadow state in that column, and lines
+/// next to it.
 #[test]
 fn a_fold_through_pixels_leaves_their_shadows_open_and_no_others() {
     let corners = [(-1.0, -0.2), (-1.0, -0.2), (0.0, 0.0), (0.0, 0.0), (1.0, -0.2), (1.0, -0.2)];
@@ -213,7 +214,7 @@ fn a_fold_through_pixels_leaves_their_shadows_open_and_no_others() {
     let faces = vec![[0, 2, 1], [1, 2, 3], [2, 4, 3], [3, 4, 5]];
     let normals = [Vec3::new(-0.2, 0.0, 1.0), Vec3::new(0.2, 0.0, 1.0)].map(Vec3::normalize);
     let mut model = Model { positions, faces, ..embedded::ground(1.0) };
-    // Hard: each side has its own vertices at the fold.
+    // A hard fold: each side has its own vertices.
     model.positions.extend_from_within(2..4);
     model.faces[2] = [6, 4, 7];
     model.faces[3] = [7, 4, 5];
@@ -226,11 +227,11 @@ fn a_fold_through_pixels_leaves_their_shadows_open_and_no_others() {
     let camera = camera(DVec3::Z * 5.0, Projection::Orthographic { height: 2.0, far: 20.0 });
     let mut style = named("shadow-lines");
     style.lights[0].light = npr_toon::source::Light::directional(Vec3::X);
-    // Shadows' lines are wider than objects', so that it can be told which would be where.
+    // Shadow lines are wider than those of objects, so that they can be distinguished.
     let ink = style.lines.image.as_mut().expect("a style with lines in the image");
     let dilation = Some(Disc { radius_px: 3.0, antialias: false });
     ink.shadows = ShadowLines::Separate { composite: Composite::Over { color: Vec3::X, opacity: 1.0 }, dilation };
-    // 33 columns: the fold at x = 0 is at the middle of the 17th.
+    // With 33 columns, the fold at x = 0 is in the middle of the 17th.
     let size = (33, 33);
     let plan = Plan::new(&scene, &style, &View::new(camera, size), &Capabilities::RAY_CASTER).expect("a good style");
     let hits = PrimaryHits::new(&scene, View::new(camera, size));
@@ -253,7 +254,7 @@ fn faces_without_material_have_the_default_one() {
     assert_eq!(with, without);
 }
 
-/// Where threads cannot be started, such as on wasm32-unknown-unknown, the caller's has to do.
+/// If threads cannot be started, as on wasm32-unknown-unknown, the calling thread renders.
 #[test]
 fn one_thread_is_the_callers() {
     let (scene, style, size) = (Scene::new(embedded::scene()), named("ink-image"), (40, 30));

@@ -1,4 +1,4 @@
-//! Several samples a pixel, on the device against the reference.
+//! Comparison of the GPU with the reference at several samples per pixel.
 #![cfg(feature = "gpu")]
 #![allow(clippy::print_stdout)]
 
@@ -19,15 +19,15 @@ use npr_mesh::embedded;
 
 const SIZE: (u32, u32) = (192, 108);
 
-/// One style of each way to the picture: nothing but surfaces, lines from edges, printed fins, lines in the image of the
-/// picture's size and of others and with a dilation, shadows with lines of their own and without, strokes.
+/// One style for each path through the passes: only surfaces, edge lines, printed fins, image-space lines of the
+/// picture's size, of other sizes and with dilation, shadows with and without separate lines, strokes.
 #[test]
 fn several_samples_are_the_same_on_both() {
     let Some(executor) = device() else { return };
     let scene = Scene::new(embedded::scene());
     let camera = still_life_camera();
     let hits = PrimaryHits::kept(&scene, View::new(camera, SIZE), PLACES);
-    // Lines in the image are found in one sample a pixel; what they do not cover shows how many there are.
+    // Image-space lines use one sample per pixel; the other pixels show the number of samples.
     let shown = ["toon", "cartoon", "printed-fins", "toon-shadow", "hatch", "hatch-planes", "printed-hatch"];
     let covered = ["ink-image", "ink-fine", "ink-thick", "shadow-lines", "printed-shadow"];
     for name in shown.into_iter().chain(covered) {

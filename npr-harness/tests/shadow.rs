@@ -1,4 +1,4 @@
-//! Shadows on the device against shadow rays, and their outlines against the borders of shadows.
+//! Comparison of shadows on the GPU with shadow rays, and of shadow outlines with shadow borders.
 #![cfg(feature = "gpu")]
 #![allow(clippy::print_stdout)]
 
@@ -22,7 +22,7 @@ use npr_imagespace::shadow::ShadowState;
 use npr_mesh::{Model, embedded};
 
 const SIZE: (u32, u32) = (320, 180);
-/// Px; of the tables.
+/// The picture size of the tables, px.
 const TABLE_SIZE: (u32, u32) = SIZE_OF_CHECK;
 const WITHIN_PX: f64 = 1.5;
 
@@ -42,7 +42,7 @@ fn on_device(
     states_on_device(context, scene, shot, method, volumes, size).expect("states")
 }
 
-/// All shots of a model: states by volumes against rays, and what of it all is in which state.
+/// Compares the states by volumes with rays for all shots of a model, and counts the pixels in each state.
 fn assert_masks(executor: &Executor, name: &str, model: Model) {
     let scene = Scene::new(model);
     let mut cast = 0;
@@ -91,7 +91,7 @@ fn the_device_sorts_out_what_casts_as_the_scan_does() {
     }
 }
 
-/// For a table of docs/accuracy.md.
+/// Prints a table of docs/accuracy.md.
 #[test]
 #[ignore = "a table: minutes"]
 fn table_of_masks_and_lines() {
@@ -129,7 +129,8 @@ fn table_of_masks_and_lines() {
     }
 }
 
-/// A ball in light from the side: half of it is dark by itself, and there is no line on it, nor anything to shadow.
+/// A ball lit from the side: half of it is back-facing, but there is no shadow line on it and nothing to cast a shadow
+/// on.
 #[test]
 fn a_terminator_has_no_line() {
     let scene = Scene::new(embedded::sphere(48));
@@ -156,7 +157,7 @@ fn outlines_lie_on_the_borders_of_shadows() {
         let found = line_accuracy(&picture, &borders, WITHIN_PX);
         println!("{}: {found:?}", shot.name);
         assert!(found.precision >= 0.95 && found.recall >= 0.95 && found.counts.1 > 500, "{}: {found:?}", shot.name);
-        // And must fail: borders that lie 3 px aside are not those of these lines.
+        // The comparison must fail for borders shifted by 3 px.
         let aside: Vec<DVec2> = borders.iter().map(|border| border + DVec2::new(3.0, 3.0)).collect();
         assert!(line_accuracy(&picture, &aside, WITHIN_PX).precision < 0.5, "{}", shot.name);
     }
@@ -183,7 +184,7 @@ fn states_that_differ_are_told() {
     assert!((loose.loose - one).abs() < 1e-12 && loose.acne == 0.0, "{loose:?}");
 }
 
-/// For a table of docs/accuracy.md: what a map of so many texels gets wrong, on pictures of 640 × 360 px.
+/// Prints a table of docs/accuracy.md: the errors of shadow maps by their size, for pictures of 640 × 360 px.
 #[test]
 #[ignore = "a table: a minute"]
 fn table_of_maps() {
@@ -219,7 +220,7 @@ fn table_of_maps() {
     }
 }
 
-/// A frame in which no light casts is made of the same passes as if there were no shadows in this crate.
+/// A frame without shadows has the same passes as if this crate did not support shadows.
 #[test]
 fn where_no_light_casts_no_pass_is_planned_for_shadows() {
     let scene = Scene::new(embedded::scene());

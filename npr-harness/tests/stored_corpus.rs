@@ -1,7 +1,7 @@
-//! What the fuzz targets do, with the stored corpus and with random changes of it, on a stable compiler.
+//! Runs the fuzz targets' code on the stored corpus and on random changes of it, with a stable compiler.
 //!
-//! `NPR_FUZZ_SECONDS` says for how long changed files are tried, for all four kinds together (2 by default); the changes
-//! are the same each time. `fuzz/README.md` tells of the targets themselves.
+//! `NPR_FUZZ_SECONDS` is the time for changed files, for all four kinds together (2 by default); the changes are the
+//! same in each run. `fuzz/README.md` describes the targets.
 
 #[path = "../../fuzz/src/lib.rs"]
 mod entries;
@@ -15,7 +15,7 @@ type Entry = fn(&[u8]);
 const TARGETS: [(&str, Entry); 4] =
     [("obj", entries::obj), ("gltf", entries::gltf), ("style", entries::style), ("tam", entries::tam)];
 
-/// Longer ones belong into no corpus.
+/// The largest file allowed in the corpus, bytes.
 const MOST_BYTES: usize = 8192;
 
 fn corpus(target: &str) -> Vec<(PathBuf, Vec<u8>)> {
@@ -64,7 +64,7 @@ fn stored_tonal_art_maps() {
     store("tam");
 }
 
-/// Each kind has its share of the time; where one panics, the file stays in the temporary folder and is named.
+/// The kinds share the time equally. If one panics, the file remains in the temporary folder and is named.
 #[test]
 fn changed_files_of_every_kind() {
     let seconds = std::env::var("NPR_FUZZ_SECONDS").map_or(2.0, |text| text.parse().expect("a number of seconds"));
@@ -104,7 +104,7 @@ impl Random {
     }
 }
 
-/// One of the files with one change to eight.
+/// One of the files with one to eight changes.
 fn changed(files: &[Vec<u8>], random: &mut Random) -> Vec<u8> {
     const NUMBERS: [&[u8]; 12] = [
         b"0",
@@ -136,7 +136,7 @@ fn changed(files: &[Vec<u8>], random: &mut Random) -> Vec<u8> {
                 bytes.splice(at..at, other[from..to].iter().copied());
             }
             4 => bytes.truncate(at),
-            // A number of the text becomes another.
+            // Replaces a number in the text by another.
             5 => {
                 let is_of_number = |byte: &u8| byte.is_ascii_digit() || b"+-.".contains(byte);
                 if let Some(from) = bytes[at..].iter().position(is_of_number).map(|offset| at + offset) {
@@ -145,7 +145,7 @@ fn changed(files: &[Vec<u8>], random: &mut Random) -> Vec<u8> {
                     bytes.splice(from..to, NUMBERS[random.below(NUMBERS.len())].iter().copied());
                 }
             }
-            // Four bytes become a number that is seldom met.
+            // Replaces four bytes by an unusual number.
             6 if at + 4 <= bytes.len() => {
                 bytes[at..at + 4].copy_from_slice(&WORDS[random.below(WORDS.len())].to_le_bytes());
             }

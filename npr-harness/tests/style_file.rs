@@ -1,4 +1,4 @@
-//! Styles as TOML.
+//! Tests of style files.
 
 mod common;
 
@@ -79,7 +79,7 @@ fn what_is_left_out_has_its_default() {
     assert_eq!(style.paper, Vec3::new(1.0, 128.0 / 255.0, 0.0));
 }
 
-/// Each at its own place in the tree, so that no struct forgets to refuse.
+/// One unknown key in each table, so that every struct is checked.
 #[test]
 fn an_unknown_key_is_named() {
     let base = [
@@ -117,7 +117,7 @@ fn an_unknown_key_is_named() {
         assert!(said.starts_with(&format!("some/mine.toml:{line}:1: ")), "{said}");
         assert_eq!(said.lines().count(), 1, "{said}");
     }
-    // And an unknown kind.
+    // An unknown kind.
     for text in [
         "[shade.tune]\n",
         "[shadow]\nmethod = \"rays\"\n",
@@ -128,7 +128,7 @@ fn an_unknown_key_is_named() {
     }
 }
 
-/// In tables of every kind: wherever a name is known that is nearly the same, it is proposed.
+/// In tables of every kind, a similar known name is suggested.
 #[test]
 fn a_misspelt_key_gets_a_proposal() {
     for (text, said) in [
@@ -300,7 +300,7 @@ fn a_map_comes_from_a_file_or_a_picture_of_a_stroke() {
     let Shade::Hatch(hatch) = &style.shade else { panic!("no strokes") };
     assert_eq!(hatch.map.tam().expect("a map"), &drawing.tam);
     assert_eq!(hatch.map.thresholds().expect("a map"), Some(&thresholds));
-    // Written, it is found from anywhere.
+    // In a written style the path is absolute.
     let text = style.to_toml().expect("a form");
     assert_eq!(Style::from_toml(&text, Path::new("/else/where.toml")).expect("a style"), style);
     let said = read("[shade.hatch.map]\nfile = \"tones.tam\"\n").expect_err("no thresholds").to_string();
@@ -325,7 +325,7 @@ fn a_map_comes_from_a_file_or_a_picture_of_a_stroke() {
     assert!(said.contains("has no ink"), "{said}");
 }
 
-/// The first and the one after the lines were found by changing stored files at random.
+/// The first file and the one after the lines were found by fuzzing stored files.
 #[test]
 fn numbers_that_no_picture_survives_are_refused() {
     let changed = |style: &str, what: &str| {
@@ -373,7 +373,7 @@ fn files_that_are_no_styles_end_in_an_error() {
     assert!(read("deep.toml", &deep).contains("deep.toml:1:"));
     let nested = [b"a".as_slice(), &b".a".repeat(1 << 18), b" = 1"].concat();
     assert!(read("nested.toml", &nested).contains("nested.toml:1:"));
-    // What a style names is a regular file, too.
+    // A file that a style refers to must be a regular file, too.
     for (form, file) in [("shade.ramp.image", "from = 0\nto = 1\n"), ("shade.hatch.map", "")] {
         for device in ["/dev/zero", "/dev/tty", "."] {
             let said = read("named.toml", format!("[{form}]\nfile = {device:?}\n{file}").as_bytes());
@@ -387,7 +387,7 @@ fn files_that_are_no_styles_end_in_an_error() {
 #[test]
 fn pictures_of_too_many_pixels_are_not_decoded() {
     let folder = Folder::new();
-    // A header alone: 65,535 by 65,535 of RGBA. Decoding would begin with 16 GiB.
+    // A header without data for 65,535 × 65,535 px of RGBA, for which decoding would allocate 16 GiB.
     let mut header = b"IHDR\0\0\xff\xff\0\0\xff\xff\x08\x06\0\0\0".to_vec();
     let sum = header.iter().fold(!0u32, |sum, &byte| {
         (0..8).fold(sum ^ u32::from(byte), |sum, _| if sum & 1 == 1 { sum >> 1 ^ 0xedb8_8320 } else { sum >> 1 })
@@ -409,6 +409,6 @@ fn an_empty_table_of_kinds_is_named_in_words() {
     let text = "paper = \"#ffffff\"\n\n[shade]\n";
     let said = Style::from_toml(text, Path::new("s.toml")).expect_err("no kind").to_string();
     assert!(said.starts_with("s.toml:") && said.contains("the table is empty"), "{said}");
-    // Of lines there may be any kinds, and none.
+    // Any combination of kinds of lines is valid, including none.
     assert_eq!(Style::from_toml("[lines]\n", Path::new("s.toml")).expect("a style").lines, Lines::NONE);
 }

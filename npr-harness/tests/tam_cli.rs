@@ -1,4 +1,4 @@
-//! `npr tam`, as it is run.
+//! Tests of `npr tam` as a process.
 
 mod common;
 
@@ -12,7 +12,7 @@ fn tam(arguments: &[&str], folder: &Path) -> Output {
     command.expect("the command can be run")
 }
 
-/// What succeeds prints.
+/// The standard output of a successful command.
 fn printed(arguments: &[&str], folder: &Path) -> String {
     let output = tam(arguments, folder);
     assert!(output.status.success(), "{arguments:?}: {}", text(&output.stderr));
@@ -28,7 +28,7 @@ fn gray(path: &Path) -> image::GrayImage {
     image::open(path).expect("a PNG").to_luma8()
 }
 
-/// The file that drawing in memory gives.
+/// The map file that drawing in memory produces.
 fn drawn(parameters: &TamParameters, stroke: Option<&StrokeImage>) -> Vec<u8> {
     let drawing = draw(parameters, stroke).expect("good parameters");
     let thresholds = Thresholds::new(&drawing, parameters, stroke);
@@ -63,11 +63,11 @@ fn a_folder_holds_the_default_map() {
     let thresholds = image::open(at("thresholds.png")).expect("a PNG");
     assert!(matches!(thresholds, image::DynamicImage::ImageLuma16(_)));
     assert!(Some(thresholds.to_luma16().as_raw()) == stored.thresholds.as_ref().map(|t| &t.levels[0]));
-    // Tones beside each other: the darkest one's corner is where it should be.
+    // The tones are side by side; the corner of the darkest is at its expected position.
     let sheet = gray(&at("sheet.png"));
     assert_eq!(sheet.dimensions(), (6 * 264 + 8, 256 + 128 + 64 + 32 + 5 * 8));
     assert_eq!(sheet.get_pixel(8 + 5 * 264 + 3, 8 + 4).0[0], stored.tam.image(5, 0)[4 * 256 + 3]);
-    // White on the left, black on the right, all tones between.
+    // White on the left, black on the right, with all tones between.
     let ramp = gray(&at("ramp.png"));
     assert_eq!(ramp.dimensions(), (1024, 256));
     for (x, column) in (0..4).map(|i| (i * 256, 1.0 - (f64::from(i) + 0.5) / 4.0)) {
@@ -82,7 +82,7 @@ fn a_folder_holds_the_default_map() {
 #[test]
 fn every_parameter_arrives() {
     let folder = Folder::new();
-    // Grainy, and hardly lighter where it is, as one texel must become as dark as the darkest tone.
+    // A grainy stroke, only slightly lighter in places, because single texels must become as dark as the darkest tone.
     let grain = |x, y| image::Luma([if (x / 5 + y / 4) % 3 == 0 { 40 } else { 0 }]);
     image::GrayImage::from_fn(40, 16, grain).save(folder.join("stroke.png")).expect("written");
     let stroke = StrokeImage::load(folder.join("stroke.png")).expect("a picture");
@@ -168,7 +168,7 @@ fn a_map_is_unpacked_as_it_was_drawn() {
         let [a, b] = ["a", "b"].map(|out| std::fs::read(folder.join(out).join(&name)).expect("there"));
         assert!(a == b, "{name}");
     }
-    // Without thresholds there is less, and that is said.
+    // Without thresholds fewer files are written, which is reported.
     let stored = store::from_bytes(&std::fs::read(folder.join("a/map.tam")).expect("there")).expect("a map");
     std::fs::write(folder.join("bare.tam"), store::to_bytes(&stored.tam, None).expect("good")).expect("written");
     assert!(printed(&["bare.tam", "-o", "c"], &folder.0).contains("no thresholds"));
@@ -225,7 +225,7 @@ fn what_is_wrong_is_said_in_one_line() {
         assert!(said.contains(named), "{arguments:?}: {said}");
         assert!(done.stdout.is_empty() && !folder.join("out").exists(), "{arguments:?}");
     }
-    // What cannot be an argument at all.
+    // Invalid arguments.
     let arguments: [&[&str]; 8] = [
         &[],
         &["-o", "out", "--tones", "3", "--tone-values", "0.5"],
@@ -253,7 +253,7 @@ fn what_cannot_be_written_is_said() {
     assert!(said.starts_with("npr: output file/out: ") && !said.contains("incomplete"), "{said}");
     let said = text(&tam(&[&arguments[..], &["file"]].concat(), &folder.0).stderr);
     assert_eq!(said, "npr: output file: not a directory\n");
-    // In the midst of it a folder is where a file is to be.
+    // Writing fails midway because a folder has the name of an output file.
     std::fs::create_dir_all(folder.join("out/tone_2_4.png")).expect("made");
     let done = tam(&[&arguments[..], &["out"]].concat(), &folder.0);
     assert_eq!(done.status.code(), Some(1));

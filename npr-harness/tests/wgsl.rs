@@ -1,4 +1,4 @@
-//! The shaders validate, and the toon functions on a device are those of the CPU.
+//! Tests that the shaders validate, and that the toon functions on the GPU equal those on the CPU.
 #![cfg(feature = "gpu")]
 #![allow(clippy::print_stdout)]
 
@@ -35,7 +35,7 @@ fn the_surface_shaders_validate() {
         }
         let hatches = matches!(style.shade, Shade::Hatch(_));
         assert_eq!(entries.contains(&"fs_hatched"), hatches, "{}", style.name);
-        // It has no names of its own in the libraries' spaces, and all of a library or nothing of it.
+        // The shader defines no names with the libraries' prefixes, and contains each library entirely or not at all.
         for (library, prefix) in [(npr_toon::WGSL, "toon_"), (npr_gooch::WGSL, "gooch_")] {
             let library = naga::front::wgsl::parse_str(library).expect("the library parses");
             let prefixed =
@@ -46,7 +46,7 @@ fn the_surface_shaders_validate() {
     }
 }
 
-/// How many inputs.
+/// The number of inputs.
 const COUNT: usize = 1 << 14;
 
 const COMPUTE_WGSL: &str = "
@@ -62,7 +62,7 @@ fn shade(@builtin(global_invocation_id) id: vec3<u32>) {
     let n_dot_l = toon_n_dot_l(in.normal.xyz, in.to_light.xyz);
     let n_dot_h = toon_n_dot_h(in.normal.xyz, in.to_light.xyz, in.to_eye.xyz);
     let width = toon_width(in.normal.w, in.to_light.w);
-    // Of numbers that both sides have exactly.
+    // Functions of numbers that are exact on both sides.
     let smoothed = toon_shade(bands, in.base.rgb, in.to_eye.w, in.normal.w, in.base.w, in.to_light.w);
     let hard = toon_band(bands, n_dot_l, 0.0);
     outputs[id.x] = Output(
@@ -72,7 +72,7 @@ fn shade(@builtin(global_invocation_id) id: vec3<u32>) {
     );
 }";
 
-/// Numbers in 0..1 from a seed (SplitMix64).
+/// Pseudorandom numbers in 0..1 (SplitMix64).
 struct Random(u64);
 
 impl Random {
@@ -88,7 +88,7 @@ impl Random {
         low + (high - low) * self.next()
     }
 
-    /// Of any length from 0.05 to 20.
+    /// A vector of length 0.05 to 20.
     fn vector(&mut self) -> Vec3 {
         let v = Vec3::from_array(std::array::from_fn(|_| self.between(-1.0, 1.0)));
         if !(0.1..=1.0).contains(&v.length()) {
@@ -104,7 +104,8 @@ fn random_inputs() -> Vec<[f32; 16]> {
     (0..COUNT)
         .map(|i| {
             let [normal, light, eye] = std::array::from_fn(|_| random.vector());
-            // A border's rounding is that of N·L over the width: below a hundredth it would be all one sees.
+            // The rounding error at a border is that of N·L divided by the width; below a width of 0.01 it would
+            // dominate.
             let widths = if i % 8 == 0 { [0.0; 2] } else { [random.between(0.01, 0.5), random.between(0.01, 0.5)] };
             let base = Vec3::from_array(std::array::from_fn(|_| random.next()));
             let rows = [

@@ -1,4 +1,4 @@
-//! Frames of several styles in turn, each timed against the first.
+//! Renders frames of several styles in turn, each timed relative to the first.
 
 use npr_harness::camera::{Camera, Framing};
 use npr_harness::gpu::{GpuContext, GpuRenderer};
@@ -28,8 +28,8 @@ pub fn bunny(change: impl Fn(&mut Model)) -> (Scene, Camera) {
     (scene, camera)
 }
 
-/// What is timed: its name, its style, and samples along each axis of a pixel. Methods are those that the plan takes for
-/// the adapter, after `change`.
+/// A timed case: its name, its style, and samples along each axis of a pixel. The methods are those that the plan
+/// selects for the adapter's capabilities after `change`.
 pub struct Case<'a> {
     pub name: &'a str,
     pub style: Style,
@@ -38,7 +38,7 @@ pub struct Case<'a> {
 }
 
 impl<'a> Case<'a> {
-    /// One sample a pixel, and the plan's own methods.
+    /// A case with one sample per pixel and the plan's default methods.
     pub fn new(name: &'a str, style: Style) -> Self {
         Self { name, style, samples: 1, change: |_| {} }
     }
@@ -64,7 +64,7 @@ pub fn compare(context: &GpuContext, scene: &Scene, camera: &Camera, cases: &[Ca
             let start = Instant::now();
             renderer.draw(scene, uploaded, plan, targets).expect("the frame is drawn");
             context.wait().expect("the frame is drawn");
-            // The first round makes the pipelines.
+            // The first round creates the pipelines.
             if round > 0 {
                 times.push(start.elapsed().as_secs_f64() * 1e3);
             }

@@ -74,11 +74,11 @@ impl<'a> Reference<'a> {
         Ok(reference)
     }
 
-    /// Renders 64 more pictures with smaller shifts in more directions: a sliver thinner than 1/100 px passes between
-    /// the eight samples, but a rasteriser, which rounds corners to a grid of 1/256 px, may hit it. One more render
-    /// ends faces [`ROUNDED_PX`] before their boundaries: no shifted sample falls between two adjacent faces that are
-    /// not connected, but a sample on a GPU may. For shadows and image-space lines, 16 more renders find what changes
-    /// where an edge passes as close to a pixel's centre.
+    /// Renders 64 more pictures, with shifts below [`SHIFT_PX`] too and in more directions: a sliver thinner than 1/100
+    /// px passes between the eight samples, but a rasteriser, which rounds corners to a grid of 1/256 px, may hit it.
+    /// One more render ends faces [`ROUNDED_PX`] before their boundaries: no shifted sample falls between two adjacent
+    /// faces that are not connected, but a sample on a GPU may. For shadows and image-space lines, 16 more renders find
+    /// what changes where an edge passes as close to a pixel's centre.
     ///
     /// # Errors
     /// None in practice: all pictures have the same size.

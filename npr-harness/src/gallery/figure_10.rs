@@ -1,4 +1,4 @@
-//! Figure 10 of Card & Mitchell 2002: how shadow outlines come about, in four panels.
+//! Figure 10 of Card & Mitchell 2002: the construction of shadow outlines in four panels.
 
 use crate::camera::Camera;
 use crate::error::HarnessError;
@@ -13,12 +13,12 @@ use crate::style::{Lines, Style, style};
 use crate::view::View;
 use npr_toon::normal::NormalUse;
 
-/// The panels, from the upper left: hatching with objects' outlines alone; the world-space normals that are filtered,
-/// negated in shadow; hatching with shadows, objects' and shadows' outlines; the same over the surfaces' own colours,
-/// weights at pixels.
+/// The panels, from the upper left: hatching with outlines of objects only; the world-space normals that are filtered,
+/// negated in shadow; hatching with shadows, and with outlines of objects and shadows; the same over the surfaces'
+/// colours, with weights at pixels.
 ///
-/// Two things are not as printed: shadows' outlines come from states, not from the negated normals, and strokes follow the
-/// form.
+/// Two differences from the printed figure: shadow outlines come from shadow states, not from negated normals, and
+/// strokes follow the surface.
 pub(crate) fn figure_10_styles() -> [Style; 4] {
     let shadowed = style("hatch-shadow").expect("a style of this crate");
     let Shade::Hatch(hatching) = &shadowed.shade else { panic!("`hatch-shadow` hatches") };
@@ -36,8 +36,8 @@ pub(crate) fn figure_10_styles() -> [Style; 4] {
     ]
 }
 
-/// The four panels in one picture, each of half its width and height; why the CPU made one of them, where a device could
-/// not.
+/// Renders the four panels into one picture, each at half its width and height, and returns the reason if the CPU
+/// rendered one of them because the GPU could not.
 ///
 /// # Errors
 /// [`HarnessError`].

@@ -1,4 +1,4 @@
-//! A scene whose inner lines are an artist's: each material takes them from somewhere else.
+//! A scene with artist-controlled inner lines: each material has a different source for them.
 
 use crate::camera::{Camera, Projection};
 use crate::scene::Scene;
@@ -6,8 +6,8 @@ use glam::{DVec3, Mat4, Vec2, Vec3, Vec4};
 use npr_imagespace::artist::{LineKind, artist_color};
 use npr_mesh::{Material, Model, Texture, Wrap, embedded};
 
-/// A ball with seams (vertex colours), a tower of bricks (texture), a die (the texture's regions), a cube that keeps its
-/// creases (normals) and one that has none.
+/// A ball with seams (vertex colours), a brick tower (texture), a die (regions from a texture), a cube with creases
+/// (normals) and one without.
 pub fn painted_scene() -> Scene {
     let mut model = Model::default();
     let at = |x: f32, y: f32, z: f32| Mat4::from_translation(Vec3::new(x, y, z));
@@ -20,7 +20,7 @@ pub fn painted_scene() -> Scene {
         ..Material::default()
     };
     let mut add = |part: Model, transform: Mat4, material: Material| {
-        // `placed` would put the texture's number, which is the scene's, past the part's own.
+        // `placed` would offset the texture's index, which already is that in the scene.
         let texture = material.texture;
         model.append(&embedded::placed(part, transform, Material { texture: None, ..material }));
         if let Some(last) = model.materials.last_mut() {
@@ -53,7 +53,7 @@ pub fn painted_scene() -> Scene {
     scene
 }
 
-/// The view for which it is composed.
+/// The camera for which the scene is composed.
 pub fn painted_camera() -> Camera {
     Camera {
         eye: DVec3::new(1.5, 4.6, 11.0),
@@ -64,7 +64,7 @@ pub fn painted_camera() -> Camera {
     }
 }
 
-/// A sphere in eight sectors and two caps. Each face has vertices of its own, so that colours end where it does.
+/// A sphere with eight sectors and two caps. Faces share no vertices, so that colours end at their borders.
 fn ball() -> Model {
     let round = embedded::sphere(96);
     let mut ball =
@@ -83,23 +83,23 @@ fn ball() -> Model {
     ball
 }
 
-/// Display-referred to linear, opaque.
+/// Converts a display-referred colour to a linear opaque one.
 fn linear(color: Vec3) -> Vec4 {
     let decode = |c: f32| crate::color::decode_srgb(f64::from(c)) as f32;
     Vec4::new(decode(color.x), decode(color.y), decode(color.z), 1.0)
 }
 
-/// A cylinder around which a texture goes twice.
+/// A cylinder with a texture that repeats twice around it.
 fn tower() -> Model {
     let mut tower = embedded::cylinder(96);
     let around = |p: Vec3| p.z.atan2(p.x) / std::f32::consts::TAU;
-    // The lids are a brick of the second row, all of them.
+    // The lids are mapped to a single brick of the second row.
     let lid = Vec2::new(0.05, 0.19);
     let is_lid = |normal: Vec3| normal.y.abs() > 0.5;
     let side = |p: Vec3| Vec2::new(2.0 * around(p), 0.5 - 0.5 * p.y);
     let uv = |(&p, &n): (&Vec3, &Vec3)| if is_lid(n) { lid } else { side(p) };
     tower.uvs = tower.positions.iter().zip(&tower.normals).map(uv).collect();
-    // Faces over the seam, where the angle jumps, get vertices of their own.
+    // Faces across the seam, where the angle wraps around, get separate vertices.
     for face in &mut tower.faces {
         if is_lid(tower.normals[face[0] as usize]) {
             continue;
@@ -128,7 +128,7 @@ fn die() -> Model {
     die
 }
 
-/// Red and alpha pick one of four directions: no two bricks that touch have the same.
+/// Red and alpha select one of four directions; adjacent bricks have different ones.
 fn bricks() -> Texture {
     const SIZE: u32 = 256;
     let texel = |x: u32, y: u32| {
@@ -141,7 +141,7 @@ fn bricks() -> Texture {
     Texture { name: "bricks".into(), width: SIZE, height: SIZE, rgba8, wrap: [Wrap::Repeat, Wrap::Clamp], smooth: true }
 }
 
-/// Five pips: a region each with its colour.
+/// Five pips, each a region with its own colour.
 fn pips() -> Texture {
     const SIZE: u32 = 128;
     let centers = [(0.26, 0.26), (0.74, 0.26), (0.5, 0.5), (0.26, 0.74), (0.74, 0.74)];

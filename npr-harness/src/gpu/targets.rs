@@ -1,4 +1,4 @@
-//! What a frame is drawn into.
+//! The render targets of a frame.
 
 use super::context::GpuContext;
 use crate::error::HarnessError;
@@ -14,20 +14,20 @@ use npr_imagespace::pass::fused::texel_format;
 use npr_outline::line_pass::COVERAGE_FORMAT;
 use std::cell::{Cell, Ref, RefCell};
 
-/// Display-referred values, so no encoding on store.
+/// Without sRGB encoding on store, because values are display-referred.
 pub(crate) const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
-/// Reversed.
+/// Depth is reversed: 1 at the near plane.
 pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
-/// Colour, depth, and what lines need.
+/// The colour, depth and line targets of a frame.
 pub struct Targets {
-    /// Px.
+    /// The width, px.
     pub width: u32,
-    /// Px.
+    /// The height, px.
     pub height: u32,
     /// Samples along each axis of a pixel.
     pub samples: u32,
-    /// Of several samples: where the picture is drawn as many times as large, before it is averaged here.
+    /// With several samples per pixel: the targets of the sample grid, which are resolved into these.
     fine: Option<Box<Targets>>,
     color: wgpu::Texture,
     pub(crate) color_view: wgpu::TextureView,
@@ -36,29 +36,29 @@ pub struct Targets {
     inked: wgpu::Texture,
     pub(crate) inked_view: wgpu::TextureView,
     pub(crate) coverage_view: wgpu::TextureView,
-    /// Made when first needed, and anew for a style that needs others.
+    /// Created on first use, and recreated for a style that needs others.
     ink: RefCell<Option<InkTargets>>,
-    /// Where shadow volumes are counted.
+    /// The stencil in which shadow volumes are counted.
     pub(crate) stencil: StencilTarget,
-    /// Which of the two the last frame ended in.
+    /// Whether the last frame is in `inked` instead of `color`.
     is_inked: Cell<bool>,
 }
 
-/// What lines in the image are found in.
+/// The targets for image-space lines.
 pub(crate) struct InkTargets {
-    /// For which layout and size, whether for a dilation, and whether with surfaces of its own.
+    /// Their layout, size, whether they include dilation, and whether the ink has its own geometry pass.
     kind: InkKind,
     pub(crate) size: (u32, u32),
     pub(crate) texels: wgpu::TextureView,
-    /// Where the ink has another size than what the picture is drawn into, and its surfaces are drawn for it.
+    /// The depth buffer of the ink's own geometry pass, if it has one.
     pub(crate) depth: Option<wgpu::TextureView>,
-    /// Where shadow volumes are counted for these.
+    /// The stencil in which shadow volumes are counted for that pass.
     pub(crate) stencil: StencilTarget,
-    /// Ink as it is found, where it is not composited at once.
+    /// The ink before dilation, if it is not composited directly.
     pub(crate) found: Option<wgpu::TextureView>,
-    /// Where there is a dilation.
+    /// The scratch textures of the dilation, if any.
     pub(crate) dilation: Option<DiscScratch>,
-    /// Dilated ink, where it is not composited at once.
+    /// The dilated ink, if it is not composited directly.
     pub(crate) thick: Option<wgpu::TextureView>,
 }
 
@@ -83,7 +83,7 @@ impl InkTargets {
     }
 }
 
-/// What the targets of ink are made for.
+/// The properties for which ink targets are created.
 type InkKind = (TexelLayout, (u32, u32), bool, bool);
 
 fn ink_kind(image: &ImagePlan) -> InkKind {
@@ -144,7 +144,7 @@ impl Targets {
         })
     }
 
-    /// What lines in the image need.
+    /// The targets for image-space lines, created if necessary.
     ///
     /// # Errors
     /// [`HarnessError::TextureTooLarge`].
@@ -156,12 +156,12 @@ impl Targets {
         Ok(Ref::map(self.ink.borrow(), |targets| targets.as_ref().expect("it was just made")))
     }
 
-    /// What surfaces, and lines from edges, are drawn into.
+    /// The targets into which surfaces and edge lines are drawn.
     pub(crate) fn canvas(&self) -> &Self {
         self.fine.as_deref().unwrap_or(self)
     }
 
-    /// Says that the frame ends in the painted picture.
+    /// Marks the painted picture as the result of the frame.
     pub(crate) fn begin(&self) {
         self.is_inked.set(false);
         if let Some(fine) = &self.fine {
@@ -169,18 +169,18 @@ impl Targets {
         }
     }
 
-    /// What the frame ends in.
+    /// The view that holds the result of the frame.
     pub(crate) fn drawn(&self) -> &wgpu::TextureView {
         if self.is_inked.get() { &self.inked_view } else { &self.color_view }
     }
 
-    /// Copies the painted picture to where lines are drawn on it, and says that the frame ends there.
+    /// Copies the painted picture to the target of lines, and marks that target as the result of the frame.
     pub(crate) fn begin_ink(&self, encoder: &mut wgpu::CommandEncoder) {
         encoder.copy_texture_to_texture(self.color.as_image_copy(), self.inked.as_image_copy(), self.color.size());
         self.is_inked.set(true);
     }
 
-    /// Takes the picture with the lines so far as the painted one, for lines that are drawn over these.
+    /// Copies the picture with its lines back to the painted one, so that further lines can be drawn over it.
     pub(crate) fn continue_ink(&self, encoder: &mut wgpu::CommandEncoder) {
         encoder.copy_texture_to_texture(self.inked.as_image_copy(), self.color.as_image_copy(), self.color.size());
     }
@@ -190,7 +190,7 @@ impl Targets {
         Ok(Image::new(self.width, self.height, rgba8).expect("four bytes a pixel"))
     }
 
-    /// Normal, region and depth of the last frame's pixels, packed; of one word the second is 0.
+    /// The packed normal, region and depth of the last frame's pixels; with 32 bits the second word is 0.
     pub(crate) fn read_texels(&self, context: &GpuContext) -> Result<Option<Vec<[u32; 2]>>, HarnessError> {
         let ink = self.ink.borrow();
         let Some(ink) = ink.as_ref() else { return Ok(None) };
@@ -202,7 +202,7 @@ impl Targets {
     }
 }
 
-/// A texture's texels, rows from the top.
+/// Reads back the texels of a texture, in rows from the top.
 fn read_texture(context: &GpuContext, texture: &wgpu::Texture) -> Result<Vec<u8>, HarnessError> {
     let bytes = texture.format().block_copy_size(None).expect("a colour format");
     let row = bytes * texture.width();

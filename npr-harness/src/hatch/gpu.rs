@@ -102,7 +102,7 @@ pub(crate) struct HatchTextures {
     pub(crate) dark: wgpu::TextureView,
     pub(crate) sampler: wgpu::Sampler,
     pub(crate) thresholds: wgpu::TextureView,
-    /// A placeholder vertex buffer for surfaces that are not hatched.
+    /// A placeholder uniform, bound for surfaces that are not hatched.
     pub(crate) blank: wgpu::Buffer,
 }
 

@@ -29,12 +29,12 @@ fn a_cube_has_twelve_creases() {
     assert_eq!((counted.closed, counted.wound_oppositely), (true, 0));
     assert_eq!((counted.extent, counted.min, counted.max), ([1.0, 2.0, 3.0], [0.0; 3], [1.0, 2.0, 3.0]));
     assert_eq!((counted.materials, counted.textures, counted.warnings.len()), (1, 0, 1));
-    // As polygons: no diagonals.
+    // As polygons, the cube has no diagonals.
     cube.face_polygon = (0..12).map(|face| face / 2).collect();
     let counted = inspect("cube", &cube, Vec::new());
     assert_eq!((counted.edges, counted.two_face_edges, counted.polygons), (12, 12, 6));
     assert_eq!((counted.creases_over_30_deg, counted.faces), (12, 12));
-    // One face turned round is still the same surface.
+    // Flipping one face does not change the surface.
     cube.face_polygon.clear();
     cube.faces[0].swap(0, 1);
     let counted = inspect("cube", &cube, Vec::new());
@@ -45,7 +45,8 @@ fn a_cube_has_twelve_creases() {
 fn faults_are_counted() {
     let mut faulty = cube();
     faulty.positions.extend([Vec3::ZERO, Vec3::new(0.5, 0.0, 0.0), Vec3::new(9.0, 9.0, 9.0)]);
-    // Over the first face (with vertex 8 at vertex 0's place), once turned; on a line; collapsed, twice.
+    // Two duplicates of the first face (with vertex 8 at the position of vertex 0), one flipped; a collinear face; a
+    // collapsed face twice.
     faulty.faces.extend([[4, 6, 8], [6, 4, 0], [0, 9, 1], [0, 8, 5], [0, 8, 5]]);
     faulty.face_material = vec![0; faulty.faces.len()];
     let counted = inspect("faulty", &faulty, Vec::new());
@@ -53,14 +54,14 @@ fn faults_are_counted() {
     assert_eq!((counted.vertices, counted.positions), (11, 10));
     assert!(!counted.closed && counted.nonmanifold_edges > 0);
     assert_eq!(counted.edges, counted.boundary_edges + counted.two_face_edges + counted.nonmanifold_edges);
-    // A vertex that no face uses is not in the box.
+    // Unused vertices are not in the bounding box.
     assert_eq!(counted.max, [1.0, 2.0, 3.0]);
 }
 
 #[test]
 fn polygons_are_duplicates_as_a_whole() {
     let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0], [0.4, 0.4, 1.0]];
-    // Two quads that share the triangle 0 2 1 as they are cut, then the first quad again, cut otherwise.
+    // Two quads whose triangulations share the triangle 0 2 1, then the first quad again with another triangulation.
     let mut quads = model(&corners, &[[0, 1, 2], [0, 2, 3], [0, 2, 1], [0, 4, 2], [1, 2, 3], [1, 3, 0]]);
     assert_eq!(inspect("", &quads, Vec::new()).duplicate_faces, 1);
     quads.face_polygon = vec![0, 0, 1, 1, 2, 2];

@@ -7,10 +7,10 @@
 //!
 //! # Definition of flicker
 //!
-//! While a border moves over a pixel, the pixel's tone goes from one to the other, all at once or little by little: what
-//! its changes add up to is the same, and so is their mean, for any border that does not turn back. What the eye
-//! takes for flicker is change where there should be less or more: the mean of |change − true change|
-//! ([`BandAccuracy::excess`]). The mean of the changes themselves is [`BandAccuracy::change`].
+//! While a border moves over a pixel, the pixel's tone changes from one tone to another, at once or gradually. For any
+//! border that does not reverse, the sum and the mean of these changes are the same. Flicker is the deviation from the
+//! true change: the mean of |change − true change| ([`BandAccuracy::excess`]). The mean of the changes themselves is
+//! [`BandAccuracy::change`].
 
 use crate::camera::Camera;
 use crate::capabilities::Capabilities;

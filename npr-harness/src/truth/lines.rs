@@ -1,27 +1,26 @@
-//! The exact visible lines of a scene, and how well a picture shows them.
+//! The exact visible lines of a scene, and the accuracy of a picture's lines.
 //!
-//! Shares nothing with the drawing of lines but the list of edges: which edges are lines is decided in f64 from the
-//! corners of their faces, and what of them is seen by rays, not by a depth buffer.
+//! This module shares only the list of edges with line drawing: edges are classified in f64 from the corners of their
+//! faces, and their visibility is determined by rays, not by a depth buffer.
 //!
-//! # What counts as a line
+//! # Definition of a line
 //!
-//! Boundaries and non-manifold edges always, two-face edges where exactly one face is turned towards the eye or where
-//! the surface turns by more than the crease angle. As for drawing ([`npr_outline::contour`]): a polygon is classified
-//! by its Newell normal through the mean of its corners, a face wound oppositely is turned round, a face of zero area
-//! has the plane of its neighbour over its longest edge, and a face seen exactly edge-on is turned towards the eye.
-//! Which way the triangles of a folded polygon are turned, their own normals say, so that the folds between them can be
-//! silhouettes; creases they are not.
+//! Boundaries and non-manifold edges are always lines; two-face edges are lines if exactly one face is front-facing or
+//! if the surface turns by more than the crease angle. As for drawing ([`npr_outline::contour`]), a polygon is
+//! classified by its Newell normal at the mean of its corners, an oppositely wound face is flipped, a face of zero area
+//! takes the plane of the neighbour at its longest edge, and a face seen exactly edge-on is front-facing. The triangles
+//! of a folded polygon are classified by their own normals, so the folds between them can be silhouettes, but not
+//! creases.
 //!
-//! # What counts as seen
+//! # Definition of visibility
 //!
-//! A point of an edge is seen when nothing solid lies between it and the eye (in a parallel view: the near plane).
-//! Left out are the edge's own faces, with the other triangles of their polygons if those are not folded: they touch the
-//! ray at the point itself, and where one is seen edge-on even the rounding of the point puts it in front or behind. So
-//! is all that is nearer to the point than [`BEHIND`] of its distance. The other faces around the edge's ends count: at
-//! a cusp they are what hides the line.
+//! A point of an edge is visible if no solid surface lies between it and the eye (in a parallel view: the near plane).
+//! The edge's own faces are ignored, including the other triangles of their unfolded polygons: they touch the ray at
+//! the point itself, and if one is edge-on, rounding decides whether it is in front. Surfaces nearer to the point than
+//! [`BEHIND`] of its distance are ignored too. The other faces at the edge's ends count: at a cusp they hide the line.
 //!
-//! Solid is what hides in a picture: not a blended face, and not the back of a single-sided one. Faces cut out by alpha
-//! count as whole. An edge is seen or hidden whatever its own faces are made of.
+//! Solid surfaces are those that occlude in a picture: not blended faces, and not the backs of single-sided ones.
+//! Alpha-tested faces count as whole. The materials of an edge's own faces do not affect its visibility.
 
 mod intersections;
 
@@ -36,63 +35,64 @@ use npr_mesh::edges::{Edge, EdgeKind, Edges, NO_FACE};
 use npr_outline::LineKind;
 use std::collections::HashMap;
 
-/// Of a line that is no edge.
+/// The edge number of a line that is not an edge.
 pub const NO_EDGE: u32 = u32::MAX;
-/// What lies in front of a point by less than this share of its eye depth does not hide it.
+/// Surfaces in front of a point by less than this fraction of its eye depth do not occlude it.
 ///
-/// Rounding of the ray is below 1e-12 of the distance. Positions, however, are f32, and surfaces that were made to
-/// touch miss each other by 1e-7 of the model's size, times ten or more where they are seen at a slant. A px at the
-/// model's distance is about 1e-3 of it, so that this is a hundredth of a px.
+/// Rounding of the ray is below 1e-12 of the distance. Positions, however, are f32, and surfaces modelled to touch
+/// deviate by 1e-7 of the model's size, or ten or more times that at grazing angles. A px at the model's distance is
+/// about 1e-3 of it, so this is a hundredth of a px.
 pub const BEHIND: f64 = 1e-5;
-/// Lines are sampled at most so far apart, px; their visible pieces are exact to half of it.
+/// The largest distance between samples of a line, px; visible segments are exact to half of it.
 pub const STEP_PX: f64 = 0.25;
-/// Lines are followed so far beyond the picture's borders, px: what runs just outside still darkens pixels inside.
+/// The margin around the picture in which lines are traced, px: lines just outside still darken pixels inside.
 pub const MARGIN_PX: f64 = 2.0;
-/// True lines this near to the borders are not asked for in the picture, px: half of their pixels may lie outside.
+/// True lines this near to the picture's borders are not required of the picture, px: half of their pixels may lie
+/// outside.
 pub const BORDER_PX: f64 = 1.0;
 
-/// A piece of an edge, seen from end to end.
+/// A segment of an edge that is visible from end to end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrueSegment {
-    /// Px, y down, pixel centres at halves. Equal for an edge that is seen end on.
+    /// The ends in px, y down, pixel centres at halves. They are equal for an edge that projects to a point.
     pub ends_px: [DVec2; 2],
     /// Why it is a line.
     pub kind: LineKind,
-    /// Which of the scene's edges, or after those of its folds ([`scene_edge`]); [`NO_EDGE`] where two faces pass through
-    /// each other.
+    /// The number of the edge or, after those, of the fold ([`scene_edge`]); [`NO_EDGE`] for an intersection curve of
+    /// two faces.
     pub edge: u32,
 }
 
 /// The visible lines of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrueLines {
-    /// In the order of the scene's edges, and along each edge. Within the picture and [`MARGIN_PX`] around it.
+    /// In the order of the scene's edges, and along each edge. Within the picture and a margin of [`MARGIN_PX`].
     pub segments: Vec<TrueSegment>,
     /// Width and height of the picture.
     pub size_px: (u32, u32),
 }
 
-/// How well drawn lines agree with the true ones.
+/// The agreement of drawn lines with the true ones.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LineAccuracy {
-    /// The share of the drawn points that are near a true line, 0..=1; 1 where nothing is drawn.
+    /// The fraction of the drawn points that are near a true line, 0..=1; 1 if nothing is drawn.
     pub precision: f64,
-    /// The share of the true lines' length that is near a drawn point, 0..=1; 1 where there are no lines.
+    /// The fraction of the true lines' length that is near a drawn point, 0..=1; 1 if there are no lines.
     pub recall: f64,
     /// Their harmonic mean, 0..=1.
     pub f1: f64,
-    /// Points of the drawn centreline.
+    /// The number of points of the drawn centreline.
     pub drawn_px: u64,
-    /// Of the true lines, at least [`BORDER_PX`] within the picture.
+    /// The length of the true lines at least [`BORDER_PX`] within the picture.
     pub true_length_px: f64,
-    /// What near means.
+    /// The largest distance that counts as near.
     pub within_px: f64,
-    /// Mean distance of the drawn points near a true line from it; for points at pixel centres 0.25 at best, but for
-    /// lines along the grid.
+    /// The mean distance from a true line of the drawn points near it; at best 0.25 for points at pixel centres, except
+    /// for lines along the grid.
     pub mean_distance_px: f64,
 }
 
-/// The side of a plane that is asked for: a normal of any length, and a point.
+/// An oriented plane: a normal of any length, and a point.
 #[derive(Clone, Copy)]
 struct Plane {
     normal: DVec3,
@@ -105,20 +105,21 @@ impl Plane {
     }
 }
 
-/// The lines of a scene that are seen from a camera.
+/// The visible lines of a scene.
 ///
-/// - `size`: of the picture, px.
-/// - `crease_angle_rad`: edges whose faces meet at more than this are lines, 0..=π.
+/// - `size`: the size of the picture, px.
+/// - `crease_angle_rad`: edges whose faces meet at more than this angle are lines, 0..=π.
 ///
-/// It takes a ray for every [`STEP_PX`] of line, hidden ones too. The result does not depend on the number of threads.
+/// Casts a ray for every [`STEP_PX`] of line, including hidden ones. The result does not depend on the number of
+/// threads.
 pub fn true_lines(scene: &Scene, camera: &Camera, size: (u32, u32), crease_angle_rad: f64) -> TrueLines {
     true_lines_of_steps(scene, camera, size, crease_angle_rad, 0.0)
 }
 
-/// The same, without those silhouettes and boundaries behind which the next surface is less than `least_step` deeper,
-/// world units: what a picture cannot show but by the normals there.
+/// As [`true_lines`], without the silhouettes and boundaries whose next surface behind is less than `least_step`
+/// deeper, world units: a picture shows these only by a difference of normals.
 ///
-/// Creases stay, also where they are silhouettes or the borders of a third face.
+/// Creases are kept even if they are silhouettes or the border of a third face.
 pub fn true_lines_of_steps(
     scene: &Scene,
     camera: &Camera,
@@ -140,7 +141,7 @@ pub fn true_lines_of_steps(
             0.0
         }
     };
-    // Built before the threads ask for it, so that they do not wait for each other.
+    // Built before the threads need it, so that they do not wait for each other.
     scene.build_rays();
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let share = lines.len().div_ceil(threads).max(1);
@@ -149,7 +150,7 @@ pub fn true_lines_of_steps(
         let follow = |share: &[(u32, LineKind)]| -> Vec<TrueSegment> {
             share.iter().flat_map(|&(edge, kind)| visibility.visible_pieces(edge, kind, step_of(edge, kind))).collect()
         };
-        // Some platforms have no other thread than this one.
+        // Some platforms have only the calling thread.
         if threads == 1 {
             return follow(&lines);
         }
@@ -159,11 +160,11 @@ pub fn true_lines_of_steps(
     TrueLines { segments, size_px: size }
 }
 
-/// Per face, the normal zero where no neighbour lends one.
+/// The planes of the faces; the normal is zero if a degenerate face has no suitable neighbour.
 struct FacePlanes {
-    /// Of the polygon: whose edges are creases.
+    /// The planes of the faces' polygons, which determine creases.
     of_polygons: Vec<Plane>,
-    /// The same but for the triangles of folded polygons, which have their own: whose edges are silhouettes.
+    /// The same, except that triangles of folded polygons have their own planes; they determine silhouettes.
     of_sides: Vec<Plane>,
 }
 
@@ -201,7 +202,7 @@ fn face_planes(scene: &Scene) -> FacePlanes {
     FacePlanes { of_polygons: planes, of_sides }
 }
 
-/// Gives faces of zero area the plane of the neighbour over their longest edge, turned to be wound like the face.
+/// Assigns faces of zero area the plane of the neighbour at their longest edge, flipped to match the winding.
 fn borrow_planes(scene: &Scene, planes: &mut [Plane]) {
     let mut lenders = HashMap::<u32, (f64, u32, bool)>::new();
     for edge in scene.single().edges().edges.iter().filter(|edge| edge.kind() == EdgeKind::TwoFace) {
@@ -220,7 +221,7 @@ fn borrow_planes(scene: &Scene, planes: &mut [Plane]) {
         .keys()
         .filter_map(|&face| {
             let (mut at, mut turned) = (face, false);
-            // Slivers may lean on slivers, and in a ring.
+            // The neighbour of a sliver may be a sliver, even in a cycle.
             for _ in 0..lenders.len() {
                 let &(_, lender, oppositely) = lenders.get(&at)?;
                 (at, turned) = (lender, turned ^ oppositely);
@@ -237,7 +238,7 @@ fn borrow_planes(scene: &Scene, planes: &mut [Plane]) {
     }
 }
 
-/// Why an edge is a line for an eye, if it is.
+/// The kind of line that an edge is for an eye, if any.
 fn line_kind(scene: &Scene, number: u32, planes: &FacePlanes, eye: DVec4, crease_angle_rad: f64) -> Option<LineKind> {
     let edge = scene_edge(scene, number);
     let [first, second] = edge.faces();
@@ -251,13 +252,13 @@ fn line_kind(scene: &Scene, number: u32, planes: &FacePlanes, eye: DVec4, crease
     is_crease(scene, number, planes, crease_angle_rad).then_some(LineKind::Crease)
 }
 
-/// An edge of the scene, or after those a fold.
+/// An edge of the scene or, for numbers after those, a fold.
 pub fn scene_edge(scene: &Scene, number: u32) -> &Edge {
     let Edges { edges, folds, .. } = scene.single().edges();
     edges.get(number as usize).unwrap_or_else(|| &folds[number as usize - edges.len()])
 }
 
-/// The planes of an edge's two faces, the second turned to be wound like the first.
+/// The planes of an edge's two faces, the second flipped to match the winding of the first.
 fn wound_alike(edge: &Edge, planes: &[Plane], [first, second]: [u32; 2]) -> [Plane; 2] {
     let (plane0, mut plane1) = (planes[first as usize], planes[second as usize]);
     if edge.kind() == EdgeKind::TwoFace && edge.wound_oppositely() {
@@ -266,7 +267,7 @@ fn wound_alike(edge: &Edge, planes: &[Plane], [first, second]: [u32; 2]) -> [Pla
     [plane0, plane1]
 }
 
-/// Whether the surface turns by more than an angle at an edge, or a third face begins there.
+/// Whether the surface turns by more than an angle at an edge, or a third face meets it.
 fn is_crease(scene: &Scene, number: u32, planes: &FacePlanes, crease_angle_rad: f64) -> bool {
     let edge = scene_edge(scene, number);
     let faces = edge.faces();
@@ -274,17 +275,17 @@ fn is_crease(scene: &Scene, number: u32, planes: &FacePlanes, crease_angle_rad: 
         return false;
     }
     let [plane0, plane1] = wound_alike(edge, &planes.of_polygons, faces);
-    // Well conditioned at any angle, and 0 where there is no normal.
+    // Well conditioned at any angle, and 0 if a normal is missing.
     let turn_rad = plane0.normal.cross(plane1.normal).length().atan2(plane0.normal.dot(plane1.normal));
     edge.kind() == EdgeKind::NonManifold || turn_rad > crease_angle_rad
 }
 
-/// A scene and from where it is seen.
+/// A scene and a camera.
 struct Visibility<'a> {
     scene: &'a Scene,
     camera: &'a Camera,
     size_px: DVec2,
-    /// Of all folded polygons, ascending.
+    /// The faces of all folded polygons, ascending.
     folded_faces: Vec<u32>,
 }
 
@@ -305,12 +306,12 @@ impl<'a> Visibility<'a> {
         pieces.into_iter().map(|ends_px| TrueSegment { ends_px, kind, edge: number }).collect()
     }
 
-    /// The pieces, px, of a line in the world that are in the picture, or just outside, and seen.
+    /// The visible segments, px, of a world-space line, within the picture and its margin.
     fn seen_pieces(&self, ends: [DVec3; 2], seen: impl Fn(DVec3) -> bool) -> Vec<[DVec2; 2]> {
         let Some(world) = self.clip(ends) else { return Vec::new() };
         let [(from, depth0), (to, depth1)] = world.map(|end| self.project(end));
         let cells = (from.distance(to) / STEP_PX).ceil().max(1.0) as u32;
-        // In perspective the middle of the picture of a line is not the picture of its middle.
+        // The projection of a line's midpoint is not the midpoint of its projection in perspective.
         let (w0, w1) = if self.is_parallel() { (1.0, 1.0) } else { (depth0, depth1) };
         let on_line = |fraction: f64| world[0].lerp(world[1], fraction * w0 / (w1 + fraction * (w0 - w1)));
         let on_screen = |cell: u32| from.lerp(to, f64::from(cell) / f64::from(cells));
@@ -350,7 +351,7 @@ impl<'a> Visibility<'a> {
         DVec2::new(self.size_px.x / self.size_px.y, 1.0) * half_height
     }
 
-    /// A point's place in px, and its eye depth.
+    /// A point's position in px, and its eye depth.
     fn project(&self, point: DVec3) -> (DVec2, f64) {
         let view = self.in_view(point);
         let scale = if self.is_parallel() { 1.0 } else { view.z };
@@ -358,7 +359,7 @@ impl<'a> Visibility<'a> {
         (DVec2::new(0.5 + 0.5 * ndc.x, 0.5 - 0.5 * ndc.y) * self.size_px, view.z)
     }
 
-    /// What of an edge lies behind the near plane and in the picture with its margin, in world space.
+    /// The part of an edge beyond the near plane and within the picture and its margin, in world space.
     fn clip(&self, ends: [DVec3; 2]) -> Option<[DVec3; 2]> {
         let half = self.half_extent() * (DVec2::ONE + 2.0 * MARGIN_PX / self.size_px);
         let inside = |point: DVec3| {
@@ -379,7 +380,7 @@ impl<'a> Visibility<'a> {
         (from <= to).then(|| [ends[0].lerp(ends[1], from), ends[0].lerp(ends[1], to)])
     }
 
-    /// Whether nothing hides a point but the faces of which it is.
+    /// Whether only the faces `own` occlude a point, if any.
     fn sees_past(&self, point: DVec3, own: impl Fn(u32) -> bool) -> bool {
         let depth = self.in_view(point).z;
         let origin = self.origin_of_sight(point, depth);
@@ -396,7 +397,7 @@ impl<'a> Visibility<'a> {
         (hit.front || material.double_sided) && material.alpha_mode != AlphaMode::Blend
     }
 
-    /// How much deeper than a point of some faces the next surface behind it is, world units; infinite if there is none.
+    /// The depth from a point of the faces `own` to the next surface behind it, world units; infinite if there is none.
     fn step_behind(&self, point: DVec3, own: impl Fn(u32) -> bool) -> f64 {
         let depth = self.in_view(point).z;
         let origin = self.origin_of_sight(point, depth);
@@ -411,7 +412,7 @@ impl<'a> Visibility<'a> {
         a == b || (!of.is_empty() && of[a as usize] == of[b as usize])
     }
 
-    /// Whether a face has the edge, or is of the polygon of one that has and not folded.
+    /// Whether a face has the edge, or belongs to the unfolded polygon of a face that has it.
     fn is_own(&self, face: u32, edge: &Edge) -> bool {
         let model = self.scene.single().model();
         let corners = model.faces[face as usize].map(|v| self.scene.single().edges().representative[v as usize]);
@@ -424,13 +425,13 @@ impl<'a> Visibility<'a> {
 
 /// The centreline of antialiased lines 1 px wide: the centres of the pixels that are at least half dark.
 ///
-/// Across such a line one of any two neighbouring pixels is, so that the points are at most a pixel's diagonal apart,
-/// and each is within half a px of the line.
+/// Across such a line, one of any two adjacent pixels is at least half dark, so the points are at most a pixel's
+/// diagonal apart, and each is within half a px of the line.
 ///
-/// - `darkness`: per pixel, rows from the top, 0 for paper to 1 for ink. A byte's rounding is allowed for.
+/// - `darkness`: per pixel, in rows from the top, 0 (paper) to 1 (ink). Rounding to bytes is allowed for.
 ///
 /// # Panics
-/// If there are not `width * height` of them.
+/// If `darkness` does not have `width * height` elements.
 pub fn drawn_centreline(darkness: &[f64], width: u32, height: u32) -> Vec<DVec2> {
     assert_eq!(darkness.len(), width as usize * height as usize);
     const HALF: f64 = 0.5 - 0.5 / 255.0;
@@ -443,8 +444,9 @@ pub fn drawn_centreline(darkness: &[f64], width: u32, height: u32) -> Vec<DVec2>
 }
 
 impl TrueLines {
-    /// Evenly spaced points along the visible lines that a picture is asked to show: place, length that the point stands
-    /// for (at most [`STEP_PX`]), and the segment's number. What is within [`BORDER_PX`] of a border is left out.
+    /// Evenly spaced points along the visible lines that are required of a picture: the position, the length that the
+    /// point represents (at most [`STEP_PX`]), and the segment's index. Points within [`BORDER_PX`] of a border are
+    /// skipped.
     pub fn samples(&self) -> Vec<(DVec2, f64, usize)> {
         let high = DVec2::new(self.size_px.0.into(), self.size_px.1.into()) - BORDER_PX;
         let mut samples = Vec::new();
@@ -465,8 +467,8 @@ impl TrueLines {
 /// Compares drawn points with the true lines.
 ///
 /// - `drawn`: px, as from [`drawn_centreline`].
-/// - `within_px`: how far apart they may be and still agree, above 0, at most [`MARGIN_PX`]: beyond it a
-///   line outside the picture is not known.
+/// - `within_px`: the distance within which they agree, above 0, at most [`MARGIN_PX`], beyond which lines outside the
+///   picture are unknown.
 pub fn accuracy(truth: &TrueLines, drawn: &[DVec2], within_px: f64) -> LineAccuracy {
     let distances = distances_to_lines(truth, drawn, within_px);
     let near: Vec<f64> = distances.into_iter().filter(|&distance| distance <= within_px).collect();
@@ -490,9 +492,9 @@ pub fn accuracy(truth: &TrueLines, drawn: &[DVec2], within_px: f64) -> LineAccur
     }
 }
 
-/// For each point the distance in px to the nearest true line, infinite beyond `reach_px`.
+/// For each point: the distance in px to the nearest true line, infinite beyond `reach_px`.
 pub fn distances_to_lines(truth: &TrueLines, points: &[DVec2], reach_px: f64) -> Vec<f64> {
-    // A segment is entered in pieces, since the box around a long slanted one holds most of the picture.
+    // A segment is inserted in pieces, since the bounding box of a long slanted one covers most of the picture.
     const PIECE_PX: f64 = 4.0;
     let mut grid: HashMap<(i64, i64), Vec<u32>> = HashMap::new();
     for (number, TrueSegment { ends_px: [from, to], .. }) in (0u32..).zip(&truth.segments) {
@@ -520,7 +522,7 @@ pub fn distances_to_lines(truth: &TrueLines, points: &[DVec2], reach_px: f64) ->
     points.iter().map(|&point| distance(point)).collect()
 }
 
-/// For each of the `asked` whether one of the `points` is within `reach_px`.
+/// For each point of `asked`: whether one of the `points` is within `reach_px`.
 pub fn are_near(points: &[DVec2], asked: impl Iterator<Item = DVec2>, reach_px: f64) -> Vec<bool> {
     let mut grid: HashMap<(i64, i64), Vec<DVec2>> = HashMap::new();
     for &point in points {
@@ -536,7 +538,7 @@ pub fn are_near(points: &[DVec2], asked: impl Iterator<Item = DVec2>, reach_px: 
     asked.map(is_near).collect()
 }
 
-/// The cell of the search grid in which a point lies; the cells' size, in px, only matters for speed.
+/// The cell of the search grid that contains a point; the cells' size, in px, only affects speed.
 fn cell(point: DVec2) -> (i64, i64) {
     const CELL_PX: f64 = 2.0;
     ((point.x / CELL_PX).floor() as i64, (point.y / CELL_PX).floor() as i64)

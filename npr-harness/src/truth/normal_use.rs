@@ -1,4 +1,5 @@
-//! What it costs to compute light at the vertices, or from normals as they are interpolated: the teapot, coarse to fine.
+//! The errors of lighting computed at vertices or from interpolated normals, on the teapot from coarse to fine
+//! tessellations.
 
 use crate::camera::{Camera, Framing};
 use crate::capabilities::Capabilities;
@@ -19,39 +20,40 @@ use npr_toon::normal::NormalUse;
 use npr_toon::ramp::{Ramp, RampBlend, RampStop};
 use npr_toon::source::Light;
 
-/// Segments of each of the teapot's 32 patches.
+/// The segments per patch of the teapot, which has 32 patches.
 pub const SEGMENTS: [u32; 5] = [2, 4, 8, 16, 32];
 /// The ways to use normals, from the cheapest.
 pub const USES: [NormalUse; 3] = [NormalUse::PerVertex, NormalUse::Interpolated, NormalUse::PerPixel];
 
-/// So fine that more segments do not change the printed numbers.
+/// The segments of the reference; more do not change the printed numbers.
 const TRUE_SEGMENTS: u32 = 96;
 const TRUE_SAMPLES: u32 = 8;
-/// Surfaces whose distances from the eye differ by more than this share are not the same.
+/// Points whose distances from the eye differ by more than this fraction belong to different surfaces.
 const SAME_DISTANCE: f64 = 0.02;
-/// Where N·L changes by more than this from a pixel to the next, one part of the teapot runs into another, or a surface
-/// turns away: what is seen there is no matter of normals.
+/// Where N·L changes by more than this between neighbouring pixels, two parts of the teapot intersect or a surface
+/// curves away; such pixels are excluded, because their errors do not come from normals.
 const SMOOTH_STEP: f64 = 0.15;
 
 /// The error of one way to shade the teapot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NormalUseError {
-    /// Of each patch.
+    /// Segments per patch.
     pub segments: u32,
     /// How normals are used.
     pub normals: NormalUse,
-    /// Of bands, and of Gooch's tones: root mean square over the pixels that both pictures fill with the same surface,
-    /// and that have no crease near, of 1, a component's range.
+    /// Root mean square error for bands and for Gooch's tones, relative to a component's range of 1, over the pixels
+    /// where both pictures show the same surface and no crease is near.
     pub rmse: [f64; 2],
-    /// The same: the largest.
+    /// The largest error for each.
     pub worst: [f64; 2],
 }
 
-/// Measures all [`SEGMENTS`] and [`USES`] against 64 samples a pixel of a teapot of 96 segments a patch, normals at
-/// pixels. The light is near, since for one that is far away N·L from interpolated normals is that of the vertices.
+/// Measures all [`SEGMENTS`] and [`USES`] against 64 samples per pixel of a teapot with 96 segments per patch and
+/// normals at pixels. The light is near, because for a distant light N·L of interpolated normals equals interpolated
+/// N·L of the vertices.
 ///
 /// # Errors
-/// None that can occur.
+/// None in practice.
 pub fn normal_use_errors(size: (u32, u32)) -> Result<Vec<NormalUseError>, HarnessError> {
     let of = |segments, color| {
         let material = Material { base_color: color, ..Default::default() };
@@ -73,7 +75,7 @@ pub fn normal_use_errors(size: (u32, u32)) -> Result<Vec<NormalUseError>, Harnes
         drawn(&fine, &shades[0], NormalUse::PerPixel, TRUE_SAMPLES)?,
         drawn(&fine, &shades[1], NormalUse::PerPixel, TRUE_SAMPLES)?,
     ];
-    // One sample a pixel: where the surface is, and not just some of it, and in its colour N·L.
+    // One sample per pixel, which gives the surface at the pixel's centre, with N·L as its colour.
     let light = [(-1.0, Vec3::ZERO), (1.0, Vec3::splat(0.5))].map(|(at, color)| RampStop { at, color });
     let ramp = RampSource::Stops(Ramp { stops: light.to_vec(), blend: RampBlend::Smooth });
     let surface = drawn(&white, &Shade::Ramp(RampShade { ramp, half_lambert: None }), NormalUse::PerPixel, 1)?;
@@ -92,7 +94,7 @@ pub fn normal_use_errors(size: (u32, u32)) -> Result<Vec<NormalUseError>, Harnes
     Ok(errors)
 }
 
-/// Root mean square and largest difference over the pixels that, with all their neighbours, show the same surface.
+/// Root mean square and largest difference over the pixels whose neighbourhood shows the same surface in both.
 fn compared(frame: &CpuFrame, surface: &CpuFrame, truth: &[DVec4]) -> (f64, f64) {
     let width = frame.width as usize;
     let (mut sum, mut count, mut worst) = (0.0, 0usize, 0.0f64);

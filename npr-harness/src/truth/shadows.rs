@@ -1,4 +1,4 @@
-//! How exact shadows and their outlines are: states of pixels against shadow rays, lines against the borders of shadows.
+//! Accuracy of shadows and their outlines: shadow states of pixels against shadow rays, lines against shadow borders.
 
 use super::{ROUNDED_PX, SHIFT_PX};
 use crate::camera::{Camera, Framing, Projection};
@@ -27,7 +27,7 @@ use npr_imagespace::shadow::{ShadowState, ink_shadow_state};
 use npr_outline::segment::MAX_SLOPE;
 use npr_toon::source::{Light, LightKind};
 
-/// A light, and a view under it.
+/// A light and a view.
 #[derive(Clone, Debug)]
 pub struct ShadowShot {
     /// The name of the light and view, as printed.
@@ -38,8 +38,8 @@ pub struct ShadowShot {
     pub camera: Camera,
 }
 
-/// Eight lights and views around a model: far and near, perspective and parallel, from before and from behind, in two
-/// of them with the eye in the shadow (which [`eye_is_in_shadow`] tells for a model).
+/// Eight lights and views around a model: distant and near lights, perspective and parallel views, front and back
+/// lighting, two of them with the eye in shadow (which [`eye_is_in_shadow`] tests for a model).
 pub fn shots(scene: &Scene, aspect: f64) -> Vec<ShadowShot> {
     let far = |to_light: [f32; 3]| Light::directional(Vec3::from(to_light));
     let near = |position: [f32; 3]| Light::positional(Vec3::from(position));
@@ -69,8 +69,8 @@ pub fn shots(scene: &Scene, aspect: f64) -> Vec<ShadowShot> {
     ]
 }
 
-/// Turns a light that is behind the model as far aside as it can be with the eye still in the shadow, so that some of what
-/// is seen is lit.
+/// Rotates a light behind the model as far to the side as the eye stays in shadow, so that some visible surfaces are
+/// lit.
 fn behind(scene: &Scene, shot: ShadowShot) -> ShadowShot {
     let turned = |angle_deg: f64, around: u32| {
         let (sin, cos) = angle_deg.to_radians().sin_cos();
@@ -88,7 +88,7 @@ fn behind(scene: &Scene, shot: ShadowShot) -> ShadowShot {
     found.map_or(shot.clone(), |(angle_deg, around)| turned(angle_deg, around))
 }
 
-/// Whether something is between the eye and the light.
+/// Whether an occluder lies between the eye and the light.
 pub fn eye_is_in_shadow(scene: &Scene, shot: &ShadowShot) -> bool {
     if matches!(shot.camera.projection, Projection::Orthographic { .. }) {
         return false;
@@ -100,7 +100,7 @@ pub fn eye_is_in_shadow(scene: &Scene, shot: &ShadowShot) -> bool {
 }
 
 impl ShadowShot {
-    /// Lines of objects and of shadows, black and red on white.
+    /// A style with lines of objects in black and of shadows in red, on white.
     pub fn style(&self, method: ShadowMethod) -> Style {
         let red = Composite::Over { color: Vec3::X, opacity: 1.0 };
         let ink = ImageInk { shadows: ShadowLines::Separate { composite: red, dilation: None }, ..ImageInk::default() };
@@ -115,7 +115,7 @@ impl ShadowShot {
     }
 }
 
-/// A picture's states of shadow, and which of its pixels show a surface at all.
+/// The shadow states of a picture's pixels.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct States {
     /// Px.
@@ -124,21 +124,22 @@ pub struct States {
     pub states: Vec<Option<ShadowState>>,
 }
 
-/// What of states differs from a reference's.
+/// The difference of shadow states from a reference.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StatesDifference {
-    /// Of all pixels, those that show a surface in both and differ.
+    /// The fraction of all pixels that show a surface in both and differ.
     pub share: f64,
-    /// How far such a pixel lies from the nearest border of states in the reference, at most: px.
+    /// The largest distance of such a pixel from the nearest state border in the reference, px.
     pub farthest_px: f64,
-    /// Of all pixels, those that are lit in the reference, are not here, and lie more than 2 px from a border: acne.
+    /// The fraction of all pixels that are lit in the reference, but not here, and lie more than 2 px from a border:
+    /// shadow acne.
     pub acne: f64,
-    /// The same of those in a cast shadow that are lit here: what came loose (peter-panning).
+    /// The same for pixels in a cast shadow that are lit here: detached shadows (peter-panning).
     pub loose: f64,
 }
 
 impl States {
-    /// From what a geometry pass writes in the wide layout.
+    /// The states in a 64-bit packed G-buffer.
     pub fn of_texels(texels: &[[u32; 2]], size: (u32, u32)) -> Self {
         let layout = TexelLayout::Bits64;
         let state = |&texel: &[u32; 2]| {
@@ -148,7 +149,8 @@ impl States {
         Self { size, states: texels.iter().map(state).collect() }
     }
 
-    /// By shadow rays: those of a shot's own style, whatever its method, sampled so far from the pixels' centres.
+    /// The states by shadow rays, for the shot's own style with any method, sampled at an offset from the pixel
+    /// centres.
     ///
     /// # Errors
     /// Those of [`Plan::new`].
@@ -168,8 +170,8 @@ impl States {
         self.states[(y * i64::from(self.size.0) + x) as usize]
     }
 
-    /// How far the nearest border of states, surface against surface, or the surface's own is from a pixel, px; at most
-    /// `most`.
+    /// The distance of a pixel from the nearest border between states of surfaces, or from the surface's own border,
+    /// px; at most `most`.
     fn border_px(&self, x: i64, y: i64, most: i64) -> f64 {
         let mut nearest = most as f64;
         for dy in -most..=most {
@@ -177,7 +179,7 @@ impl States {
                 let (x, y) = (x + dx, y + dy);
                 let differs = |(i, j)| self.is_inside(x + i, y + j) && self.at(x + i, y + j) != self.at(x, y);
                 if self.is_inside(x, y) && [(1, 0), (0, 1)].into_iter().any(differs) {
-                    // Between this pixel and the next.
+                    // The border lies between this pixel and the next.
                     nearest = nearest.min(((dx * dx + dy * dy) as f64).sqrt());
                 }
             }
@@ -185,10 +187,10 @@ impl States {
         nearest
     }
 
-    /// How these differ from a reference.
+    /// The difference from a reference.
     ///
     /// # Panics
-    /// If they are of another size.
+    /// If the sizes differ.
     pub fn difference(&self, reference: &Self) -> StatesDifference {
         assert_eq!(self.size, reference.size);
         const MOST: i64 = 12;
@@ -216,7 +218,7 @@ impl States {
     }
 }
 
-/// The states that a device finds. `volumes`: who decides what bounds them, if not the plan.
+/// The states that a GPU computes. `volumes` overrides the plan's choice of who selects what bounds the volumes.
 ///
 /// # Errors
 /// [`HarnessError`].
@@ -244,16 +246,16 @@ pub fn states_on_device(
     Ok(States::of_texels(&texels, size))
 }
 
-/// How far from an edge in the reference the pixels lie that differ, but for those in which an edge runs through the
-/// centre: which change their state, or show another surface (a depth that no slope below [`MAX_SLOPE`] explains), when
-/// the reference's sample moves by [`SHIFT_PX`], or by the [`ROUNDED_PX`] to which devices round corners. A device may show
-/// there what lies beside.
+/// The largest distance, from an edge in the reference, of the pixels that differ. Pixels with an edge through their
+/// centre are excluded: those whose state changes, or whose depth changes by more than a slope of [`MAX_SLOPE`]
+/// explains, when the reference's sample is shifted by [`SHIFT_PX`], or by [`ROUNDED_PX`], to which GPUs round corners.
+/// A GPU may show the neighbouring surface or state there.
 ///
 /// # Errors
 /// Those of [`Plan::new`].
 pub fn farthest_px(scene: &Scene, shot: &ShadowShot, actual: &States, reference: &States) -> Result<f64, HarnessError> {
     let at_once = actual.difference(reference).farthest_px;
-    // Near an edge anyway.
+    // All differing pixels are near an edge.
     if at_once <= 2.0 {
         return Ok(at_once);
     }
@@ -283,11 +285,11 @@ pub fn farthest_px(scene: &Scene, shot: &ShadowShot, actual: &States, reference:
     Ok(kept.difference(reference).farthest_px)
 }
 
-/// Points on the borders between light and cast shadow, px: exact to half a subsample.
+/// Points on the borders between lit and cast-shadow areas, px; exact to half a subsample.
 ///
-/// Between neighbouring samples of a grid of `samples`² a pixel, where one is lit, the other in a cast shadow, and both lie
-/// on one surface: each on the plane of the other's face to within two steps of the grid. Else it is an object that ends
-/// there.
+/// They lie between neighbouring samples of a grid of `samples`² per pixel, of which one is lit and the other in a cast
+/// shadow, and both on one surface: each within two grid steps of the plane of the other's face. Otherwise the border
+/// is that of an object.
 ///
 /// # Errors
 /// Those of [`Plan::new`].
@@ -308,7 +310,7 @@ pub fn true_borders(
             .map(|v| scene.single().model().positions[v as usize].as_dvec3());
         ((b - a).cross(c - a).normalize_or_zero(), a)
     };
-    // How far a sample lies from the plane of another's face.
+    // The distance of a sample from the plane of another's face.
     let off = |face: u32, other: DVec3| {
         let (normal, on) = plane(face);
         normal.dot(other - on).abs()
@@ -353,12 +355,12 @@ pub fn true_borders(
 /// Precision and recall of shadow lines.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShadowLineAccuracy {
-    /// Of the pixels that are shadow lines and nothing else, the share within the distance of a border. 1 without any.
+    /// The fraction of the pixels with only shadow lines that are within the distance of a border; 1 without any.
     pub precision: f64,
-    /// Of the points of borders, the share that has a pixel of line, of a shadow or of an object that ends there, within
-    /// the distance. 1 without any.
+    /// The fraction of the border points with a line pixel, of a shadow or of an object that ends there, within the
+    /// distance; 1 without any.
     pub recall: f64,
-    /// How many pixels, and how many points.
+    /// The number of pixels and of points.
     pub counts: (usize, usize),
 }
 
@@ -369,7 +371,7 @@ pub fn line_accuracy(picture: &Image, borders: &[DVec2], within_px: f64) -> Shad
     let is_shadows = |pixel: &[u8]| is_line(pixel) && pixel[0] > 128;
     let pixels: Vec<&[u8]> = picture.rgba8.chunks_exact(4).collect();
     let reach = within_px.ceil() as i64 + 1;
-    // The points of borders by the pixel that they are in.
+    // The border points, by the pixel that contains them.
     let mut by_pixel = vec![Vec::new(); pixels.len()];
     let cell = |point: DVec2| {
         let at = point.floor().clamp(DVec2::ZERO, DVec2::new(width.into(), height.into()) - 1.0).as_uvec2();

@@ -1,4 +1,4 @@
-//! What several tests need.
+//! Helpers for several tests.
 #![allow(dead_code, clippy::print_stdout)]
 
 use glam::{Mat4, Vec2, Vec3, Vec4};
@@ -14,7 +14,7 @@ use npr_mesh::{AlphaMode, Material, Model, Texture, Wrap};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
-/// The device executor, or `None`, saying so, where `NPR_GPU` allows that there is none.
+/// The GPU executor, or `None` with a message if there is no adapter and `NPR_GPU` does not require one.
 ///
 /// # Panics
 /// If `NPR_GPU=required` and there is no adapter.
@@ -34,12 +34,12 @@ pub fn planned(scene: &Scene, style: &Style, camera: &Camera, size: (u32, u32)) 
     Plan::new(scene, style, &View::new(*camera, size), &Capabilities::RAY_CASTER).expect("a good style")
 }
 
-/// A picture by an executor.
+/// Renders a picture with an executor.
 pub fn rendered(executor: &Executor, scene: &Scene, style: &Style, camera: &Camera, size: (u32, u32)) -> Image {
     executor.render(&Picture::new(scene, style, View::new(*camera, size)), &|_| {}).expect("a picture")
 }
 
-/// A fresh folder that goes when the test is over.
+/// A new folder that is deleted when dropped.
 pub struct Folder(pub PathBuf);
 
 impl Folder {
@@ -62,7 +62,7 @@ impl Drop for Folder {
     }
 }
 
-/// Models that are not part of this repository, if they are there.
+/// Models outside this repository, if present.
 pub fn shared_models() -> Option<PathBuf> {
     let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/data"));
     if !folder.is_dir() {
@@ -72,11 +72,11 @@ pub fn shared_models() -> Option<PathBuf> {
     Some(folder.to_owned())
 }
 
-/// Squares facing +Z, a row of them; `material` says what the number-th is made of.
+/// A row of squares facing +Z; `material` returns the material of each.
 pub fn cards(count: u32, uv_scale: f32, material: impl Fn(u32) -> Material) -> Model {
     let mut model = Model::default();
     for number in 0..count {
-        // Each a little behind the one before and turned, so that they overlap.
+        // Each is slightly behind the previous one and rotated, so that they overlap.
         let place = Mat4::from_translation(Vec3::new(number as f32 * 1.3, 0.0, number as f32 * -0.4))
             * Mat4::from_rotation_y(0.3 + number as f32 * 0.7);
         let corners = [Vec2::new(-1.0, -1.0), Vec2::new(1.0, -1.0), Vec2::ONE, Vec2::new(-1.0, 1.0)];

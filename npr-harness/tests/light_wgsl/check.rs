@@ -1,51 +1,51 @@
-//! Runs expressions of WGSL in compute shaders, and compares.
+//! Evaluates WGSL expressions in compute shaders and compares them with reference functions.
 
 use crate::random::Random;
 use glam::{DVec4, Vec4};
 use npr_harness::gpu::GpuContext;
 use wgpu::util::DeviceExt as _;
 
-/// What a function is called with: the `a`, `b`, `c` and `d` of its expression.
+/// The arguments of a function: `a`, `b`, `c` and `d` of its expression.
 pub type Given = [Vec4; 4];
 
-/// Models a check, and inputs a model: 16,384 inputs a check.
+/// Models per check, and inputs per model: 16,384 inputs per check.
 pub const MODELS: usize = 64;
 pub const INPUTS: usize = 256;
 
-/// The bound where nothing else is said.
+/// The default bound.
 pub const SMALL: f64 = 1e-5;
 
-/// How far the device may be from the reference.
+/// The largest error allowed on the GPU.
 #[derive(Clone, Copy)]
 pub enum Allowed {
-    /// Per component.
+    /// An absolute error per component.
     Within(f64),
-    /// Per component, as a share of the reference's; 0 must be 0.
+    /// A relative error per component; a reference of 0 must be exact.
     Relative(f64),
-    /// The function is not continuous here.
+    /// Any result is allowed, because the function is not continuous here.
     Anything,
 }
 
-/// One function, or one way to use it, with parameters of type `M`.
+/// A function, or one way to call it, with parameters of type `M`.
 pub struct Check<M> {
     pub name: &'static str,
-    /// A `vec4<f32>` of `a`, `b`, `c`, `d` and `u`, the uniform.
+    /// An expression of type `vec4<f32>` in `a`, `b`, `c`, `d` and the uniform `u`.
     pub wgsl: &'static str,
     pub given: fn(&Random, &M) -> Given,
     pub rust: fn(&M, &Given) -> DVec4,
     pub allowed: fn(&M, &Given) -> Allowed,
 }
 
-/// What a shader reads besides its inputs.
+/// The resources of a shader in addition to its inputs.
 pub struct Extra<'a> {
-    /// From binding 2 on; what each is called and is. A module has all of them.
+    /// The names and types of the bindings from 2 on, which every module declares.
     pub declarations: String,
     pub layout: Vec<wgpu::BindingType>,
-    /// For each model.
+    /// The resources for each model.
     pub resources: Vec<Vec<wgpu::BindingResource<'a>>>,
 }
 
-/// The expressions' values, for each in turn `INPUTS` inputs for each of the models.
+/// The values of each expression for `INPUTS` inputs per model.
 pub fn run(
     gpu: &GpuContext,
     library: &str,
@@ -109,7 +109,7 @@ pub fn run(
     .collect()
 }
 
-/// All models' inputs through one pipeline; each model has its slice of the buffers.
+/// Evaluates the inputs of all models with one pipeline; each model has its slice of the buffers.
 fn dispatch(
     gpu: &GpuContext,
     pipeline: &wgpu::ComputePipeline,
@@ -157,10 +157,10 @@ fn dispatch(
     bytemuck::cast_slice(&copy.get_mapped_range(..).expect("it is mapped")).to_vec()
 }
 
-/// Runs and compares functions that read a uniform of the WGSL type `kind`, `pack`ed from each of the models.
+/// Evaluates and compares functions that read a uniform of the WGSL type `kind`, `pack`ed from each model.
 ///
 /// # Panics
-/// After the whole table is printed, if anything is further from the reference than allowed.
+/// If any error exceeds its bound, after the whole table is printed.
 pub fn compare<M, U: bytemuck::Pod>(
     gpu: &GpuContext,
     library: &str,
@@ -193,7 +193,7 @@ pub fn compare<M, U: bytemuck::Pod>(
     compare_with(gpu, library, &extra, constants, models, checks);
 }
 
-/// The same with whatever `extra` is, for each model its own.
+/// The same with `extra` resources for each model.
 pub fn compare_with<M>(
     gpu: &GpuContext,
     library: &str,
@@ -220,14 +220,14 @@ pub fn compare_with<M>(
             let apart = (found.as_dvec4() - expected).abs();
             let (difference, bound) = match (check.allowed)(model, given) {
                 Allowed::Within(bound) => (apart.max_element(), bound),
-                // 0 / 0, as 0 is to be 0.
+                // 0 / 0, because a reference of 0 must be exact.
                 Allowed::Relative(bound) => ((apart / expected.abs().max(DVec4::splat(1e-300))).max_element(), bound),
                 Allowed::Anything => {
                     exempt += 1;
                     continue;
                 }
             };
-            // What is not a number is as far away as can be.
+            // NaN counts as an infinite error.
             let difference = if found.is_finite() { difference } else { f64::INFINITY };
             let of_bound = if difference > 0.0 { difference / bound } else { 0.0 };
             most = most.max(difference);
@@ -242,7 +242,7 @@ pub fn compare_with<M>(
                 check.name
             ));
         }
-        // A check that exempts what it should look at would pass.
+        // A check with too many exemptions would be meaningless.
         if given.len() < 10_000 || exempt * 10 > given.len() {
             faults.push(format!("{}: {exempt} of {} inputs are exempt", check.name, given.len()));
         }

@@ -1,4 +1,4 @@
-//! npr-gooch.
+//! Checks of npr-gooch.
 
 use crate::check::{Allowed, Check, Given, MODELS, SMALL, compare};
 use crate::random::{Random, with};
@@ -16,7 +16,7 @@ fn color(rgb: DVec3) -> DVec4 {
     rgb.extend(0.0)
 }
 
-/// Presets, and others with sums beyond 1, both pairings and no highlight.
+/// Presets, and models with sums beyond 1, both pairings and no highlight.
 fn models() -> Vec<Gooch> {
     let random = Random::new(2);
     let any = |random: &Random| {
@@ -42,16 +42,16 @@ fn small(_: &Gooch, _: &Given) -> Allowed {
     Allowed::Within(SMALL)
 }
 
-/// WGSL's `pow` is exp2(n log2 x), with log2 to within 2^-21 and so x^n to within n · 3.3e-7; up to n = 32, the
-/// default's, that is the common bound.
+/// WGSL's `pow` is exp2(n log2 x), with an error of log2 up to 2^-21 and so of x^n up to n · 3.3e-7; up to the default
+/// of n = 32 that is the common bound.
 fn highlight_bound(model: &Gooch, _: &Given) -> Allowed {
     Allowed::Within(model.highlight.map_or(SMALL, |highlight| SMALL * (f64::from(highlight.exponent) / 32.0).max(1.0)))
 }
 
-/// No more than the highlight, though (R·E)^n changes n (R·E)^(n-1) times as fast as R·E, which f32 has to within 8e-7
-/// from its dot products: see `gooch_r_dot_e_unit`.
+/// The error is at most the highlight itself, though (R·E)^n changes n (R·E)^(n-1) times as fast as R·E, whose error in
+/// f32 is up to 8e-7 from its dot products: see `gooch_r_dot_e_unit`.
 ///
-/// At N·L = 0 the highlight ends, which at grazing angles is a jump: exempt where f32 may be on its other side.
+/// At N·L = 0 the highlight ends, with a jump at grazing angles: inputs are exempt if f32 may be on the other side.
 fn shade_bound(model: &Gooch, g: &Given) -> Allowed {
     let n_dot_l = gooch_n_dot_l(xyz(g[0]), xyz(g[1]));
     let r_dot_e = gooch_r_dot_e(xyz(g[0]), xyz(g[1]), xyz(g[2])).clamp(0.0, 1.0);
@@ -65,7 +65,7 @@ fn shade_bound(model: &Gooch, g: &Given) -> Allowed {
 fn scene(random: &Random, _: &Gooch) -> Given {
     let normal = random.vector();
     let (to_light, to_eye) = (random.beside(normal), random.beside(normal));
-    // Where the eye sees the light's mirror image, now and then.
+    // Sometimes the eye is in the direction of the mirrored light.
     let n = normal.normalize_or_zero();
     let mirrored = to_light.normalize_or_zero().reflect(n) * -1.0;
     let to_eye = if random.one_in(3) { mirrored + random.direction() * random.log_range(1e-4, 1.0) } else { to_eye };
@@ -135,7 +135,7 @@ const CHECKS: &[Check<Gooch>] = &[
     Check {
         name: "gooch_highlight",
         wgsl: "vec4(gooch_highlight(u, a.x, a.y))",
-        // N·L is compared with 0 and nothing else; R·E may exceed 1 by roundings.
+        // N·L is only compared with 0; R·E may exceed 1 by rounding.
         given: |random, _| {
             let n_dot_l = random.pick(&[0.5, 1e-7, 1e-30, 0.0, -0.0, -1e-30, -0.5]);
             [Vec4::new(n_dot_l, random.near(&[0.0, 0.5, 1.0], 0.2), 0.0, 0.0); 4]
@@ -146,7 +146,7 @@ const CHECKS: &[Check<Gooch>] = &[
     Check {
         name: "gooch_over",
         wgsl: "vec4(gooch_over(u, a.rgb, a.w), 0.0)",
-        // Opacity is 0 where there is no highlight: the uniform has nothing else to say that.
+        // Without a highlight its opacity is 0; the uniform has no other field for that.
         given: |random, model| {
             let opacity = random.pick(&[0.0, 1.0, random.unit()]);
             [with(random.color(), if model.highlight.is_some() { opacity } else { 0.0 }); 4]
@@ -159,7 +159,8 @@ const CHECKS: &[Check<Gooch>] = &[
         wgsl: "vec4(gooch_shade(u, d.rgb, a.xyz, b.xyz, c.xyz), 0.0)",
         given: scene,
         rust: |model, g| color(gooch_shade(model, xyz(g[3]), xyz(g[0]), xyz(g[1]), xyz(g[2]))),
-        // At N·L = 0 the highlight ends, which at grazing angles is a jump; exempt where f32 may be on its other side.
+        // At N·L = 0 the highlight ends, with a jump at grazing angles: inputs are exempt if f32 may be on the other
+        // side.
         allowed: shade_bound,
     },
 ];

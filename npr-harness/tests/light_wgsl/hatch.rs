@@ -1,4 +1,4 @@
-//! npr-hatch, but for its lookups in textures. Nothing in it needs a uniform.
+//! Checks of npr-hatch, except for its texture lookups. No function needs a uniform.
 
 use crate::check::{Allowed, Check, Given, MODELS, SMALL, compare};
 use crate::random::{Random, with};
@@ -35,13 +35,13 @@ fn zw(v: Vec4) -> DVec2 {
     DVec2::new(f64::from(v.z), f64::from(v.w))
 }
 
-/// At and around the whole numbers, where the weights are bent, and far away.
+/// At and around integers, where the weights have kinks, and far away.
 fn factor(random: &Random) -> f32 {
     let near = random.near(&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0], 1.0);
     random.pick(&[near, near, near, random.range(-20.0, 20.0)])
 }
 
-/// Six tones that fall by a fiftieth or more, and a tone anywhere.
+/// Six tones that decrease by at least 1/50, and any tone.
 fn tones(random: &Random, _: &()) -> Given {
     let mut tone = 1.0;
     let tones = [(); 6].map(|()| {
@@ -57,7 +57,7 @@ fn texels(random: &Random, _: &()) -> Given {
     [with(random.color(), 0.0), with(random.color(), 0.0), Vec4::splat(factor(random)), Vec4::ZERO]
 }
 
-/// How texture coordinates change along x and y, and how many texels they have for how many levels.
+/// The derivatives of texture coordinates along x and y, the number of texels and of levels.
 fn derivatives(random: &Random, _: &()) -> Given {
     let last = 4.0 + random.below(7) as f32;
     let texels = random.pick(&[1.0, 1.0, 0.7, 1.3]) * last.exp2();
@@ -89,15 +89,15 @@ fn spread(_: &(), g: &Given) -> DVec4 {
     DVec4::new(s.x * s.x, s.x * s.y, s.y * s.y, 0.0) / s.length().max(1e-30)
 }
 
-/// The area comes from a difference of products, each rounded: by 2⁻²² of the longer axis' square, as the derivatives
-/// in texels are rounded too. So where the ratio is at most 16, it is 16 · 2⁻²² = 4e-6 off as a share, its root half of
-/// that of 4: 8e-6. A level is 2e-6 off, so that the longer axis in texels of it is 4 · 1.4e-6 off. The rest is
-/// roundings of up to 4: together 2e-5.
+/// The area is a difference of products, each rounded: its error is 2⁻²² of the longer axis' square, since the
+/// derivatives in texels are rounded too. Where the ratio is at most 16, its relative error is 16 · 2⁻²² = 4e-6; its
+/// root, up to 4, has half of that: 8e-6. A level has an error of 2e-6, so the longer axis in texels of that level has
+/// one of 4 · 1.4e-6. The rest is rounding of values up to 4: together 2e-5.
 fn spread_bound(_: &(), _: &Given) -> Allowed {
     Allowed::Within(2e-5)
 }
 
-/// A place, and the side of a level as a power of two.
+/// A position, and the side of a level as a power of two.
 fn place(random: &Random, _: &()) -> Given {
     let side = (random.below(9) as f32).exp2();
     let centre = |random: &Random| (random.below(6 * side as u32) as f32 + random.pick(&[0.0, 0.5])) / side - 3.0;
@@ -108,7 +108,8 @@ fn place(random: &Random, _: &()) -> Given {
     [Vec4::new(place[0], place[1], side, 0.0); 4]
 }
 
-/// Where on a circle of `turn` a number is, so that 0 and `turn` are the same: of two triangle waves, a quarter apart.
+/// The position of a number on a circle of length `turn`, so that 0 and `turn` are equal: two triangle waves, a quarter
+/// apart.
 fn on_circle(number: f64, turn: f64) -> DVec2 {
     (DVec2::new(number, number + 0.25 * turn).map(|at| at.rem_euclid(turn)) - 0.5 * turn).abs()
 }
@@ -120,8 +121,8 @@ fn low_taps(_: &(), g: &Given) -> DVec4 {
     DVec4::new(x.x, x.y, y.x, y.y)
 }
 
-/// A place times a power of two is exact; half a texel less is rounded by up to 2⁻¹⁵ of 768 texels. On the circle it is
-/// moved, which rounds up to 384 by 2⁻¹⁷ twice. Jumps from texel to texel are none there.
+/// A position times a power of two is exact; subtracting half a texel rounds by up to 2⁻¹⁵ for 768 texels. Mapping it
+/// to the circle rounds values up to 384 by 2⁻¹⁷ twice. On the circle, steps between texels are continuous.
 fn taps_bound(_: &(), _: &Given) -> Allowed {
     Allowed::Within(5e-5)
 }
@@ -135,7 +136,7 @@ fn high_taps(_: &(), g: &Given) -> DVec4 {
     DVec4::ZERO
 }
 
-/// Of any length for planes' weights, mostly of a unit.
+/// A normal for the planes' weights, of any length, mostly 1.
 fn normal(random: &Random, _: &()) -> Given {
     let unit = random.direction();
     let axis = random.pick(&[Vec3::X, Vec3::Y, Vec3::Z]);
@@ -154,7 +155,7 @@ fn seen(random: &Random, _: &()) -> Given {
     [with(diagonal, 0.0), with(others, 0.0), Vec4::splat(random.below(3) as f32), Vec4::ZERO]
 }
 
-/// A doubled angle, of all lengths: at, beside and between the turns.
+/// A vector of a doubled angle, of any length: at, near and between the borders of the turns.
 fn doubled(random: &Random, _: &()) -> Given {
     let step = std::f32::consts::PI / 6.0;
     let turn = random.below(13) as f32 - 6.0;
@@ -173,8 +174,8 @@ fn turned_between(_: &(), g: &Given) -> DVec4 {
     DVec4::new(at.x, at.y, 0.0, 0.0)
 }
 
-/// An arc tangent that is within 1e-5 (they are polynomials; Vulkan asks for 4096 units, 1e-3) is 2e-5 turns off, sums
-/// and products up to 18 turns 4e-6, and a share is four times as steep.
+/// An arc tangent with an error up to 1e-5 (it is a polynomial; Vulkan allows 4096 ulp, 1e-3) gives 2e-5 turns; sums
+/// and products up to 18 turns give 4e-6; a share is four times as steep.
 fn turn_bound(_: &(), _: &Given) -> Allowed {
     Allowed::Within(1e-4)
 }
@@ -190,8 +191,8 @@ fn turn(random: &Random, _: &()) -> Given {
     [numbers; 4]
 }
 
-/// Sines within 2⁻²⁰ (what hardware has; Vulkan asks for 2⁻¹¹) and angles rounded by 2⁻²³, times two places of up to
-/// 10, and roundings of up to 20.
+/// Sines with an error of 2⁻²⁰ (on hardware; Vulkan allows 2⁻¹¹) and angles rounded by 2⁻²³, times two positions of up
+/// to 10, and rounding of values up to 20.
 fn turned_bound(_: &(), _: &Given) -> Allowed {
     Allowed::Within(4e-5)
 }
@@ -201,7 +202,7 @@ fn tone_and_share(random: &Random, _: &()) -> Given {
     [Vec4::new(tone, random.pick(&[0.0, 1.0, random.unit(), random.unit()]), 0.0, 0.0); 4]
 }
 
-/// What the checks call, behind the library: see [`spread`] and [`on_circle`].
+/// Functions that the checks call, appended to the library: see [`spread`] and [`on_circle`].
 const CONTINUOUS: &str = "
     fn spread_line(footprint: HatchFootprint, texels: f32) -> vec4<f32> {
         let s = footprint.spread * (texels / exp2(footprint.level));

@@ -1,4 +1,4 @@
-//! npr-hatch: lookups in the textures of maps, as they are uploaded.
+//! Checks of npr-hatch: lookups in the textures of maps, as uploaded.
 
 use crate::check::{Allowed, Check, Extra, Given, MODELS, compare_with};
 use crate::random::Random;
@@ -9,10 +9,10 @@ use npr_hatch::upload::{TamChannels, hatch_sampler, hatch_threshold_sampler, upl
 use npr_hatch::{Tam, TamParameters, Thresholds, draw, even_tones};
 use std::sync::Arc;
 
-/// How many maps there are; models share them.
+/// The number of maps; models share them.
 const MAPS: usize = 4;
 
-/// Thresholds without order: neighbours, and levels, are as different as can be. And those of strokes.
+/// Random thresholds, so that neighbours and levels are as different as possible, and those of strokes.
 fn thresholds() -> Vec<Arc<Thresholds>> {
     let random = Random::new(10);
     let any = |side: u32| {
@@ -26,7 +26,7 @@ fn thresholds() -> Vec<Arc<Thresholds>> {
     (0..MODELS).map(|number| maps[number % MAPS].clone()).collect()
 }
 
-/// The same of six tones, nested.
+/// The same for six nested tones.
 fn tams() -> Vec<Arc<Tam>> {
     let random = Random::new(11);
     let any = |side: u32| {
@@ -49,14 +49,14 @@ fn tams() -> Vec<Arc<Tam>> {
     (0..MODELS).map(|number| maps[number % MAPS].clone()).collect()
 }
 
-/// `a`: a place and a spread; the first two of `b`: a level from the finest to the coarsest, and a tone.
+/// `a`: a position and a spread; the first two of `b`: a level from the finest to the coarsest, and a tone.
 fn look(random: &Random, side: u32) -> [Vec4; 2] {
     let last = side.trailing_zeros() as f32;
     let whole = random.below(side.trailing_zeros() + 1) as f32;
     let level = random.pick(&[whole, 0.0, last, random.range(0.0, last), random.range(0.0, last)]);
     let spread = Vec2::new(random.range(-0.3, 0.3), random.range(-0.3, 0.3));
     let spread = random.pick(&[Vec2::ZERO, spread, spread * 0.1]);
-    // Between thresholds, so that hard ones are never equal to it.
+    // Between thresholds, so that no hard threshold equals it.
     let between = (random.below(65535) as f32 + 0.5) / 65535.0;
     let near = random.below(400) as f32 / 65535.0;
     let tone = match random.below(16) {
@@ -87,9 +87,9 @@ fn ink(map: &Thresholds, g: &Given, footprint: HatchFootprint) -> DVec4 {
     DVec4::splat(hatch_ink(map, uv(g), footprint, f64::from(g[1].y), f64::from(g[1].z)))
 }
 
-/// Of up to 128 texels: a sample's place, up to 3, is rounded by 2⁻²³, which is 2⁻¹⁶ texels, and as much again by the
-/// half texel less; texels that differ by all their ink pass on both axes' 3e-5. A threshold is off by 2⁻²³, 1/64 of a
-/// tone's width makes that 64 times as steep: 1e-5 more.
+/// For up to 128 texels: a sample's position, up to 3, is rounded by 2⁻²³, which is 2⁻¹⁶ texels, and again when half a
+/// texel is subtracted; between texels of extreme ink the error is 3e-5 over both axes. A threshold has an error of
+/// 2⁻²³, and the width of 1/64 tone makes that 64 times as large: 1e-5 more.
 fn ink_bound(_: &Arc<Thresholds>, _: &Given) -> Allowed {
     Allowed::Within(1e-4)
 }
@@ -145,7 +145,7 @@ const INK: &[Check<Arc<Thresholds>>] = &[
             let [x, y] = [g[0].x, g[0].y].map(|uv| ((uv - uv.floor()) * side as f32) as usize);
             DVec4::splat(f64::from(map.levels[level][y * side + x]) / 65535.0)
         },
-        // Two texels of 8 bits, each rounded to an f32.
+        // Two 8-bit texels, each rounded to an f32.
         allowed: |_, _| Allowed::Within(3e-7),
     },
 ];
@@ -155,14 +155,14 @@ fn sampled(random: &Random, tam: &Arc<Tam>) -> Given {
     [at, asked, Vec4::ZERO, Vec4::ZERO]
 }
 
-/// A sampler may count shares in steps of 1/256, along both axes and between levels, texels may differ by all there is,
-/// and what comes out is rounded: a step of 8 bits for each.
+/// A sampler may quantize weights to 1/256, along both axes and between levels, texels may differ by the full range,
+/// and the result is rounded: an 8-bit step for each.
 fn texels_bound(_: &Arc<Tam>, _: &Given) -> Allowed {
     Allowed::Within(4.0 / 255.0)
 }
 
-/// Places are rounded by 2⁻²⁴ of up to 128 texels of the largest map, times a level's full range between two texels, along
-/// both axes: 1e-4. A texel under 1 is rounded to a half float by up to 2⁻¹².
+/// Positions are rounded by 2⁻²⁴ of up to 128 texels of the largest map, times the full range between two texels, along
+/// both axes: 1e-4. Rounding a texel below 1 to a half float adds up to 2⁻¹².
 fn half_float_bound(_: &Arc<Tam>, _: &Given) -> Allowed {
     Allowed::Within(4e-4)
 }
@@ -239,7 +239,7 @@ fn ink_from_a_texture_is_its_reference() {
     compare_with(&gpu, &library(), &extra, &[], &models, INK);
 }
 
-/// Hardware has a fraction of 8 bits, whatever it filters.
+/// Hardware filters with an 8-bit fraction.
 #[test]
 fn texels_from_textures_are_their_reference() {
     let Some(gpu) = crate::device() else { return };

@@ -1,4 +1,4 @@
-//! npr-toon: ramps in 8-bit textures, read by `textureLoad` and by a sampler.
+//! Checks of npr-toon: ramps in 8-bit textures, read by `textureLoad` and by a sampler.
 
 use crate::check::{Allowed, Check, Extra, Given, MODELS, SMALL, compare_with};
 use crate::random::Random;
@@ -8,11 +8,11 @@ use npr_toon::row::{RampRow, TexelFilter, toon_row};
 use npr_toon::table::{RampTable, toon_table};
 use wgpu::util::DeviceExt as _;
 
-/// A step of 8 bits: the bound, but for what a sampler mixes from four texels. It may count the shares in steps of 1/256,
-/// along each axis, and the texels here are as different as can be: a step for each axis.
+/// The bound is an 8-bit step, except for a sampler's mix of four texels: it may quantize the weights to 1/256 along
+/// each axis, and the texels here are as different as possible, so it is a step per axis.
 const STEP: f64 = 1.0 / 255.0;
 
-/// Texels without order: neighbours are as different as can be.
+/// Random texels: neighbours are as different as possible.
 fn any_texels(random: &Random, count: u32) -> Vec<[u8; 4]> {
     (0..count).map(|_| [(); 4].map(|()| random.pick(&[0, 255, random.below(256) as u8]))).collect()
 }
@@ -36,7 +36,7 @@ fn tables(filter: TexelFilter) -> Vec<RampTable> {
     (0..MODELS).map(table).collect()
 }
 
-/// Along the row, and beyond its ends; its ends.
+/// Coordinates along the row and beyond its ends; its ends.
 fn along(random: &Random, row: &RampRow) -> Given {
     let length = row.to - row.from;
     let texel = length / row.texels.len() as f32;
@@ -91,7 +91,7 @@ const fn table(name: &'static str, wgsl: &'static str) -> Check<RampTable> {
     Check { name, wgsl, given: within, rust: table_color, allowed: table_bound }
 }
 
-/// What the checks call, in front of the library: the image, and how it is read.
+/// Functions and bindings that the checks use, placed before the library.
 const READERS: &str = "
     @group(0) @binding(2) var image: texture_2d<f32>;
     @group(0) @binding(3) var by_sampler: sampler;
@@ -142,7 +142,7 @@ pub fn calls() -> Vec<&'static str> {
     vec![READERS]
 }
 
-/// Puts the models' texels into textures, and compares.
+/// Uploads the models' texels to textures, and compares.
 fn compare_images<M>(
     gpu: &GpuContext,
     filter: TexelFilter,
@@ -173,7 +173,7 @@ fn compare_images<M>(
         TexelFilter::Nearest => wgpu::FilterMode::Nearest,
         TexelFilter::Linear => wgpu::FilterMode::Linear,
     };
-    // Clamp-to-edge is the default.
+    // The default address mode is clamp-to-edge.
     let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
         mag_filter: mode,
         min_filter: mode,

@@ -1,9 +1,9 @@
-//! The WGSL of npr-toon, npr-gooch and npr-hatch, run on a device, against the Rust functions of the same names, which
-//! are in f64, on the same seeded inputs.
+//! Comparison of the WGSL of npr-toon, npr-gooch and npr-hatch on a GPU with the Rust functions of the same names, in
+//! f64, on the same seeded inputs.
 //!
-//! Inputs are f32, so a function and its twin are given exactly the same numbers; what is measured is the arithmetic
-//! alone. Each test prints a table: how many inputs, how many of them allow any result and why (in the check's own
-//! comment), the largest difference, and the largest share of what is allowed.
+//! Inputs are f32, so both functions get exactly the same numbers, and only the arithmetic is compared. Each test
+//! prints a table: the number of inputs, the number of exempt ones (the reason is in the check's comment), the largest
+//! error, and the largest error relative to its bound.
 #![cfg(feature = "gpu")]
 #![allow(clippy::print_stdout)]
 
@@ -22,7 +22,7 @@ mod toon;
 use npr_harness::executor::Executor;
 use npr_harness::gpu::GpuContext;
 
-/// The device, or `None`, having said so, where `NPR_GPU` allows that there is none.
+/// The GPU, or `None` with a message if there is no adapter and `NPR_GPU` does not require one.
 fn device() -> Option<Box<GpuContext>> {
     match common::device()? {
         Executor::Gpu(gpu) => Some(gpu),
@@ -30,7 +30,7 @@ fn device() -> Option<Box<GpuContext>> {
     }
 }
 
-/// Every function of the libraries is called by some check, so that a new one cannot be forgotten.
+/// Every function of the libraries must be called by some check.
 #[test]
 fn every_function_is_run() {
     let calls = [

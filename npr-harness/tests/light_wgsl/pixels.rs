@@ -1,22 +1,23 @@
-//! npr-toon: the widths that need derivatives, and so a fragment shader.
+//! Checks of npr-toon: widths that need derivatives and therefore a fragment shader.
 
 use crate::check::SMALL;
 use glam::{DVec2, Vec4};
 use npr_toon::border::toon_border_width;
 use npr_toon::toon_width;
 
-/// The picture's side; every block of 2 × 2 pixels, within which derivatives are taken, has a slope of its own.
+/// The picture's side. Every block of 2 × 2 pixels, in which derivatives are taken, has its own slope.
 const SIDE: u32 = 256;
 
-/// The slopes are computed, not loaded: pixels beside a triangle's edge take derivatives from neighbours outside of it,
-/// and not every driver lets these load.
+/// The slopes are computed, not loaded: pixels at a triangle's edge take derivatives from neighbours outside it, for
+/// which some drivers do not execute loads.
 const SHADER: &str = "
     @vertex fn vs(@builtin(vertex_index) i: u32) -> @builtin(position) vec4<f32> {
         return vec4(f32(i & 1u) * 4.0 - 1.0, f32(i >> 1u) * 4.0 - 1.0, 0.0, 1.0);
     }
     @fragment fn fs(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {
         let block = floor(at.xy / 2.0);
-        // None in the first column, then from flat to steep; rightward, and downward from as much up to as much down.
+        // No slope in the first column, then from flat to steep to the right, and from rising to equally falling
+        // downwards.
         let along_x = select(pow(10.0, block.x / 16.0 - 6.0), 0.0, block.x == 0.0);
         let slope = along_x * vec2(1.0, block.y / 64.0 - 1.0);
         let x = dot(slope, at.xy - 2.0 * block);

@@ -1,4 +1,4 @@
-//! npr-toon: ramps from stops, of one and two dimensions, and which texels a row's coordinate falls on.
+//! Checks of npr-toon: 1D and 2D ramps from stops, and the texels for a coordinate of a row.
 
 use crate::check::{Allowed, Check, Given, MODELS, SMALL, compare};
 use crate::random::{Random, with};
@@ -8,7 +8,7 @@ use npr_toon::row::{toon_row_nearest, toon_row_taps};
 use npr_toon::table::{Corner, Ramp2d, Ramp2dUniform, toon_corner, toon_ramp_2d, toon_table_mix};
 use npr_toon::x_toon::{toon_depth_detail, toon_silhouette_detail, toon_x_toon};
 
-/// Stops from `first` on, the others no lower than `low`, some of them next to each other in f32.
+/// Stops starting at `first`, the others not lower than `low`, some of them adjacent in f32.
 fn any_ramp(random: &Random, blend: RampBlend, stops: u32, first: f32, low: f32) -> Ramp {
     let mut at = first;
     let stops = (0..stops).map(|_| {
@@ -57,8 +57,8 @@ fn number(x: f32) -> f64 {
     f64::from(x)
 }
 
-/// No width amplifies anything, nor do stops close together: what is looked up and the stops are f32 already, and
-/// the difference of two f32 that are close together is exact.
+/// Neither widths nor close stops amplify errors: lookup coordinates and stops are f32 already, and the difference of
+/// two close f32 is exact.
 const RAMP: &[Check<Ramp>] = &[Check {
     name: "toon_ramp",
     wgsl: "vec4(toon_ramp(u, a.x, a.y), 0.0)",
@@ -78,14 +78,14 @@ fn reach(random: &Random, ramps: &Ramp2d) -> Given {
         let angle = random.range(0.0, std::f32::consts::FRAC_PI_2);
         uv = Vec2::from_angle(angle) * random.near(&[corner.threshold], widths.max_element());
     }
-    // What is shorter than 1e-15 has a direction in f64 only, and so another width.
+    // Vectors shorter than 1e-15 have a direction only in f64, and so another width.
     let uv = uv.map(|x| if x.abs() < 1e-14 { 0.0 } else { x });
     [Vec4::new(uv.x, uv.y, widths.x, widths.y), Vec4::splat(random.range(0.1, 1.4)), Vec4::ZERO, Vec4::ZERO]
 }
 
-/// The corner's border is crossed by the length of (u, v), which f32 has to within some 2e-7, and a share of a pixel is
-/// that over the width; below a width of 2^-23 it is a step, as the others. Exempt is what lies within 1e-5 of
-/// the threshold where the width is less than that.
+/// The corner's border depends on the length of (u, v), whose error in f32 is about 2e-7, and coverage is that over the
+/// width; below a width of 2^-23 it is a step, as for other borders. Inputs within 1e-5 of the threshold are exempt if
+/// the width is less than that.
 fn corner_bound(uv: Vec4, threshold: f32) -> Allowed {
     let (uv, widths) = (DVec2::new(number(uv.x), number(uv.y)), DVec2::new(number(uv.z), number(uv.w)));
     let reach = uv.clamp(DVec2::ZERO, DVec2::ONE);
@@ -93,7 +93,7 @@ fn corner_bound(uv: Vec4, threshold: f32) -> Allowed {
     let moving = DVec2::select(uv.cmplt(DVec2::ONE), widths, DVec2::ZERO);
     let width = if length > 0.0 { reach.dot(moving) / length } else { 0.0 };
     let off = (length - number(threshold)).abs();
-    // Beyond the pixel the share is 0 or 1.
+    // Beyond the pixel the coverage is 0 or 1.
     if off > width / 2.0 + SMALL {
         Allowed::Within(SMALL)
     } else if width > SMALL {
@@ -123,7 +123,7 @@ const RAMP_2D: &[Check<Ramp2d>] = &[
             let [u, v, along_u, along_v] = g[0].as_dvec4().to_array();
             color(toon_ramp_2d(ramps, DVec2::new(u, v), DVec2::new(along_u, along_v)))
         },
-        // The corner's share is a factor on colours that are at most 2 apart.
+        // The corner's coverage multiplies colours that differ by at most 2.
         allowed: |ramps, g| match ramps.corner.map(|corner| corner_bound(g[0], corner.threshold)) {
             Some(Allowed::Within(bound)) => Allowed::Within(SMALL + 2.0 * (bound - SMALL)),
             Some(other) => other,
@@ -132,7 +132,7 @@ const RAMP_2D: &[Check<Ramp2d>] = &[
     },
 ];
 
-/// Detail, which needs no model, and the mean of two ramps by it.
+/// The level of detail, which needs no model, and the mean of two ramps by it.
 const X_TOON: &[Check<Ramp2d>] = &[
     Check {
         name: "toon_depth_detail",
@@ -145,7 +145,7 @@ const X_TOON: &[Check<Ramp2d>] = &[
             [Vec4::new(depth, near, far, 0.0); 4]
         },
         rust: |_, g| DVec4::splat(toon_depth_detail(number(g[0].x), number(g[0].y), number(g[0].z))),
-        // WGSL's logarithm is exact to 2^-21 around 1, and the smallest that is divided by is ln 1.2.
+        // WGSL's logarithm has an error of 2^-21 around 1, and the smallest divisor is ln 1.2.
         allowed: |_, _| Allowed::Within(SMALL),
     },
     Check {
@@ -156,7 +156,7 @@ const X_TOON: &[Check<Ramp2d>] = &[
             [Vec4::new(n_dot_v, random.log_range(0.25, 16.0), 0.0, 0.0); 4]
         },
         rust: |_, g| DVec4::splat(toon_silhouette_detail(number(g[0].x), number(g[0].y))),
-        // The same of log2, times the exponent.
+        // The same for log2, times the exponent.
         allowed: |_, g| Allowed::Within(SMALL + number(g[0].y) * 2f64.powi(-21)),
     },
     Check {
@@ -172,7 +172,7 @@ const X_TOON: &[Check<Ramp2d>] = &[
     },
 ];
 
-/// Where in a row of some texels over some range; the range, and how many.
+/// A coordinate, the range of a row, and its number of texels.
 fn place(random: &Random, _: &Ramp) -> Given {
     let (start, length) =
         (random.pick(&[0.0, -1.0, random.range(-2.0, 1.0)]), random.pick(&[1.0, 2.0, random.unit() + 0.1]));
@@ -180,7 +180,7 @@ fn place(random: &Random, _: &Ramp) -> Given {
     let texel = length / count as f32;
     let border = start + texel * random.below(count + 1) as f32;
     let x = match random.below(16) {
-        // Texels' borders and centres, far away, anywhere.
+        // Borders and centres of texels, far away, and anywhere.
         0 => border,
         1 => border + texel / 2.0,
         2 => border + texel * random.range(-1e-3, 1e-3),
@@ -219,8 +219,8 @@ const ROWS: &[Check<Ramp>] = &[
             let taps = toon_row_taps(number(g[0].x), number(g[0].y), number(g[0].z), g[0].w as u32);
             DVec4::new(f64::from(taps.left), f64::from(taps.right), taps.share, 0.0)
         },
-        // A share is in texels: 1e-5 of the row is as many times more as the row has texels. Texels are equal, but for
-        // centres, where the left one may be the one before, with a share of nearly 1.
+        // Weights are in texels, so an error of 1e-5 of the row is multiplied by its number of texels. Texels must be
+        // equal, except at centres, where the left one may be the previous one with a weight of nearly 1.
         allowed: |_, g| {
             let s = texels(g) - 0.5;
             let at_a_centre = s > -0.5 && s < number(g[0].w) && (s - s.round()).abs() < SMALL * number(g[0].w);
@@ -234,7 +234,8 @@ const ROWS: &[Check<Ramp>] = &[
         rust: |_, g| {
             let [a, b, c, d] = g.map(|v| v.truncate().as_dvec3());
             let mixed = toon_table_mix(a, b, c, d, number(g[0].w), number(g[1].w));
-            // Four components there and three here: the alpha is checked as the first component of others.
+            // Colours have four components there and three here; alpha is checked as the first component of other
+            // inputs.
             let [a, b, c, d] = g.map(|v| DVec3::splat(number(v.w)));
             mixed.extend(toon_table_mix(a, b, c, d, number(g[0].w), number(g[1].w)).x)
         },

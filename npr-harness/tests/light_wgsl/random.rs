@@ -1,9 +1,9 @@
-//! Seeded inputs, nasty ones among them.
+//! Seeded inputs, including difficult ones.
 
 use glam::{Vec3, Vec4};
 use std::cell::Cell;
 
-/// SplitMix64: the same numbers everywhere.
+/// SplitMix64, which gives the same numbers on every platform.
 pub struct Random(Cell<u64>);
 
 impl Random {
@@ -28,7 +28,7 @@ impl Random {
         low + (high - low) * self.unit()
     }
 
-    /// Between two positive numbers, each order of magnitude as often as the others.
+    /// Log-uniform between two positive numbers.
     pub fn log_range(&self, low: f32, high: f32) -> f32 {
         self.range(low.ln(), high.ln()).exp()
     }
@@ -41,12 +41,12 @@ impl Random {
         of[self.below(of.len() as u32) as usize]
     }
 
-    /// About one in `count`.
+    /// True with a probability of about 1 / `count`.
     pub fn one_in(&self, count: u32) -> bool {
         self.below(count) == 0
     }
 
-    /// 0..=1 each, or beyond that by as much again.
+    /// Components in 0..=1, or outside by up to 1.
     pub fn color(&self) -> Vec3 {
         let high = self.pick(&[1.0, 1.0, 2.0]);
         Vec3::new(self.range(0.0, high), self.range(0.0, high), self.range(0.0, high))
@@ -77,7 +77,7 @@ impl Random {
         }
     }
 
-    /// A vector that may lie awkwardly to another: the same, opposite, of another length, nearly so, at a right angle.
+    /// A vector in a special relation to another: equal, opposite, of another length, nearly so, or perpendicular.
     pub fn beside(&self, other: Vec3) -> Vec3 {
         let away = self.direction() * other.length();
         match self.below(12) {
@@ -92,9 +92,9 @@ impl Random {
         }
     }
 
-    /// The width of a border: none, less than the least that counts, tiny, huge, or as in a picture.
+    /// The width of a border: zero, below the least that counts, tiny, huge, or typical.
     ///
-    /// Up to 1000: from 20,000 on a border at 10,000, by which the uniforms say "none", comes into reach.
+    /// Up to 1000: from 20,000 on, a border at 10,000, which means "none" in the uniforms, would be within the width.
     pub fn width(&self) -> f32 {
         match self.below(8) {
             0 => 0.0,
@@ -105,7 +105,7 @@ impl Random {
         }
     }
 
-    /// A number that may lie at one of `places`, a rounding beside it, or within a width of it.
+    /// A number that may equal one of `places`, be a rounding error away, or within a width of it.
     ///
     /// 0 itself, but nothing else within 1e-22 of it: what is smaller is less than 1e-30 from its neighbours, which the
     /// hard `toon_coverage` takes for equal, and in the end a denormal number, which a device may take for 0.
@@ -129,7 +129,7 @@ impl Random {
     }
 }
 
-/// A vector and a number more.
+/// A vector with a fourth component.
 pub fn with(v: Vec3, w: f32) -> Vec4 {
     v.extend(w)
 }

@@ -1,4 +1,4 @@
-//! npr-toon: bands, borders, lights and the painter.
+//! Checks of npr-toon: bands, borders, lights and the painter.
 
 use crate::check::{Allowed, Check, Given, MODELS, SMALL, compare};
 use crate::random::{Random, with};
@@ -23,12 +23,12 @@ fn color(rgb: DVec3) -> DVec4 {
     rgb.extend(0.0)
 }
 
-/// A number in all components.
+/// A vector with the number in all components.
 fn one(x: f64) -> DVec4 {
     DVec4::splat(x)
 }
 
-/// Bands of any number of tones, thresholds close together among them.
+/// Bands with any number of tones, some with close thresholds.
 fn any_bands(random: &Random, tones: u32) -> Bands {
     let mut at = random.range(-1.0, 0.2);
     let thresholds = (1..tones).map(|_| {
@@ -55,7 +55,7 @@ fn small<M>(_: &M, _: &Given) -> Allowed {
     Allowed::Within(SMALL)
 }
 
-/// Equal, bit for bit. The reference is in f64, but a tone, and a comparison of two f32, come out of it as they went in.
+/// The bound is exact equality: the reference is in f64, but tones and comparisons of two f32 are exact.
 fn equal<M>(_: &M, _: &Given) -> Allowed {
     Allowed::Within(0.0)
 }
@@ -71,14 +71,14 @@ fn vectors<M>(random: &Random, _: &M) -> Given {
     [with(normal, 0.0), with(to_light, 0.0), with(random.beside(to_light), 0.0), Vec4::ZERO]
 }
 
-/// Vectors as a rasteriser has them: no longer than 1.
+/// Vectors as a rasteriser interpolates them: not longer than 1.
 fn interpolated<M>(random: &Random, _: &M) -> Given {
     let shorter = with(random.direction() * random.unit(), 0.0);
     [shorter, with(random.direction(), 0.0), Vec4::ZERO, Vec4::ZERO]
 }
 
-/// f32 has unit vectors to within some 4e-7, and the half vector is their sum brought to unit length: what is lost
-/// grows as that sum gets shorter. It is zero below 1e-6; exempt is what f32 may have on the other side of that.
+/// Unit vectors in f32 have an error of about 4e-7, and the half vector is their normalized sum, so the error grows as
+/// the sum gets shorter. Below 1e-6 it is zero; inputs are exempt if f32 may be on the other side of that.
 fn half_bound<M>(_: &M, g: &Given) -> Allowed {
     let (l, e) = (xyz(g[1]).normalize_or_zero(), xyz(g[2]).normalize_or_zero());
     let length = (l + e).length();
@@ -101,7 +101,7 @@ fn lit(random: &Random, bands: &Bands) -> Given {
     [Vec4::new(n_dot_l, nl_width, n_dot_h, nh_width), with(random.color(), 0.0), Vec4::ZERO, Vec4::ZERO]
 }
 
-/// What reads no uniform; the bands' thresholds are where inputs lie.
+/// Functions without a uniform; inputs lie at the thresholds of the bands.
 const FUNCTIONS: &[Check<Bands>] = &[
     Check {
         name: "toon_unit",
@@ -148,7 +148,7 @@ const FUNCTIONS: &[Check<Bands>] = &[
     Check {
         name: "toon_n_dot_h_from_dots",
         wgsl: "vec4(toon_n_dot_h_from_dots(a.x, a.y, a.z))",
-        // Dot products as a shader has them: each rounded by itself, so that L.E may come out below -1.
+        // Dot products as in a shader, each rounded, so that L.E may be below -1.
         given: |random, bands| {
             let [n, l, e, _] = vectors(random, bands);
             let [n, l, e] = [n, l, e].map(|v| xyz(v).normalize_or(DVec3::X));
@@ -165,7 +165,7 @@ const FUNCTIONS: &[Check<Bands>] = &[
     Check {
         name: "toon_width",
         wgsl: "vec4(toon_width(a.x, a.y))",
-        // Within what f32 has squares of.
+        // Within the range whose squares f32 can represent.
         given: |random, _| {
             let part = || random.pick(&[0.0, 1.0, -1.0]) * random.log_range(1e-15, 1e15);
             [Vec4::new(part(), part(), 0.0, 0.0); 4]
@@ -176,7 +176,7 @@ const FUNCTIONS: &[Check<Bands>] = &[
     Check {
         name: "toon_border_width",
         wgsl: "vec4(toon_border_width(a.x, a.y))",
-        // Of any size: what has no square is beyond a limit.
+        // Of any size: a number whose square overflows exceeds a limit.
         given: |random, _| {
             let part = || {
                 let size = random.log_range(1e-37, 1e37);
@@ -196,8 +196,8 @@ const FUNCTIONS: &[Check<Bands>] = &[
             [a, Vec4::splat(threshold), Vec4::ZERO, Vec4::ZERO]
         },
         rust: |_, g| one(toon_coverage(f64::from(g[0].x), f64::from(g[1].x), f64::from(g[0].y))),
-        // Small widths amplify nothing: x, threshold and width are f32 already, and the difference of two f32 that are
-        // close together is exact.
+        // Small widths amplify no errors: x, threshold and width are f32 already, and the difference of two close f32
+        // is exact.
         allowed: small,
     },
     Check {
@@ -250,7 +250,7 @@ const BANDS: &[Check<Bands>] = &[
         wgsl: "vec4(toon_band(u, a.x, 0.0), 0.0)",
         given: lit,
         rust: |bands, g| color(toon_band_hard(bands, f64::from(g[0].x))),
-        // At every threshold, too, and a rounding beside it.
+        // Also at every threshold, and a rounding error away.
         allowed: equal,
     },
     Check {
@@ -267,7 +267,7 @@ const BANDS: &[Check<Bands>] = &[
             [with(n * random.log_range(1e-3, 1e3), 0.0), with(to_light, 0.0), Vec4::ZERO, Vec4::ZERO]
         },
         rust: |bands, g| color(toon_band_hard(bands, toon_n_dot_l(xyz(g[0]), xyz(g[1])))),
-        // Here N·L is computed, and may be on the other side of a threshold.
+        // Here N·L is computed, so it may be on the other side of a threshold.
         allowed: |bands, g| {
             let n_dot_l = toon_n_dot_l(xyz(g[0]), xyz(g[1]));
             let near = bands.thresholds.iter().any(|&t| (n_dot_l - f64::from(t)).abs() < SMALL);
@@ -303,7 +303,7 @@ const BANDS: &[Check<Bands>] = &[
     },
 ];
 
-/// Up to two lights, near, far, and where points may be.
+/// Up to two lights, near or far, and the range of points.
 fn any_painter(random: &Random) -> Painter {
     let count = random.below(3);
     let light = |_| {
@@ -318,7 +318,7 @@ fn any_painter(random: &Random) -> Painter {
     Painter { lights, light_scale: random.pick(&[Painter::LIGHT_SCALE, 0.5, random.unit()]) }
 }
 
-/// A point, perhaps at a light's own place or near it, and a normal.
+/// A point, sometimes at or near a light, and a normal.
 fn point(random: &Random, painter: &Painter) -> Given {
     let light = painter.lights.first().map(|light| light.place);
     let position = if let Some(LightKind::Positional { position }) = light { position } else { Vec3::ZERO };

@@ -39,7 +39,7 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
     }
     let tell = |metric: &check::Metric| {
         if !options.json {
-            // What cannot be written now cannot be at the end, and is an error there.
+            // A write error is ignored here, because the write at the end reports it.
             let _ = bar.suspend(|| say(format_args!("{metric}\n")));
         }
     };

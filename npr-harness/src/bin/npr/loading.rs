@@ -8,7 +8,7 @@ use npr_harness::suggest::nearest;
 use npr_mesh::{Limits, LoadOptions, Loaded};
 use std::path::{Path, PathBuf};
 
-/// What [`limit_mut`] knows.
+/// The names that [`limit_mut`] accepts.
 const LIMITS: [&str; 10] = [
     "file-bytes",
     "vertices",
@@ -34,7 +34,7 @@ pub struct Loading {
 }
 
 impl Loading {
-    /// Says before anything is read which of some models, or of the folders, is not there.
+    /// Checks that models and folders exist before anything is read.
     pub fn check(&self, models: impl IntoIterator<Item = impl AsRef<Path>>) -> Result<(), HarnessError> {
         for model in models {
             paths::check_file(PathRole::Model, model.as_ref())?;

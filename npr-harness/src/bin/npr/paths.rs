@@ -1,11 +1,11 @@
-//! What is wrong with the paths that a command was given, found before anything is computed.
+//! Checks of the paths in a command's arguments, before anything is computed.
 
 use npr_harness::error::{HarnessError, PathRole};
 use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;
 
-/// That there is something to read, and that it is no directory.
+/// Checks that a path exists and is not a directory.
 pub fn check_file(role: PathRole, path: &Path) -> Result<(), HarnessError> {
     match is_directory(role, path)? {
         Some(false) => Ok(()),
@@ -14,7 +14,7 @@ pub fn check_file(role: PathRole, path: &Path) -> Result<(), HarnessError> {
     }
 }
 
-/// That there is a directory.
+/// Checks that a path is a directory.
 pub fn check_directory(role: PathRole, path: &Path) -> Result<(), HarnessError> {
     match is_directory(role, path)? {
         Some(true) => Ok(()),
@@ -23,7 +23,7 @@ pub fn check_directory(role: PathRole, path: &Path) -> Result<(), HarnessError> 
     }
 }
 
-/// That nothing else is where a directory is to be, which need not be there yet.
+/// Checks that a path is a directory or does not exist.
 pub fn check_output_folder(path: &Path) -> Result<(), HarnessError> {
     match is_directory(PathRole::Output, path)? {
         Some(true) | None => Ok(()),
@@ -35,7 +35,7 @@ fn not_a_directory(role: PathRole, path: &Path) -> HarnessError {
     HarnessError::Unusable { role, path: path.to_owned(), source: ErrorKind::NotADirectory.into() }
 }
 
-/// `None` where nothing is.
+/// `None` if the path does not exist.
 fn is_directory(role: PathRole, path: &Path) -> Result<Option<bool>, HarnessError> {
     match fs::metadata(path) {
         Ok(there) => Ok(Some(there.is_dir())),

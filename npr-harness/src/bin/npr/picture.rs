@@ -1,4 +1,4 @@
-//! Where `npr render` writes its picture.
+//! The output of `npr render`.
 
 use crate::terminal::{say, tell};
 use npr_harness::error::{HarnessError, PathRole};
@@ -8,17 +8,17 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
 
-/// Where a picture goes, and as what.
+/// The destination and format of a picture.
 #[derive(Clone, Copy)]
 pub enum Destination<'a> {
-    /// Whole or not at all.
+    /// A file, written atomically.
     File(&'a Path, PictureFormat),
-    /// PNG.
+    /// PNG on standard output.
     StandardOutput,
 }
 
 impl<'a> Destination<'a> {
-    /// Says before anything is computed what could not be written, and spares what is read.
+    /// Checks that the output can be written and does not overwrite an input, before anything is computed.
     pub fn new(output: &'a Path, size: (u32, u32), inputs: &[&Path]) -> Result<Self, HarnessError> {
         if output == Path::new("-") {
             return Ok(Self::StandardOutput);
@@ -51,7 +51,7 @@ impl<'a> Destination<'a> {
         }
     }
 
-    /// The summary goes beside the picture, never into it.
+    /// Writes the summary to a stream other than the picture's.
     pub fn summarize(self, summary: &str) -> Result<(), HarnessError> {
         match self {
             Self::File(..) => say(format_args!("{summary}")),

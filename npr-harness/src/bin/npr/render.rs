@@ -150,9 +150,9 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
         BackendName::Cpu => Backend::Cpu,
     };
     let check = |on_device| check_picture(&style, options.size, samples, on_device, memory as u64);
-    // Which executor it will be depends on the model; what neither could hold is known at once.
+    // The executor depends on the model, but a picture too large for either is rejected at once.
     check(backend == Backend::Gpu)?;
-    // On another thread: a model can be read while a driver starts.
+    // On another thread, so that the model is loaded while the driver starts.
     let looking = std::thread::spawn(move || Candidates::find(backend));
     let start = Instant::now();
     let loaded = load(&options.input, &options.loading)?;
@@ -184,7 +184,7 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
     let start = Instant::now();
     let candidates = looking.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
     let mut executor = candidates.choose_for(&Work::new(&scene, &style, options.size, samples));
-    // What of it was not over before.
+    // The part of the device's start that did not overlap loading.
     let device_ms = elapsed_ms(start);
     announce(&executor);
     let start = Instant::now();
@@ -192,7 +192,7 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
     let mut picture =
         Picture { memory_bytes: memory as u64, ..Picture::new(&scene, &style, View::new(frame(), options.size)) };
     picture.view.samples = samples;
-    // What is planned is found once: rendering finds it there.
+    // The data that planning derives are cached for rendering.
     if executor.is_cpu() {
         scene.while_building_rays(|| picture.plan(Capabilities::RAY_CASTER))?;
     }

@@ -19,7 +19,7 @@ pub fn print(name: &str) -> Result<bool, HarnessError> {
     Ok(true)
 }
 
-/// The file that a style's name is: what ends in `.toml` is one.
+/// The file that a style's name denotes: a name that ends in `.toml` is a file.
 pub fn style_file(name: &str) -> Option<&Path> {
     let path = Path::new(name);
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml")).then_some(path)

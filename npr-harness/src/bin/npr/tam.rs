@@ -1,4 +1,4 @@
-//! `npr tam`: tonal art maps into a folder, and out of a file.
+//! `npr tam`: draws tonal art maps into a folder, or unpacks a map file.
 
 use crate::paths;
 use crate::terminal::{say, spinner};
@@ -17,7 +17,7 @@ use std::time::Instant;
 /// Levels of fewer texels along a side hold too few strokes for an exact tone.
 const SMALLEST_SIDE: u32 = 64;
 
-/// Pictures besides the tones'.
+/// The pictures in addition to those of the tones.
 const WRITTEN: [&str; 4] = ["sheet.png", "tiled.png", "thresholds.png", "ramp.png"];
 
 #[derive(Args)]
@@ -145,27 +145,27 @@ impl Drawn {
     }
 }
 
-/// A map, from wherever it is.
+/// A map that was drawn or read.
 struct Map {
     tam: Tam,
     thresholds: Option<Thresholds>,
-    /// If it was drawn.
+    /// The cost of drawing, if it was drawn.
     effort: Option<Effort>,
 }
 
-/// What drawing took.
+/// The cost of drawing a map.
 struct Effort {
     strokes: usize,
     draw_s: f64,
     thresholds_s: f64,
 }
 
-/// What became of a tone.
+/// The result for a tone.
 struct Found {
     asked: f32,
-    /// Mean of the finest level.
+    /// The mean of the finest level.
     mean: f64,
-    /// Of that and of all levels from [`SMALLEST_SIDE`] on, with its sign.
+    /// The largest signed error of the finest level and of all levels from [`SMALLEST_SIDE`] on.
     largest_error: f64,
 }
 
@@ -200,7 +200,7 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
     Ok(true)
 }
 
-/// Whether a picture that is read lies in the folder and has the name of one that is written there.
+/// Whether an input picture lies in the folder and has the name of an output.
 fn is_overwritten(picture: &Path, folder: &Path) -> bool {
     let real = |path: &Path| std::fs::canonicalize(path).ok();
     let name = picture.file_name().and_then(|name| name.to_str()).unwrap_or("");
@@ -232,7 +232,7 @@ fn read(path: &Path) -> Result<Map, HarnessError> {
     Ok(Map { tam: stored.tam, thresholds: stored.thresholds, effort: None })
 }
 
-/// Writes what there is of a map; one that has been read is not written as a map once more.
+/// Writes the files of a map; a map that was read is not written as a map file again.
 fn write(map: &Map, folder: &Path) -> Result<Vec<PathBuf>, HarnessError> {
     let Map { tam, thresholds, effort } = map;
     let bar = spinner(&format!("writing {}", folder.display()));
@@ -295,7 +295,7 @@ fn print_json(
     ))
 }
 
-/// In one piece: a reader that has had enough after a few lines, such as `head`, breaks no pipe.
+/// The table as one string, so that a reader such as `head`, which closes the pipe early, causes no error.
 fn table(options: &Options, map: &Map, found: &[Found], files: &[PathBuf], write_s: f64) -> String {
     let Tam { tones, side, .. } = &map.tam;
     let mut lines = vec![format!(

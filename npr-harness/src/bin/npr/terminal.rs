@@ -1,22 +1,22 @@
-//! What is said to people: lines on standard error, progress bars.
+//! Messages on the terminal: lines on standard error, progress bars.
 
 use npr_harness::error::{HarnessError, PathRole};
 use npr_harness::executor::{CpuReason, Executor};
 use std::fmt;
 use std::io::{self, IsTerminal, Write};
 
-/// Names in files may hold anything; no line break of theirs, and nothing that commands a terminal, is printed.
+/// Removes line breaks and control characters, because names in files may contain anything.
 pub fn one_line(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
 }
 
-/// Writes a line to standard error, where somebody reads it.
+/// Writes a line to standard error.
 pub fn tell(text: &str) {
-    // There is no other place to say that this one is closed or full.
+    // An error here cannot be reported anywhere else.
     let _ = writeln!(io::stderr().lock(), "{text}");
 }
 
-/// Writes to standard output. A reader that has had enough, such as `head`, is no error: the work goes on.
+/// Writes to standard output. A closed pipe, as with `head`, is not an error: the work continues.
 pub fn say(text: fmt::Arguments<'_>) -> Result<(), HarnessError> {
     match io::stdout().lock().write_fmt(text) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
@@ -26,7 +26,7 @@ pub fn say(text: fmt::Arguments<'_>) -> Result<(), HarnessError> {
     }
 }
 
-/// A bar on a terminal, nothing elsewhere.
+/// A progress bar on a terminal; otherwise nothing.
 pub fn progress_bar(what: &str) -> indicatif::ProgressBar {
     if !io::stderr().is_terminal() {
         return indicatif::ProgressBar::hidden();
@@ -49,7 +49,7 @@ pub fn spinner(what: &str) -> indicatif::ProgressBar {
     bar
 }
 
-/// Says why the CPU renders, where a device was wanted and is not there or cannot.
+/// Prints the reason why the CPU renders if a GPU was wanted but is missing or not capable.
 pub fn announce(executor: &Executor) {
     if let Executor::Cpu { why: Some(why @ CpuReason::Unable(_)) } = executor {
         tell(&format!("npr: rendering on the CPU: {}", one_line(&why.to_string())));

@@ -134,8 +134,8 @@ pub fn hatch_stability(
     stability(of(&before), of(&after), size)
 }
 
-/// A model whose texture coordinates are where a camera sees its vertices, a unit for 128 px: strokes that lie on
-/// the picture, not on the surface, to see how much that is.
+/// A model whose texture coordinates are the screen positions of its vertices, one unit per 128 px, so that strokes are
+/// fixed to the picture instead of the surface; for comparison.
 pub fn on_the_picture(model: &Model, camera: &Camera, (width, height): (u32, u32)) -> Model {
     let size_px = DVec2::new(f64::from(width), f64::from(height));
     let uv = |at: &glam::Vec3| (projected(camera, at.as_dvec3(), size_px) / 128.0).as_vec2();

@@ -1,4 +1,5 @@
-//! True lines against analytic ones, the comparison against known damage, and the drawn lines against the true.
+//! Tests of the true lines against analytic solutions, of the comparison against known defects, and of the drawn lines
+//! against the true ones.
 #![allow(clippy::print_stdout)]
 
 use super::*;
@@ -22,7 +23,8 @@ fn framed(scene: &Scene, yaw_deg: f64, pitch_deg: f64) -> Camera {
     Camera::framed(scene.corners(), f64::from(SIZE.0) / f64::from(SIZE.1), &framing)
 }
 
-/// From +Z towards the origin; 90° upwards, so that 1 at distance 1 is half the picture's height.
+/// A camera on +Z looking at the origin, with a vertical field of view of 90°, so that 1 at distance 1 is half the
+/// picture's height.
 fn from_z(distance: f64) -> Camera {
     Camera {
         eye: DVec3::Z * distance,
@@ -54,7 +56,7 @@ fn a_cube_shows_nine_edges_from_corner_to_corner() {
         let framing = Framing { yaw_rad: 0.7, pitch_rad: 0.4, distance: 1.0, fov_y_rad };
         let camera = Camera::framed(scene.corners(), 16.0 / 9.0, &framing);
         let lines = true_lines(&scene, &camera, SIZE, CREASE_RAD);
-        // By hand: an edge of the cube is seen unless both of its faces are turned away.
+        // An edge of the cube is visible unless both of its faces are back-facing.
         let eye = camera.homogeneous_eye();
         let on_screen = |p: DVec3| {
             let clip = camera.clip_from_world(16.0 / 9.0) * p.extend(1.0);
@@ -92,9 +94,10 @@ fn a_sphere_is_a_circle() {
     let scene = Scene::new(sphere(segments));
     let camera = from_z(2.0);
     let lines = true_lines(&scene, &camera, (800, 800), CREASE_RAD);
-    // Tangents from distance 2 touch the unit sphere where sin is 1/2; tan of that is the radius in half pictures.
+    // Tangents from distance 2 touch the unit sphere at an angle whose sine is 1/2; its tangent is the radius in half
+    // pictures.
     let radius = 400.0 * (0.5f64).asin().tan();
-    // A facet's corner strays by half its turn from the true tangent point, and its edge sinks by the sag.
+    // A facet's corner deviates by half the turn from the true tangent point, and its edge by the sag.
     let turn = std::f64::consts::TAU / f64::from(segments);
     let sag_px = radius * 2.0 * turn * turn;
     let from_center = |p: DVec2| p.distance(DVec2::splat(400.0));
@@ -107,7 +110,7 @@ fn a_sphere_is_a_circle() {
     let around = std::f64::consts::TAU * radius;
     let length = length_px(&lines);
     assert!((length / around - 1.0).abs() < 0.01, "{length} of {around}");
-    // Every direction has some of it, at least within two samples.
+    // Every direction has a part of the circle, within two samples.
     for i in 0..720 {
         let on_circle = DVec2::splat(400.0) + DVec2::from_angle(f64::from(i) * std::f64::consts::TAU / 720.0) * radius;
         assert!(distances_to_lines(&lines, &[on_circle], 1.0)[0] < 0.5, "gap at {on_circle}");
@@ -123,12 +126,12 @@ fn a_box_behind_a_wall_is_not_seen() {
     let both = true_lines(&together([wall(), hidden()]), &camera, SIZE, CREASE_RAD);
     assert_eq!(alone.segments.len(), 4);
     assert_eq!(alone.segments, both.segments);
-    // Glass hides nothing, not even its own far side; nor does a sheet whose only side looks away.
+    // Glass occludes nothing, not even its own far side; nor does a single-sided sheet that is back-facing.
     let mut glass = wall();
     glass.materials[0].alpha_mode = AlphaMode::Blend;
     let sheet = |turned: bool, double_sided: bool| {
         let mut sheet = wall();
-        // The fifth polygon, that looks towards +Z.
+        // The fifth polygon, which faces +Z.
         sheet.faces = sheet.faces[8..10].to_vec();
         sheet.face_polygon.truncate(2);
         sheet.face_material.truncate(2);
@@ -155,7 +158,8 @@ fn a_half_hidden_edge_is_cut_where_it_is_hidden() {
     camera.target.x = 1.0;
     let lines = true_lines(&together([wall, bar]), &camera, SIZE, CREASE_RAD);
     let px = |x: f64, depth: f64| 320.0 + 180.0 * (x - 1.0) / depth;
-    // Seen from x = 1 the wall's nearest part is its right face, whose far border is at z = 0: there the bar comes out.
+    // From x = 1 the nearest part of the wall is its right face, whose far border is at z = 0: there the bar becomes
+    // visible.
     let cut = px(0.0, 4.0).max(px(0.0, 3.0));
     let upper = 180.0 - 180.0 * 0.2 / 4.0;
     let along: Vec<_> =
@@ -190,7 +194,7 @@ fn edges_are_cut_to_the_picture_and_the_near_plane() {
     assert!(a.min(b).distance(DVec2::splat(far)) < 1e-4, "{a} {b}");
 }
 
-/// Segments well within the picture: ten parallel ones, 100 px long, 20 px apart, at a slant.
+/// Segments well within the picture: parallel slanted lines 100 px long, 20 px apart.
 fn hatching(count: u32) -> TrueLines {
     let segments = (0..count)
         .map(|i| {
@@ -201,7 +205,7 @@ fn hatching(count: u32) -> TrueLines {
     TrueLines { segments, size_px: SIZE }
 }
 
-/// Lines 1 px wide, moved.
+/// Lines 1 px wide, offset.
 fn drawn(lines: &TrueLines, by: DVec2) -> Vec<DVec2> {
     let darkness: Vec<f64> = (0..SIZE.1)
         .flat_map(|y| (0..SIZE.0).map(move |x| DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5)))
@@ -254,7 +258,7 @@ fn what_runs_along_the_border_does_not_count_as_missed() {
         })
         .to_vec();
     let truth = TrueLines { segments, size_px: SIZE };
-    // Drawn: the pixels of the first column, which are near both lines at the border, and the one inside.
+    // Drawn are the pixels of the first column, which are near both lines at the border, and the line inside.
     let points: Vec<DVec2> = (20..80).flat_map(|y| [0.5, 20.5].map(|x| DVec2::new(x, f64::from(y) + 0.5))).collect();
     let found = accuracy(&truth, &points, 1.5);
     assert_eq!((found.precision, found.recall), (1.0, 1.0));
@@ -285,7 +289,8 @@ fn measure(name: &str, scene: &Scene, camera: &Camera) -> LineAccuracy {
     found
 }
 
-/// Three times enlarged: ink grey, drawn where no line is red; true lines green, where nothing is drawn blue.
+/// Writes a picture enlarged three times: ink is grey, drawn points without a true line red, true lines green, or blue
+/// where nothing is drawn.
 fn dump(path: &Path, truth: &TrueLines, darkness: &[f64], points: &[DVec2]) {
     const TIMES: u32 = 3;
     let mut picture = image::RgbImage::from_fn(SIZE.0 * TIMES, SIZE.1 * TIMES, |x, y| {
@@ -315,8 +320,7 @@ fn the_reference_draws_the_still_life_as_it_is() {
     assert!(found.precision >= 0.98 && found.recall >= 0.98, "{found:?}");
 }
 
-/// The rims of the solids lie 0.001 above it.
-/// A cube whose sides are warped: of some, a diagonal is the outline.
+/// A cube with warped sides, for some of which a diagonal is part of the outline.
 #[test]
 fn warped_quads_have_all_of_their_outline() {
     let mut model = cube();
@@ -339,6 +343,7 @@ fn warped_quads_have_all_of_their_outline() {
     }
 }
 
+/// The rims of the solids lie 0.001 above the ground.
 #[test]
 fn the_ground_seen_from_below_does_not_let_rims_through() {
     let scene = Scene::new(still_life());
@@ -348,7 +353,7 @@ fn the_ground_seen_from_below_does_not_let_rims_through() {
     }
 }
 
-/// Prints; with `NPR_LINE_TRUTH_DUMP` set to a folder leaves pictures there.
+/// Prints a table; if `NPR_LINE_TRUTH_DUMP` is set to a folder, also writes pictures there.
 #[test]
 #[ignore = "a minute; models that may not be there"]
 fn accuracy_of_the_reference() {
