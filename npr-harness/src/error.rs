@@ -292,12 +292,27 @@ pub enum HarnessError {
     /// A plan for the CPU was passed to the GPU executor.
     #[error("the plan is for the CPU: shadows are to be found by rays")]
     RayPlan,
-    /// A singular transform of an object.
-    #[error("the transform of object {object} has no inverse")]
-    SingularTransform {
-        /// The index of the object.
+    /// A transform that cannot place an object.
+    #[error("the transform of object {object} {fault}")]
+    ObjectTransform {
+        /// The number of the object.
         object: usize,
+        /// What is wrong with it.
+        fault: &'static str,
     },
+    /// An object without a mesh.
+    #[error("object {object} places mesh {mesh} of {meshes}")]
+    ObjectMesh {
+        /// The number of the object.
+        object: usize,
+        /// The number of the mesh that it names.
+        mesh: usize,
+        /// How many there are.
+        meshes: usize,
+    },
+    /// A scene whose materials were changed after it was uploaded.
+    #[error("the materials of the scene have changed: it must be uploaded again")]
+    StaleUpload,
     /// A material override that is not compatible with the materials of the mesh.
     #[error(
         "material {material:?} cannot replace those of object {object}: it has a texture that the scene does not have, or \

@@ -17,6 +17,7 @@ pub(crate) mod uniform;
 pub use adapter::{DeviceLimits, GpuAdapter};
 pub use context::GpuContext;
 pub use scene::GpuScene;
+use scene::ObjectEdges;
 pub use shader::surface_wgsl;
 pub use targets::Targets;
 
@@ -93,9 +94,11 @@ impl<'a> GpuRenderer<'a> {
         if let Some(EdgeLinePlan { contours, method: EdgeLineMethod::OnDevice, .. }) = &plan.edge_lines {
             let pass = self.lines(EdgeLineMethod::OnDevice);
             let upload = |((_, mesh), contours): ((&Object, &Mesh), &Arc<ContourEdges>)| {
-                pass.upload_edges(device, contours, &mesh.model().positions)
+                let edges = pass.upload_edges(device, contours, &mesh.model().positions)?;
+                Ok::<_, HarnessError>((Arc::clone(contours), edges))
             };
-            uploaded.edges = Some(scene.placed_objects().zip(contours).map(upload).collect::<Result<_, _>>()?);
+            let edges = scene.placed_objects().zip(contours).map(upload).collect::<Result<_, _>>()?;
+            uploaded.edges = Some(RefCell::new(edges));
         }
         if let Some(shadow) = &plan.shadow {
             uploaded.casting = self.shadows.upload(self.context, &shadow.technique)?;
@@ -137,6 +140,9 @@ impl<'a> GpuRenderer<'a> {
         let device = &self.context.device;
         let canvas = targets.canvas();
         let view = &plan.view;
+        if uploaded.materials_version != scene.materials_version() {
+            return Err(HarnessError::StaleUpload);
+        }
         let light = LightOnDevice::new(self.context, plan)?;
         let regions = plan.image.as_ref().map(|image| &image.regions);
         uploaded.instances.borrow_mut().update(self.context, scene, regions);
@@ -247,7 +253,13 @@ impl<'a> GpuRenderer<'a> {
         };
         canvas.begin_ink(encoder);
         // The uploaded data decide the method; they belong to the same plan.
-        let uploaded = frame.uploaded.edges.as_ref();
+        let uploaded = match &frame.uploaded.edges {
+            Some(uploaded) => {
+                self.refresh_edges(scene, edges, &mut uploaded.borrow_mut())?;
+                Some(uploaded.borrow())
+            }
+            None => None,
+        };
         let method = if uploaded.is_some() { EdgeLineMethod::OnDevice } else { EdgeLineMethod::OnCpu };
         let mut scratch = self.scratch.borrow_mut();
         let (lines, records) = &mut *scratch;
@@ -255,13 +267,13 @@ impl<'a> GpuRenderer<'a> {
             if number > 0 {
                 canvas.continue_ink(encoder);
             }
-            let groups: Vec<LineGroup<'_>> = match uploaded {
+            let groups: Vec<LineGroup<'_>> = match &uploaded {
                 Some(uploaded) => {
                     let group = |&number: &u32| {
                         let object = &scene.objects()[number as usize];
                         let clip_from_mesh = view.clip_from_world * DMat4::from(*object.scene_from_mesh());
                         LineGroup {
-                            source: LineSource::OnDevice(&uploaded[number as usize]),
+                            source: LineSource::OnDevice(&uploaded[number as usize].1),
                             view: LineView { clip_from_world: clip_from_mesh, ..view },
                             eye: object.homogeneous(eye),
                         }
@@ -287,6 +299,23 @@ impl<'a> GpuRenderer<'a> {
         Ok(())
     }
 
+    /// Uploads the edges of objects whose transforms have changed the angles between their faces.
+    fn refresh_edges(
+        &self,
+        scene: &Scene,
+        plan: &EdgeLinePlan,
+        uploaded: &mut [ObjectEdges],
+    ) -> Result<(), HarnessError> {
+        let pass = self.lines(EdgeLineMethod::OnDevice);
+        for (((_, mesh), contours), uploaded) in scene.placed_objects().zip(&plan.contours).zip(uploaded) {
+            if !Arc::ptr_eq(contours, &uploaded.0) {
+                let edges = pass.upload_edges(&self.context.device, contours, &mesh.model().positions)?;
+                *uploaded = (Arc::clone(contours), edges);
+            }
+        }
+        Ok(())
+    }
+
     /// The lines that the GPU found for the last frame of this upload, unordered, as (object, edge); `None` if they
     /// were found on the CPU.
     ///
@@ -295,7 +324,7 @@ impl<'a> GpuRenderer<'a> {
     pub(crate) fn found_lines(&self, uploaded: &GpuScene) -> Result<Option<Vec<[u32; 2]>>, HarnessError> {
         let Some(edges) = &uploaded.edges else { return Ok(None) };
         let mut found = Vec::new();
-        for (object, edges) in (0u32..).zip(edges) {
+        for (object, (_, edges)) in (0u32..).zip(&*edges.borrow()) {
             let arguments: Vec<u32> = bytemuck::pod_collect_to_vec(&self.context.read_buffer(edges.arguments())?);
             let lines: Vec<u32> = bytemuck::pod_collect_to_vec(&self.context.read_buffer(edges.lines())?);
             // The second argument of the draw call is how many instances it has.

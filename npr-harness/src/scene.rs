@@ -22,6 +22,7 @@ use npr_imagespace::artist::LineKind;
 use npr_mesh::edges::Edges;
 use npr_mesh::{LoadOptions, Loaded, Material, Model, Texture, normals};
 use std::borrow::Cow;
+use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
@@ -52,6 +53,14 @@ pub struct Scene {
     /// [`ImageInk::artist`]: crate::image_lines::ImageInk::artist
     pub line_kinds: Vec<LineKind>,
     bounds: Option<(Vec3, Vec3)>,
+    /// The radius of the scene as it was made, which lengths that must not change with moving objects refer to.
+    reference_radius: f64,
+    /// The numbers of the objects in the order in which they are drawn, and per object its place in that order. Of
+    /// coincident surfaces of different objects the first one drawn is visible.
+    drawing_order: Vec<u32>,
+    rank: Vec<u32>,
+    /// Counts changes of materials, after which an upload is out of date.
+    materials_version: u64,
     /// The hierarchy over the objects' boxes; unused with a single object.
     hierarchy: OnceLock<BoxHierarchy>,
     mip_mapped: OnceLock<Vec<MipMapped>>,
@@ -59,7 +68,7 @@ pub struct Scene {
 
 impl From<Loaded> for Scene {
     fn from(loaded: Loaded) -> Self {
-        Self::with_objects(loaded.meshes, loaded.objects)
+        Self::with_objects(loaded.meshes, loaded.objects).expect("the loader refuses such transforms")
     }
 }
 
@@ -67,7 +76,8 @@ impl Scene {
     /// Places a model as the only object. Faces without a material get [`Material::default`].
     pub fn new(model: Model) -> Self {
         let world_from_mesh = DAffine3::IDENTITY;
-        Self::with_objects(vec![model], vec![npr_mesh::Object { name: String::new(), mesh: 0, world_from_mesh }])
+        let object = npr_mesh::Object { name: String::new(), mesh: 0, world_from_mesh };
+        Self::with_objects(vec![model], vec![object]).expect("the identity places it")
     }
 
     /// Builds a scene from meshes and the objects that place them.
@@ -75,15 +85,28 @@ impl Scene {
     /// Where a transform is singular, the transformed mesh is stored as a separate mesh, because the transform has no
     /// inverse.
     ///
-    /// # Panics
-    /// If an object has no mesh.
-    pub fn with_objects(mut models: Vec<Model>, mut placed: Vec<npr_mesh::Object>) -> Self {
-        for object in &mut placed {
+    /// # Errors
+    /// [`HarnessError::ObjectMesh`]; [`HarnessError::ObjectTransform`] where a transform is not finite.
+    pub fn with_objects(mut models: Vec<Model>, mut placed: Vec<npr_mesh::Object>) -> Result<Self, HarnessError> {
+        let count = models.len();
+        // Equal singular transforms of a mesh share a mesh.
+        let mut baked = HashMap::new();
+        for (number, object) in placed.iter_mut().enumerate() {
+            if object.mesh >= count {
+                return Err(HarnessError::ObjectMesh { object: number, mesh: object.mesh, meshes: count });
+            }
+            if !object.world_from_mesh.is_finite() {
+                return Err(HarnessError::ObjectTransform { object: number, fault: "is not finite" });
+            }
             if !object::is_invertible(&object.world_from_mesh) {
-                let mut flat = models[object.mesh].clone().transformed(&object.world_from_mesh);
-                normals::fill_missing(&mut flat, LoadOptions::default().normal_crease_angle_rad);
-                models.push(flat);
-                (object.mesh, object.world_from_mesh) = (models.len() - 1, DAffine3::IDENTITY);
+                let key = (object.mesh, object.world_from_mesh.to_cols_array().map(f64::to_bits));
+                object.mesh = *baked.entry(key).or_insert_with(|| {
+                    let mut flat = models[object.mesh].clone().transformed(&object.world_from_mesh);
+                    normals::fill_missing(&mut flat, LoadOptions::default().normal_crease_angle_rad);
+                    models.push(flat);
+                    models.len() - 1
+                });
+                object.world_from_mesh = DAffine3::IDENTITY;
             }
         }
         let meshes: Vec<Arc<Mesh>> = models.into_iter().map(|model| Arc::new(Mesh::new(model))).collect();
@@ -107,6 +130,10 @@ impl Scene {
             clip: None,
             line_kinds: Vec::new(),
             bounds: None,
+            reference_radius: 0.0,
+            drawing_order: Vec::new(),
+            rank: Vec::new(),
+            materials_version: 0,
             hierarchy: OnceLock::new(),
             mip_mapped: OnceLock::new(),
         };
@@ -118,7 +145,25 @@ impl Scene {
             scene.objects.push(Object::new(name, mesh, scene.first_materials[mesh], scene_from_mesh));
         }
         scene.bounds = scene.box_around_objects();
-        scene
+        scene.reference_radius = scene.radius();
+        scene.sort_objects();
+        Ok(scene)
+    }
+
+    /// Sorts the objects into the order in which they are drawn: objects that can share a draw call follow each other,
+    /// and these groups are in the order of their first objects.
+    fn sort_objects(&mut self) {
+        let mut first = HashMap::new();
+        let key = |object: &Object| (object.mesh, object.first_material(), object.is_mirrored());
+        let group: Vec<usize> = (self.objects.iter().enumerate())
+            .map(|(number, object)| *first.entry(key(object)).or_insert(number))
+            .collect();
+        self.drawing_order = (0..self.objects.len() as u32).collect();
+        self.drawing_order.sort_by_key(|&number| (group[number as usize], number));
+        self.rank = vec![0; self.objects.len()];
+        for (rank, &number) in (0u32..).zip(&self.drawing_order) {
+            self.rank[number as usize] = rank;
+        }
     }
 
     /// Adds a mesh's materials to the scene's.
@@ -162,16 +207,30 @@ impl Scene {
     /// Moves an object. `world_from_mesh` is in file units. The scene's origin and scale do not change.
     ///
     /// # Errors
-    /// [`HarnessError::SingularTransform`].
+    /// [`HarnessError::ObjectTransform`] where the transform is singular or places the object farther away than 10¹⁵ units
+    /// of the scene. The object is not moved then.
+    ///
+    /// # Panics
+    /// If there is no such object.
     pub fn place(&mut self, object: usize, world_from_mesh: &DAffine3) -> Result<(), HarnessError> {
         let mesh = self.objects[object].mesh;
         let scene_from_mesh = self.scene_from_mesh(mesh, world_from_mesh);
         if !object::is_invertible(&scene_from_mesh) {
-            return Err(HarnessError::SingularTransform { object });
+            return Err(HarnessError::ObjectTransform { object, fault: "is singular, or nearly so" });
         }
+        let of_mesh = self.meshes[mesh].bounds().map(|(low, high)| (low.as_dvec3(), high.as_dvec3()));
+        let (low, high) = of_mesh.map_or_else(Default::default, |bounds| object::placed_box(&scene_from_mesh, bounds));
+        let farthest = low.abs().max(high.abs()).max_element();
+        if farthest.is_nan() || farthest > FARTHEST {
+            return Err(HarnessError::ObjectTransform { object, fault: "places it too far away" });
+        }
+        let was_mirrored = self.objects[object].is_mirrored();
         self.objects[object].place(scene_from_mesh);
         self.bounds = self.box_around_objects();
         self.hierarchy = OnceLock::new();
+        if self.objects[object].is_mirrored() != was_mirrored {
+            self.sort_objects();
+        }
         Ok(())
     }
 
@@ -179,7 +238,10 @@ impl Scene {
     ///
     /// # Errors
     /// [`HarnessError::ObjectMaterial`] if the alpha mode differs from that of the mesh's materials, or if there is no
-    /// such texture.
+    /// such texture. An upload to a device is out of date after this.
+    ///
+    /// # Panics
+    /// If there is no such object.
     pub fn set_material(&mut self, object: usize, material: Material) -> Result<(), HarnessError> {
         let of_mesh = &self.meshes[self.objects[object].mesh].model().materials;
         let kind = |material: &Material| std::mem::discriminant(&material.alpha_mode);
@@ -187,10 +249,34 @@ impl Scene {
         if !has_texture || of_mesh.iter().any(|other| kind(other) != kind(&material)) {
             return Err(HarnessError::ObjectMaterial { object, material: material.name });
         }
+        self.materials_version += 1;
         let object = &mut self.objects[object];
+        if object.one_material {
+            self.material_colors[object.first_material] = encode_rgb(material.base_color.truncate().as_dvec3());
+            self.materials[object.first_material] = material;
+            return Ok(());
+        }
         (object.first_material, object.one_material) = (self.materials.len(), true);
         self.add_material(material);
+        self.sort_objects();
         Ok(())
+    }
+
+    /// The numbers of the objects in the order in which they are drawn.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn drawing_order(&self) -> &[u32] {
+        &self.drawing_order
+    }
+
+    /// The radius of the scene as it was made.
+    pub(crate) fn reference_radius(&self) -> f64 {
+        self.reference_radius
+    }
+
+    /// Changes with every change of a material.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn materials_version(&self) -> u64 {
+        self.materials_version
     }
 
     /// The meshes.
@@ -389,7 +475,9 @@ impl Scene {
                 .rays()
                 .closest(origin, direction, (t_range.0, t_max), |hit| accept(&Hit { object: number, ..*hit }));
             let Some(hit) = hit.map(|hit| Hit { object: number, ..hit }) else { return t_max };
-            if nearest.is_none_or(|n| hit.t < n.t || (hit.t == n.t && number < n.object)) {
+            if nearest.is_none_or(|n| {
+                hit.t < n.t || (hit.t == n.t && self.rank[number as usize] < self.rank[n.object as usize])
+            }) {
                 nearest = Some(hit);
             }
             hit.t.min(t_max)
@@ -414,7 +502,8 @@ impl Scene {
             t_max
         });
         if self.objects.len() > 1 {
-            hits.sort_by(|a, b| a.t.total_cmp(&b.t).then(a.object.cmp(&b.object)).then(a.face.cmp(&b.face)));
+            let rank = |hit: &Hit| (self.rank[hit.object as usize], hit.face);
+            hits.sort_by(|a, b| a.t.total_cmp(&b.t).then_with(|| rank(a).cmp(&rank(b))));
         }
         hits
     }
@@ -497,24 +586,26 @@ impl Scene {
             return Cow::Borrowed(self);
         }
         let (mut flat, mut edges) = (Model::default(), Edges::default());
-        let mut line_kinds = Vec::new();
+        let (mut line_kinds, mut materials) = (Vec::new(), Vec::new());
         for (object, mesh) in self.placed_objects() {
             let mut model = mesh.model().clone().transformed(object.scene_from_mesh());
             for (number, material) in model.materials.iter_mut().enumerate() {
                 let number = object.first_material + if object.one_material { 0 } else { number };
-                // `append` expects indices into the appended model's own textures.
-                let texture = if object.one_material { None } else { material.texture };
-                *material = Material { texture, ..self.materials[number].clone() };
+                // The flattened model has no images: those of the scene stay.
+                *material = Material { texture: None, ..self.materials[number].clone() };
+                materials.push(self.materials[number].clone());
                 line_kinds.push(self.line_kinds[number]);
             }
             // Edges are found per object, so vertices of touching objects are not merged.
             edges.append(&mesh::find_edges(&model), flat.positions.len() as u32, flat.faces.len() as u32);
+            model.textures.clear();
             flat.append(&model);
         }
         let mut scene = Self::new(flat);
         scene.meshes = vec![Arc::new(Mesh::with_edges(scene.meshes[0].model().clone(), edges))];
         (scene.origin, scene.scale, scene.clip) = (self.origin, self.scale, self.clip);
-        scene.line_kinds = line_kinds;
+        (scene.materials, scene.textures, scene.line_kinds) = (materials, self.textures.clone(), line_kinds);
+        scene.reference_radius = self.reference_radius;
         Cow::Owned(scene)
     }
 }

@@ -62,7 +62,7 @@ fn meshes() -> Vec<Model> {
 }
 
 fn scene() -> Scene {
-    Scene::with_objects(meshes(), objects())
+    Scene::with_objects(meshes(), objects()).expect("good transforms")
 }
 
 fn framed(scene: &Scene, fov_y_rad: Option<f64>) -> Camera {
@@ -110,7 +110,8 @@ fn a_mirrored_object_keeps_its_front() {
     mirrored.faces.iter_mut().for_each(|face| face.swap(1, 2));
     let by_hand = Scene::new(colored(mirrored, [0.7; 3]));
     let mirror = DAffine3::from_scale(DVec3::new(-1.0, 1.0, 1.0));
-    let placed = Scene::with_objects(vec![colored(letter(), [0.7; 3])], vec![object("", 0, mirror)]);
+    let placed =
+        Scene::with_objects(vec![colored(letter(), [0.7; 3])], vec![object("", 0, mirror)]).expect("good transforms");
     assert!(placed.objects()[0].is_mirrored() && placed.is_closed());
     let camera = framed(&by_hand, Some(0.6));
     for name in ["cartoon", "toon-shadow", "gooch", "normals", "printed-fins", "ink-image"] {
@@ -127,7 +128,7 @@ fn what_is_far_away_keeps_its_digits() {
         let translation = object.world_from_mesh.translation + far;
         Object { world_from_mesh: DAffine3 { translation, ..object.world_from_mesh }, ..object }
     };
-    let away = Scene::with_objects(meshes(), objects().into_iter().map(moved).collect());
+    let away = Scene::with_objects(meshes(), objects().into_iter().map(moved).collect()).expect("good transforms");
     // The origin is the centre rounded to f32, so the camera is placed again.
     let (from, to) = (near.middle(), away.middle());
     let camera = framed(&near, Some(0.6));
@@ -158,8 +159,69 @@ fn an_object_that_moves_rebuilds_nothing_of_its_mesh() {
     assert_eq!(of_meshes, still);
     let mut there = objects();
     there[1].world_from_mesh = to;
-    let made_there = Scene::with_objects(meshes(), there);
+    let made_there = Scene::with_objects(meshes(), there).expect("good transforms");
     assert_eq!(picture(&scene, &style, &camera), picture(&made_there, &style, &camera));
+}
+
+/// What is stretched by little and little has the creases of the shape that it has in the end.
+#[test]
+fn creases_follow_a_slow_change_of_shape() {
+    let roof = Model {
+        positions: [[-2.0, 0.0, 0.0], [0.0, 1.0, 0.0], [2.0, 0.0, 0.0], [0.0, 1.0, 1.0]].map(Vec3::from).to_vec(),
+        normals: vec![Vec3::Y; 4],
+        faces: vec![[0, 3, 1], [1, 3, 2]],
+        ..Model::default()
+    };
+    let mut scene = Scene::new(roof);
+    // From above, so that the ridge is no silhouette.
+    let framing = Framing { pitch_rad: 1.4, ..Framing::default() };
+    let camera = Camera::framed(scene.corners(), f64::from(SIZE.0) / f64::from(SIZE.1), &framing);
+    let style = Style { crease_angle_rad: 40f32.to_radians(), ..named("lines") };
+    let lines = |scene: &Scene| planned(scene, &style, &camera, SIZE).lines(scene).1[2];
+    let before = lines(&scene);
+    for step in 0..4000 {
+        let scale = DVec3::new(1.0, 1.0 - f64::from(step) * 2e-4, 1.0);
+        scene.place(0, &DAffine3::from_scale(scale)).expect("it has an inverse");
+        if step % 100 == 0 {
+            lines(&scene);
+        }
+    }
+    assert_eq!((before, lines(&scene)), (1, 0));
+}
+
+/// Tiles of strokes keep their size when an object moves, and so do the numbers that vertices have for them.
+#[test]
+fn strokes_keep_their_size_when_an_object_moves() {
+    let mut cube = embedded::cube();
+    cube.uvs = cube.positions.iter().map(|p| glam::Vec2::new(p.x + p.z, p.y)).collect();
+    let at = |x: f64| DAffine3::from_translation(DVec3::new(x, 0.0, 0.0));
+    let mut scene =
+        Scene::with_objects(vec![cube], vec![object("", 0, at(0.0)), object("", 0, at(3.0))]).expect("good transforms");
+    let camera = framed(&scene, Some(0.6));
+    let strokes =
+        |scene: &Scene| planned(scene, &named("hatch-color"), &camera, SIZE).hatch().expect("strokes").clone();
+    let before = strokes(&scene);
+    scene.place(1, &at(9.0)).expect("it has an inverse");
+    let after = strokes(&scene);
+    assert_eq!(before.tile, after.tile);
+    assert!(std::sync::Arc::ptr_eq(&before.vertices[0], &after.vertices[0]));
+}
+
+/// Of surfaces that coincide both executors show the one that is drawn first, also where instances are drawn together.
+#[test]
+fn of_coincident_objects_the_first_drawn_is_seen() {
+    let meshes = vec![colored(embedded::cube(), [0.8, 0.1, 0.1]), colored(embedded::cube(), [0.1, 0.1, 0.8])];
+    let at = |x: f64| DAffine3::from_translation(DVec3::new(x, 0.0, 0.0));
+    // Blue comes first, and its second instance is drawn with it, before red.
+    let placed = vec![object("", 1, at(0.0)), object("", 0, at(0.0)), object("", 0, at(4.0)), object("", 1, at(4.0))];
+    let scene = Scene::with_objects(meshes, placed).expect("good transforms");
+    let camera = framed(&scene, Some(0.6));
+    let drawn = picture(&scene, &named("lambert"), &camera);
+    let is_red = |pixel: &[u8]| u16::from(pixel[0]) > 2 * u16::from(pixel[2].max(20));
+    let is_blue = |pixel: &[u8]| u16::from(pixel[2]) > 2 * u16::from(pixel[0].max(20));
+    let count = |test: &dyn Fn(&[u8]) -> bool| drawn.rgba8.chunks(4).filter(|pixel| test(pixel)).count();
+    assert_eq!(count(&is_red), 0);
+    assert!(count(&is_blue) > 500);
 }
 
 #[test]
@@ -236,10 +298,27 @@ fn a_material_of_an_objects_own() {
 fn a_transform_without_inverse() {
     let mut scene = scene();
     let flat = DAffine3::from_scale(DVec3::new(1.0, 0.0, 1.0));
-    let fault = scene.place(2, &flat);
-    assert!(matches!(fault, Err(HarnessError::SingularTransform { object: 2 })));
+    for singular in
+        [flat, DAffine3::from_scale(DVec3::new(1.0, 1e-20, 1.0)), DAffine3::from_scale(DVec3::splat(f64::NAN))]
+    {
+        let fault = scene.place(2, &singular);
+        assert!(matches!(fault, Err(HarnessError::ObjectTransform { object: 2, .. })), "{singular}");
+    }
+    for far in [1e40, 1e300] {
+        let fault = scene.place(2, &DAffine3::from_translation(DVec3::splat(far)));
+        assert!(matches!(fault, Err(HarnessError::ObjectTransform { object: 2, .. })), "{far}");
+    }
+    assert_eq!(scene.bounds(), self::scene().bounds(), "what is refused changes nothing");
+    let nan = object("", 0, DAffine3::from_translation(DVec3::NAN));
+    let fault = Scene::with_objects(meshes(), vec![nan]).err();
+    assert!(matches!(fault, Some(HarnessError::ObjectTransform { object: 0, .. })));
+    let fault = Scene::with_objects(meshes(), vec![object("", 2, DAffine3::IDENTITY)]).err();
+    assert!(matches!(fault, Some(HarnessError::ObjectMesh { object: 0, mesh: 2, meshes: 2 })));
+    // Small is not singular.
+    scene.place(2, &DAffine3::from_scale(DVec3::splat(1e-200))).expect("it has an inverse");
     // Loaded from a file, it is drawn as a flat object.
-    let flat = Scene::with_objects(meshes(), vec![object("flat", 1, flat), object("", 0, DAffine3::IDENTITY)]);
+    let flat = Scene::with_objects(meshes(), vec![object("flat", 1, flat), object("", 0, DAffine3::IDENTITY)])
+        .expect("good transforms");
     let (low, high) = flat.bounds().expect("faces");
     assert!(low.is_finite() && high.is_finite() && flat.meshes().len() == 3);
     let camera = framed(&flat, Some(0.6));
@@ -255,7 +334,8 @@ fn a_thousand_instances() {
         let translation = DVec3::new(f64::from(i % 10), f64::from(i / 10 % 10), f64::from(i / 100)) * 6.0;
         object("", 0, DAffine3 { matrix3: turned(f64::from(i), f64::from(i) * 0.3), translation })
     };
-    let scene = Scene::with_objects(vec![colored(letter(), [0.5; 3])], (0..1000).map(place).collect());
+    let scene = Scene::with_objects(vec![colored(letter(), [0.5; 3])], (0..1000).map(place).collect())
+        .expect("good transforms");
     assert_eq!((scene.meshes().len(), scene.objects().len(), scene.face_count()), (1, 1000, 24_000));
     let camera = framed(&scene, Some(0.6));
     let plan = planned(&scene, &named("cartoon"), &camera, SIZE);
@@ -357,7 +437,7 @@ mod on_device {
         let mut moving = scene();
         let camera = framed(&moving, Some(0.6));
         let view = View::new(camera, SIZE);
-        for name in ["cartoon", "toon-shadow", "ink-image"] {
+        for name in ["cartoon", "toon-shadow", "ink-image", "hatch", "hatch-color"] {
             let style = named(name);
             let renderer = GpuRenderer::new(context);
             let targets = renderer.targets(&view).expect("a picture");
@@ -376,6 +456,9 @@ mod on_device {
             let anew = common::rendered(&executor, &moving, &style, &camera, SIZE);
             assert_eq!(kept, anew, "{name}");
             moving.place(1, &objects()[1].world_from_mesh).expect("it has an inverse");
+            moving.set_material(0, Material::default()).expect("opaque");
+            let stale = renderer.draw(&moving, &uploaded, &plan, &targets);
+            assert!(matches!(stale, Err(HarnessError::StaleUpload)));
         }
     }
 }

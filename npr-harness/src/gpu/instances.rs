@@ -71,9 +71,6 @@ impl Instances {
             let object = &objects[*number as usize];
             (object.mesh(), object.first_material(), object.is_mirrored())
         };
-        let mut order: Vec<u32> = (0..objects.len() as u32).collect();
-        // The sort is stable, so objects of one mesh keep their order.
-        order.sort_by_key(key);
         let instance = |&number: &u32| {
             let object = &objects[number as usize];
             let (first, is_all) = regions.map_or((0, false), |regions| regions.of_objects[number as usize]);
@@ -84,7 +81,7 @@ impl Instances {
                 scale: [scale as f32, scale.log2() as f32],
             }
         };
-        let now: Vec<Instance> = order.iter().map(instance).collect();
+        let now: Vec<Instance> = scene.drawing_order().iter().map(instance).collect();
         if now == self.instances {
             return;
         }
@@ -92,7 +89,7 @@ impl Instances {
         self.instances = now;
         self.places = vec![0; objects.len()];
         self.runs.clear();
-        for (place, number) in order.iter().enumerate() {
+        for (place, number) in scene.drawing_order().iter().enumerate() {
             self.places[*number as usize] = place as u32;
             let (mesh, material, mirrored) = key(number);
             match self.runs.last_mut() {

@@ -13,6 +13,7 @@ use bytemuck::Zeroable;
 use glam::Vec4;
 use npr_hatch::upload::TamChannels;
 use npr_mesh::{AlphaMode, Model};
+use npr_outline::ContourEdges;
 use npr_outline::fin_pass::FinsOnDevice;
 use npr_outline::line_pass::EdgesOnDevice;
 use std::cell::RefCell;
@@ -22,6 +23,9 @@ use std::sync::Arc;
 
 /// The maximum number of draws per pass on a software adapter; see [`HarnessError::TooManyDraws`].
 const SOFTWARE_DRAWS: usize = 2048;
+
+/// The edges of an object, and the contours that they were made from.
+pub(super) type ObjectEdges = (Arc<ContourEdges>, EdgesOnDevice);
 
 /// Faces of a mesh that have the same material, or materials of the same appearance, drawn by one call.
 pub(super) struct Batch {
@@ -53,8 +57,10 @@ pub struct GpuScene {
     pub(super) materials: Materials,
     /// The maximum number of draws per pass.
     pub(super) most_draws: usize,
-    /// Per object: its edges, if they are classified on the GPU.
-    pub(super) edges: Option<Vec<EdgesOnDevice>>,
+    /// The edges of each object, with the contours that they were made from, if lines are found on the device.
+    pub(super) edges: Option<RefCell<Vec<ObjectEdges>>>,
+    /// The version of the scene's materials that was uploaded.
+    pub(super) materials_version: u64,
     /// Per mesh: fins for all edges, if printed fins are drawn.
     pub(super) fins: Option<Vec<FinsOnDevice>>,
     /// The shadow casters, if shadow volumes are drawn.
@@ -155,6 +161,7 @@ impl GpuScene {
             materials,
             most_draws: if context.is_software() { SOFTWARE_DRAWS } else { usize::MAX },
             edges: None,
+            materials_version: scene.materials_version(),
             fins: None,
             casting: None,
             hatch,

@@ -44,7 +44,7 @@ enum VerticesKey {
 impl HatchPlan {
     /// `at_vertices` is whether the style computes light at the vertices.
     pub(crate) fn new(scene: &Scene, shade: &HatchShade, at_vertices: bool) -> Result<Self, HarnessError> {
-        let tile = f64::from(shade.tile) * if scene.radius() > 0.0 { scene.radius() } else { 1.0 };
+        let tile = f64::from(shade.tile) * if scene.reference_radius() > 0.0 { scene.reference_radius() } else { 1.0 };
         let mapping = match shade.mapping {
             HatchMapping::Coordinates if scene.meshes().iter().all(|mesh| mesh.model().uvs.is_empty()) => {
                 HatchMapping::Planes

@@ -61,11 +61,19 @@ impl BoxHierarchy {
     ) {
         let inverse = direction.recip();
         let entry = |node: &Node| {
-            // A component of the direction may be 0. If the origin then lies on a side of the box, the product is NaN,
-            // which `min` and `max` ignore.
             let (a, b) = ((node.low - origin) * inverse, (node.high - origin) * inverse);
-            let enter = a.x.min(b.x).max(a.y.min(b.y)).max(a.z.min(b.z));
-            let leave = a.x.max(b.x).min(a.y.max(b.y)).min(a.z.max(b.z));
+            let (mut enter, mut leave) = (f64::NEG_INFINITY, f64::INFINITY);
+            for axis in 0..3 {
+                if direction[axis] == 0.0 {
+                    // The ray stays between the two sides, or never comes there.
+                    if origin[axis] < node.low[axis] || origin[axis] > node.high[axis] {
+                        return (f64::INFINITY, f64::NEG_INFINITY);
+                    }
+                } else {
+                    enter = enter.max(a[axis].min(b[axis]));
+                    leave = leave.min(a[axis].max(b[axis]));
+                }
+            }
             // Absorbs the rounding of the box corners and of the product.
             let slack = 1e-12 * (enter.abs() + leave.abs());
             (enter - slack, leave + slack)
@@ -128,6 +136,25 @@ mod tests {
             }
         }
         assert!(met > 200, "{met}");
+    }
+
+    /// Along an axis two of the three quotients are infinite, and must not let every box pass.
+    #[test]
+    fn a_ray_along_an_axis_visits_only_the_boxes_on_its_way() {
+        let at = |x: f64, y: f64| (DVec3::new(x, y, 0.0), DVec3::new(x + 1.0, y + 1.0, 1.0));
+        let boxes = (0..400).map(|i| (i, at(f64::from(i % 20) * 2.0, f64::from(i / 20) * 2.0)));
+        let hierarchy = BoxHierarchy::new(boxes.collect());
+        // On a side of the boxes, too.
+        for y in [6.5, 6.0, 7.0] {
+            let mut visited = Vec::new();
+            hierarchy.visit(DVec3::new(-5.0, y, 0.5), DVec3::X, (0.0, f64::INFINITY), |number, t_max| {
+                visited.push(number);
+                t_max
+            });
+            visited.sort_unstable();
+            assert_eq!(visited, (60..80).collect::<Vec<_>>(), "{y}");
+        }
+        hierarchy.visit(DVec3::new(-5.0, 5.5, 0.5), DVec3::X, (0.0, f64::INFINITY), |_, _| panic!("between the boxes"));
     }
 
     #[test]

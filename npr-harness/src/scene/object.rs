@@ -33,6 +33,8 @@ pub struct Object {
     /// Data that techniques derive from the mesh if the transform does not preserve angles; cleared when the metric
     /// changes.
     of_shape: Arc<Derived>,
+    /// The metric that this data was derived with.
+    shape: DMat3,
 }
 
 /// A transform and the data derived from it.
@@ -72,11 +74,17 @@ fn is_near(a: &DMat3, b: &DMat3) -> bool {
     a.abs_diff_eq(*b, 1e-5)
 }
 
-/// Whether a transform has an inverse that f64 can hold.
+/// Whether a transform has an inverse whose rounding in f64 is of no importance.
 pub(super) fn is_invertible(transform: &DAffine3) -> bool {
-    let axes = [transform.matrix3.x_axis, transform.matrix3.y_axis, transform.matrix3.z_axis];
-    let box_volume: f64 = axes.iter().map(|axis| axis.length()).product();
-    transform.is_finite() && transform.matrix3.determinant().abs() > 1e-9 * box_volume
+    let linear = transform.matrix3.to_cols_array();
+    let largest = linear.iter().fold(0.0f64, |largest, x| largest.max(x.abs()));
+    if !transform.is_finite() || largest == 0.0 {
+        return false;
+    }
+    // The condition number, of a matrix whose squares and products are within f64.
+    let unit = transform.matrix3 * (1.0 / largest);
+    let norm = |matrix: &DMat3| matrix.to_cols_array().iter().map(|x| x * x).sum::<f64>().sqrt();
+    norm(&unit) * norm(&unit.inverse()) < 1e12
 }
 
 impl Object {
@@ -88,17 +96,17 @@ impl Object {
             mesh,
             first_material,
             one_material: false,
+            shape: placement.metric,
             placement,
             of_shape: Arc::default(),
         }
     }
 
     pub(super) fn place(&mut self, scene_from_mesh: DAffine3) {
-        let placement = Placement::new(scene_from_mesh);
-        if !is_near(&placement.metric, &self.placement.metric) {
-            self.of_shape = Arc::default();
+        self.placement = Placement::new(scene_from_mesh);
+        if !is_near(&self.placement.metric, &self.shape) {
+            (self.of_shape, self.shape) = (Arc::default(), self.placement.metric);
         }
-        self.placement = placement;
     }
 
     /// The data that techniques derive from the mesh as this object transforms it, and the matrix that transforms

@@ -171,9 +171,17 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
             *mesh = pn_triangles::tessellate(mesh, segments)?;
         }
     }
-    let mut scene = Scene::with_objects(meshes, objects);
+    let mut scene = Scene::with_objects(meshes, objects)?;
     let of_edges = scene.meshes().iter().flat_map(|mesh| mesh.edges().warnings());
-    let of_edges: Vec<Warning> = of_edges.map(Warning::from).collect();
+    // Meshes may have the same to say.
+    let mut counted: Vec<Warning> = Vec::new();
+    for text in of_edges {
+        match counted.iter_mut().find(|known| known.text == text) {
+            Some(known) => known.count += 1,
+            None => counted.push(text.into()),
+        }
+    }
+    let of_edges = counted;
     warn(&of_edges);
     let warnings = [warnings, of_edges].concat();
     scene.clip = options.clip.map(|plane| scene.plane_here(plane));
