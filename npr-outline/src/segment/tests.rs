@@ -537,3 +537,25 @@ fn a_face_seen_edge_on_has_no_slope() {
         assert_eq!((rising(1200.0), slope(100.0)), (0.0, 0.0));
     }
 }
+
+/// The line is visible beside its own face, which rises on one side as its slope says, with something in front of it on the
+/// other; it would not be if the slopes were those of the other sides.
+#[test]
+fn a_line_is_seen_beside_its_own_face_on_whichever_side_that_is() {
+    let view = parallel();
+    let per_px = view.depth_per_px.y;
+    let ends_px = [DVec2::new(100.3, 200.7), DVec2::new(140.3, 200.7)];
+    // Positive offsets are below a line to the right.
+    for own_is_below in [true, false] {
+        let surface = |_: i64, y: i64| {
+            let offset = y as f64 + 0.5 - ends_px[0].y;
+            if (offset > 0.0) == own_is_below { 0.5 + 2.0 * per_px * offset.abs() } else { 0.5 + 100.0 * per_px }
+        };
+        let visible = |slopes: [f64; 2]| {
+            let segment = ScreenSegment { ends_px, depths: [0.5; 2], slopes };
+            outline_is_visible(&segment, 0.4, &view, false, surface)
+        };
+        let (below, above) = ([2.2 * per_px, 0.0], [0.0, 2.2 * per_px]);
+        assert_eq!((visible(below), visible(above)), (own_is_below, !own_is_below));
+    }
+}
