@@ -544,9 +544,9 @@ fn a_face_seen_edge_on_has_no_slope() {
 fn a_line_is_seen_beside_its_own_face_on_whichever_side_that_is() {
     let view = parallel();
     let per_px = view.depth_per_px.y;
-    let ends_px = [DVec2::new(100.3, 200.7), DVec2::new(140.3, 200.7)];
-    // Positive offsets are below a line to the right.
-    for own_is_below in [true, false] {
+    // Positive offsets are below a line to the right. The pixels of the own face are those that are farther away.
+    for (own_is_below, y) in [(true, 200.7), (false, 201.3)] {
+        let ends_px = [DVec2::new(100.3, y), DVec2::new(140.3, y)];
         let surface = |_: i64, y: i64| {
             let offset = y as f64 + 0.5 - ends_px[0].y;
             if (offset > 0.0) == own_is_below { 0.5 + 2.0 * per_px * offset.abs() } else { 0.5 + 100.0 * per_px }

@@ -334,10 +334,12 @@ fn triangles_are_those_of_the_records() {
             assert_eq!(towards, each * (swept + caps(1)));
             assert_eq!(corners.len(), towards + each * caps(-1));
             assert!(swept > 100 && caps(1) > 100, "{swept} {}", caps(1));
-            let first =
-                edges.iter().find(|edge| sweeps(edge) > 0).map(|edge| [edge.from, edge.to]).expect("one sweeps");
-            let [a, b, _] = [corners[0], corners[1], corners[2]].map(|[x, y, z, _]| [x, y, z]);
-            assert!([a, b] == first || [b, a] == first);
+            // From the end of the first edge to its start and away, whichever is the start.
+            let edge = edges.iter().find(|edge| sweeps(edge) > 0).expect("one sweeps");
+            let forwards = outline_sweeps(edge.flags, edge.plane0, edge.plane1, local) > 0;
+            let (from, to) = if forwards { (edge.from, edge.to) } else { (edge.to, edge.from) };
+            let corner = |[x, y, z]: [f32; 3], w: f32| [x, y, z, w];
+            assert_eq!(corners[..3], [corner(to, 1.0), corner(from, 1.0), corner(from, 0.0)]);
         }
     }
 }
