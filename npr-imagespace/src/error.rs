@@ -1,6 +1,6 @@
 //! The errors of this crate.
 
-use glam::UVec2;
+use glam::{IVec2, UVec2};
 
 /// A rule that an input or a render target breaks.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -37,6 +37,12 @@ pub enum ImageSpaceError {
     NormalThreshold {
         /// The value that was given.
         cos: f32,
+    },
+    /// A step to a filter's tap that is 0 or too long.
+    #[error("a step of ({}, {}) px to a tap: it must not be (0, 0), and each part must be within -64..=64", step_px.x, step_px.y)]
+    TapStep {
+        /// The step that was given, px.
+        step_px: IVec2,
     },
     /// A depth step that is negative or not finite.
     #[error("a depth step of {step}: it must be finite and not negative")]

@@ -22,10 +22,11 @@ fn tilted(angle_deg: f64) -> DVec3 {
 #[test]
 fn taps_lie_in_the_picture_and_opposite_ones_stay_opposite() {
     for size in [UVec2::new(1, 1), UVec2::new(1, 7), UVec2::new(2, 3), UVec2::new(5, 4)] {
-        for taps in [Taps::Diagonal, Taps::Cross] {
+        let long = Taps::Steps([IVec2::new(3, 1), IVec2::new(0, -2)]);
+        for taps in [Taps::Diagonal, Taps::Cross, long] {
             for y in 0..size.y {
                 for x in 0..size.x {
-                    let reach = ink_reach(UVec2::new(x, y), size);
+                    let reach = ink_reach(UVec2::new(x, y), size, taps.longest_px());
                     let offsets = taps.offsets().map(|offset| offset * reach);
                     assert_eq!((offsets[0], offsets[1]), (-offsets[2], -offsets[3]));
                     for offset in offsets {
@@ -36,8 +37,34 @@ fn taps_lie_in_the_picture_and_opposite_ones_stay_opposite() {
             }
         }
     }
-    assert_eq!(ink_reach(UVec2::new(0, 1), UVec2::new(1, 3)), IVec2::Y);
-    assert_eq!(ink_reach(UVec2::new(2, 0), UVec2::new(4, 3)), IVec2::X);
+    assert_eq!(ink_reach(UVec2::new(0, 1), UVec2::new(1, 3), UVec2::ONE), IVec2::Y);
+    assert_eq!(ink_reach(UVec2::new(2, 0), UVec2::new(4, 3), UVec2::ONE), IVec2::X);
+}
+
+#[test]
+fn taps_lie_where_their_arrangement_says() {
+    let at = |taps: Taps| taps.offsets().map(|offset| offset.to_array());
+    assert_eq!(at(Taps::Diagonal), [[1, 1], [-1, 1], [-1, -1], [1, -1]]);
+    assert_eq!(at(Taps::Cross), [[1, 0], [0, 1], [-1, 0], [0, -1]]);
+    let steps = Taps::Steps([IVec2::new(3, -1), IVec2::new(0, 2)]);
+    assert_eq!(at(steps), [[3, -1], [0, 2], [-3, 1], [0, -2]]);
+    assert_eq!((steps.longest_px(), steps.weight()), (UVec2::new(3, 2), 1.0));
+    assert_eq!(Taps::Steps([IVec2::new(2, 2), IVec2::new(-2, 2)]).weight(), Taps::Diagonal.weight());
+    // A border between columns 15 and 16 inks as many pixels to each side as the steps are long.
+    let regions: Vec<u32> = (0..32 * 32).map(|i| 1 + u32::from(i % 32 >= 16)).collect();
+    for step in [1, 2, 5] {
+        let taps = Taps::Steps([IVec2::new(step, step), IVec2::new(-step, step)]);
+        let edge = |centre: u32, taps: [u32; 4]| ink_region(centre, taps, false, 0.5) as f32;
+        let ink = filter_picture(&regions, UVec2::splat(32), taps, edge).unwrap();
+        let inked: Vec<_> = (0..32).filter(|x| ink[16 * 32 + x] > 0).collect();
+        assert_eq!(inked, (16 - step as usize..16 + step as usize).collect::<Vec<_>>());
+    }
+    for wrong in [IVec2::ZERO, IVec2::new(65, 0), IVec2::new(1, -65)] {
+        let error = Err(ImageSpaceError::TapStep { step_px: wrong });
+        assert_eq!(Taps::Steps([IVec2::ONE, wrong]).validate(), error);
+        let ink = filter_picture(&[1u32], UVec2::ONE, Taps::Steps([wrong, IVec2::ONE]), |_, _| 0.0);
+        assert_eq!(ink.map(|_| ()), error);
+    }
 }
 
 #[test]

@@ -261,10 +261,10 @@ fn serves_a_pass() {
         @fragment
         fn fs_lines(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
             let at = vec2<i32>(position.xy);
-            let reach = ink_reach(vec2<u32>(at), textureDimensions(g_buffer));
+            let reach = ink_reach(vec2<u32>(at), textureDimensions(g_buffer), vec2<u32>(1u));
             let ink = ink_fused(
-                u_filter, tap(at), tap(at + ink_tap_diagonal(0u, reach)), tap(at + ink_tap_diagonal(1u, reach)),
-                tap(at + ink_tap_diagonal(2u, reach)), tap(at + ink_tap_diagonal(3u, reach)));
+                u_filter, tap(at), tap(at + ink_tap(0u, INK_STEPS_DIAGONAL, reach)), tap(at + ink_tap(1u, INK_STEPS_DIAGONAL, reach)),
+                tap(at + ink_tap(2u, INK_STEPS_DIAGONAL, reach)), tap(at + ink_tap(3u, INK_STEPS_DIAGONAL, reach)));
             let color = textureLoad(painted, at, 0);
             return vec4(ink_composite(color.rgb, ink, u_composite), color.a);
         }

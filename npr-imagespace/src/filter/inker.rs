@@ -1,5 +1,5 @@
-//! The inker of "The Evolution of a Cartoon Renderer", listings 3 and 4: four diagonal neighbours, compared in two
-//! opposite pairs, and no centre.
+//! The inker of "The Evolution of a Cartoon Renderer", listings 3 and 4: four neighbours, the diagonal ones in its text,
+//! compared in two opposite pairs, and no centre.
 //!
 //! With taps 0 and 2 opposite, 1 and 3 opposite, normals n and depths z (0..=1, as encoded), sat = clamp to 0..=1:
 //!
@@ -26,6 +26,7 @@
 //! line, or if larger the ramp of d₀² + d₁² around δ².
 
 use crate::filter::ink_ramp;
+use crate::picture::Taps;
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
@@ -57,11 +58,20 @@ pub struct Inker {
     pub depth_delta: f32,
     /// The explicit form's width of the transition, as a share of its thresholds; 0 for hard lines.
     pub softness: f32,
+    /// The neighbours that are compared: listing 3's text describes the diagonal ones.
+    pub taps: Taps,
 }
 
 impl Default for Inker {
     fn default() -> Self {
-        Self { form: InkerForm::Explicit, normal_cos: 0.9, normal_fall: 0.25, depth_delta: DEPTH_DELTA, softness: 0.0 }
+        Self {
+            form: InkerForm::Explicit,
+            normal_cos: 0.9,
+            normal_fall: 0.25,
+            depth_delta: DEPTH_DELTA,
+            softness: 0.0,
+            taps: Taps::Diagonal,
+        }
     }
 }
 
@@ -103,7 +113,7 @@ pub fn ink_inker_similarity(inker: &Inker, normals: [DVec3; 4], depth0: f64) -> 
     (4.0 * pair(normals[0], normals[2]) * pair(normals[1], normals[3])).clamp(0.0, 1.0)
 }
 
-/// Ink of a pixel from its four diagonal taps: normals as decoded, depths 0..=1.
+/// Ink of a pixel from its four taps: normals as decoded, depths 0..=1.
 pub fn ink_inker(inker: &Inker, normals: [DVec3; 4], depths: [f64; 4]) -> f64 {
     let unlike = 1.0 - ink_inker_similarity(inker, normals, depths[0]);
     let (d0, d1) = (depths[0] - depths[2], depths[1] - depths[3]);

@@ -30,7 +30,7 @@ fn ink_inker_similarity(
     return saturate(4.0 * pairs.x * pairs.y);
 }
 
-// Ink of a pixel from its four diagonal taps: normals as decoded, depths 0..1.
+// Ink of a pixel from its four taps: normals as decoded, depths 0..1.
 fn ink_inker(
     inker: InkInker,
     normal0: vec3<f32>,

@@ -17,7 +17,7 @@ use bytemuck::{Pod, Zeroable};
 pub enum PrintedFilter {
     /// Card & Mitchell 2002, listings 9 and 10.
     Edges(PrintedEdges),
-    /// "The Evolution of a Cartoon Renderer", listing 4; always on diagonal taps.
+    /// "The Evolution of a Cartoon Renderer", listing 4.
     Inker(Inker),
 }
 
@@ -86,8 +86,9 @@ impl PrintedUniform {
     /// Checks the filter.
     ///
     /// # Errors
-    /// If a threshold is out of its range.
+    /// If a threshold is out of its range; [`ImageSpaceError::TapStep`].
     pub fn new(edges: &PrintedEdges) -> Result<Self, ImageSpaceError> {
+        edges.taps.validate()?;
         let normal_cos = edges.normal.map_or(0.0, |normal| normal.cos);
         if !(0.0..=1.0).contains(&normal_cos) {
             return Err(ImageSpaceError::NormalThreshold { cos: normal_cos });
@@ -119,7 +120,7 @@ pub fn ink_printed_edges(edges: &PrintedEdges, uniform: &PrintedUniform, centre:
     edges.normal.is_some_and(differs) || edges.depth.is_some_and(jumps)
 }
 
-/// The inker on bytes: ink 0..=1 of a pixel from its four diagonal taps.
+/// The inker on bytes: ink 0..=1 of a pixel from its four taps.
 pub fn ink_printed_inker(inker: &Inker, taps: [[u8; 4]; 4]) -> f64 {
     let decoded = taps.map(|texel| texel.map(|c| f64::from(c) / 255.0));
     let normals = decoded.map(|[x, y, z, _]| glam::DVec3::new(x, y, z) * 2.0 - 1.0);

@@ -10,7 +10,7 @@ struct InkPrinted {
     padding: u32,
 }
 
-// The inker on texels as loaded: ink 0..1 of a pixel from its four diagonal taps.
+// The inker on texels as loaded: ink 0..1 of a pixel from its four taps.
 fn ink_printed_inker(inker: InkInker, tap0: vec4<f32>, tap1: vec4<f32>, tap2: vec4<f32>, tap3: vec4<f32>) -> f32 {
     return ink_inker(
         inker,

@@ -220,8 +220,10 @@ impl SeparateUniform {
     /// Checks the filter.
     ///
     /// # Errors
-    /// If a threshold is out of its range, or a depth buffer's numbers are not finite or its scale is 0.
+    /// If a threshold is out of its range, or a depth buffer's numbers are not finite or its scale is 0;
+    /// [`ImageSpaceError::TapStep`].
     pub fn new(filter: &SeparateFilter) -> Result<Self, ImageSpaceError> {
+        filter.taps.validate()?;
         let normal = filter.normal.unwrap_or_default();
         if !(0.0..=1.0).contains(&normal.cos) {
             return Err(ImageSpaceError::NormalThreshold { cos: normal.cos });

@@ -4,7 +4,7 @@ use super::fullscreen::{Bound, Fullscreen, Output, flag, uniform};
 use super::target::{InkTarget, PassTarget, check_ink, texture_size_px};
 use crate::ImageSpaceError;
 
-pub(super) const COMPOSITE: (&str, &str) = ("pass/composite.wgsl", include_str!("composite.wgsl"));
+pub(super) const COMPOSITE: &[(&str, &str)] = &[("pass/composite.wgsl", include_str!("composite.wgsl"))];
 
 /// The pipelines, for ink of the picture's size and of another.
 #[derive(Debug)]

@@ -19,7 +19,7 @@ use crate::morphology::disc::{Disc, RADIUS_MAX_PX};
 use crate::morphology::flood::{FloodPlan, disc_plan};
 use bytemuck::{Pod, Zeroable};
 
-pub(super) const DISC: (&str, &str) = ("pass/disc.wgsl", include_str!("disc.wgsl"));
+pub(super) const DISC: &[(&str, &str)] = &[("pass/disc.wgsl", include_str!("disc.wgsl"))];
 /// The format of line pixels as bits.
 const WORD_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 /// Pixels in a texel of bits.

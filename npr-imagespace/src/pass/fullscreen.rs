@@ -3,13 +3,22 @@
 use super::target::{INK_FORMAT, InkTarget, PassTarget, assemble, texture_size_px};
 use crate::ImageSpaceError;
 use crate::composite::{Composite, CompositeUniform};
+use crate::picture::Taps;
 use glam::Vec3;
 
 const FULLSCREEN: (&str, &str) = ("pass/fullscreen.wgsl", include_str!("fullscreen.wgsl"));
+/// The steps to a filter's taps, whose constants are [`tap_constants`].
+pub(super) const TAPS: (&str, &str) = ("pass/taps.wgsl", include_str!("taps.wgsl"));
 
-/// The shader of a pass: the library, the triangle and the pass's own file.
-pub(super) fn module_source(file: (&str, &str)) -> String {
-    assemble(&[crate::LIBRARY, &[FULLSCREEN, file]].concat())
+/// The shader of a pass: the library, the triangle and the pass's own files.
+pub(super) fn module_source(files: &[(&str, &str)]) -> String {
+    assemble(&[crate::LIBRARY, &[FULLSCREEN], files].concat())
+}
+
+/// The pipeline constants of [`TAPS`].
+pub(super) fn tap_constants(taps: Taps) -> [(&'static str, f64); 4] {
+    let steps = taps.steps().as_dvec4();
+    [("step0_x", steps.x), ("step0_y", steps.y), ("step1_x", steps.z), ("step1_y", steps.w)]
 }
 
 /// A binding of a pass, after that of the composite uniform.
@@ -43,12 +52,12 @@ pub(super) struct Fullscreen {
 }
 
 impl Fullscreen {
-    /// - `file`: the pass's own WGSL, name and text; its entry point is `label` with `fs_` before it.
+    /// - `files`: the pass's own WGSL, names and texts; its entry point is `label` with `fs_` before it.
     /// - `bound`: the bindings, from binding 1 of group 0 on.
     pub(super) fn new(
         device: &wgpu::Device,
         label: &'static str,
-        file: (&str, &str),
+        files: &[(&str, &str)],
         bound: &[Bound],
         constants: &[(&str, f64)],
         output: Output,
@@ -68,7 +77,7 @@ impl Fullscreen {
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries });
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(label),
-            source: wgpu::ShaderSource::Wgsl(module_source(file).into()),
+            source: wgpu::ShaderSource::Wgsl(module_source(files).into()),
         });
         // A picture's alpha is not written.
         let (format, blend, write_mask) = match output {

@@ -1,13 +1,13 @@
 //! The fused filter over packed texels: see [`crate::filter::fused`] for what it decides.
 
-use super::fullscreen::{Bound, Fullscreen, Output, flag, uniform};
+use super::fullscreen::{Bound, Fullscreen, Output, TAPS, flag, tap_constants, uniform};
 use super::target::{InkTarget, PassTarget, check_view};
 use crate::ImageSpaceError;
 use crate::filter::fused::{FilterUniform, FusedFilter};
 use crate::format::texel::{DepthCode, TexelLayout};
 use crate::picture::Taps;
 
-pub(super) const FUSED: (&str, &str) = ("pass/fused.wgsl", include_str!("fused.wgsl"));
+pub(super) const FUSED: &[(&str, &str)] = &[TAPS, ("pass/fused.wgsl", include_str!("fused.wgsl"))];
 
 /// The format of a texture of packed texels. It must be cleared to 0, which is background.
 pub fn texel_format(layout: TexelLayout) -> wgpu::TextureFormat {
@@ -30,7 +30,7 @@ impl FusedPass {
     /// Makes the pipeline for a filter's taps, hard if its softness is 0.
     ///
     /// # Errors
-    /// [`ImageSpaceError::SrgbPicture`], [`ImageSpaceError::PictureFormat`].
+    /// [`ImageSpaceError::SrgbPicture`], [`ImageSpaceError::PictureFormat`], [`ImageSpaceError::TapStep`].
     pub fn new(
         device: &wgpu::Device,
         filter: &FusedFilter,
@@ -39,11 +39,9 @@ impl FusedPass {
     ) -> Result<Self, ImageSpaceError> {
         target.check(device)?;
         let soft = filter.softness > 0.0;
-        let constants = [
-            flag("narrow", layout == TexelLayout::Bits32),
-            flag("cross_taps", filter.taps == Taps::Cross),
-            flag("soft", soft),
-        ];
+        filter.taps.validate()?;
+        let [x0, y0, x1, y1] = tap_constants(filter.taps);
+        let constants = [flag("narrow", layout == TexelLayout::Bits32), flag("soft", soft), x0, y0, x1, y1];
         let bound = [Bound::Uniform, Bound::Whole];
         Ok(Self {
             draw: Fullscreen::new(device, "fused", FUSED, &bound, &constants, Output::Ink(target)),

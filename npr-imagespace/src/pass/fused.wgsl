@@ -5,7 +5,6 @@
 
 // Constants of the pipeline, since software rasterisers execute both sides of branches.
 override narrow: bool;
-override cross_taps: bool;
 override soft: bool;
 
 fn tap_at(pixel: vec2<i32>) -> InkTap {
@@ -17,16 +16,13 @@ fn tap_at(pixel: vec2<i32>) -> InkTap {
 }
 
 fn tap_beside(pixel: vec2<i32>, tap: u32, reach: vec2<i32>) -> InkTap {
-    if cross_taps {
-        return tap_at(pixel + ink_tap_cross(tap, reach));
-    }
-    return tap_at(pixel + ink_tap_diagonal(tap, reach));
+    return tap_at(pixel + ink_tap(tap, steps(), reach));
 }
 
 @fragment
 fn fs_fused(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let pixel = vec2<i32>(position.xy);
-    let reach = ink_reach(vec2<u32>(pixel), textureDimensions(texels));
+    let reach = ink_reach(vec2<u32>(pixel), textureDimensions(texels), longest_px());
     let centre = tap_at(pixel);
     let tap0 = tap_beside(pixel, 0u, reach);
     let tap1 = tap_beside(pixel, 1u, reach);

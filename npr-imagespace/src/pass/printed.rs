@@ -1,14 +1,14 @@
 //! The filters and the inker of 2002 over an RGBA8 target: see [`crate::filter::printed`] for what they decide, and
 //! [`crate::format::printed`] for what the target holds.
 
-use super::fullscreen::{Bound, Fullscreen, Output, flag, uniform};
+use super::fullscreen::{Bound, Fullscreen, Output, TAPS, flag, tap_constants, uniform};
 use super::target::{InkTarget, PassTarget, check_view};
 use crate::ImageSpaceError;
 use crate::filter::inker::InkerUniform;
 use crate::filter::printed::{PrintedFilter, PrintedUniform};
 use crate::picture::Taps;
 
-pub(super) const PRINTED: (&str, &str) = ("pass/printed.wgsl", include_str!("printed.wgsl"));
+pub(super) const PRINTED: &[(&str, &str)] = &[TAPS, ("pass/printed.wgsl", include_str!("printed.wgsl"))];
 
 /// The tests that a pipeline is made for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,7 +19,9 @@ enum Kind {
         depth: bool,
         taps: Taps,
     },
-    Inker,
+    Inker {
+        taps: Taps,
+    },
 }
 
 impl From<&PrintedFilter> for Kind {
@@ -30,7 +32,7 @@ impl From<&PrintedFilter> for Kind {
                 depth: edges.depth.is_some(),
                 taps: edges.taps,
             },
-            PrintedFilter::Inker(_) => Self::Inker,
+            PrintedFilter::Inker(inker) => Self::Inker { taps: inker.taps },
         }
     }
 }
@@ -46,19 +48,24 @@ impl PrintedPass {
     /// Makes the pipeline.
     ///
     /// # Errors
-    /// [`ImageSpaceError::SrgbPicture`], [`ImageSpaceError::PictureFormat`].
+    /// [`ImageSpaceError::SrgbPicture`], [`ImageSpaceError::PictureFormat`], [`ImageSpaceError::TapStep`].
     pub fn new(device: &wgpu::Device, filter: &PrintedFilter, target: InkTarget) -> Result<Self, ImageSpaceError> {
         target.check(device)?;
         let kind = Kind::from(filter);
         let (label, normal, depth, taps) = match kind {
             Kind::Edges { normal, depth, taps } => ("printed", normal, depth, taps),
-            Kind::Inker => ("inker", None, false, Taps::Diagonal),
+            Kind::Inker { taps } => ("inker", None, false, taps),
         };
+        taps.validate()?;
+        let [x0, y0, x1, y1] = tap_constants(taps);
         let constants = [
             flag("with_normal", normal.is_some()),
             flag("printed_background", normal == Some(true)),
             flag("with_depth", depth),
-            flag("cross_taps", taps == Taps::Cross),
+            x0,
+            y0,
+            x1,
+            y1,
         ];
         let bound = [Bound::Uniform, Bound::Float];
         Ok(Self { draw: Fullscreen::new(device, label, PRINTED, &bound, &constants, Output::Ink(target)), kind })

@@ -8,14 +8,6 @@
 override with_normal: bool;
 override printed_background: bool;
 override with_depth: bool;
-override cross_taps: bool;
-
-fn tap_px(pixel: vec2<i32>, tap: u32, reach: vec2<i32>) -> vec2<i32> {
-    if cross_taps {
-        return pixel + ink_tap_cross(tap, reach);
-    }
-    return pixel + ink_tap_diagonal(tap, reach);
-}
 
 fn normals_differ(centre: vec3<i32>, tap0: vec3<i32>, tap1: vec3<i32>, tap2: vec3<i32>, tap3: vec3<i32>) -> bool {
     if printed_background {
@@ -27,12 +19,12 @@ fn normals_differ(centre: vec3<i32>, tap0: vec3<i32>, tap1: vec3<i32>, tap2: vec
 @fragment
 fn fs_printed(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let pixel = vec2<i32>(position.xy);
-    let reach = ink_reach(vec2<u32>(pixel), textureDimensions(texels));
+    let reach = ink_reach(vec2<u32>(pixel), textureDimensions(texels), longest_px());
     let centre = ink_bytes(textureLoad(texels, pixel, 0));
-    let tap0 = ink_bytes(textureLoad(texels, tap_px(pixel, 0u, reach), 0));
-    let tap1 = ink_bytes(textureLoad(texels, tap_px(pixel, 1u, reach), 0));
-    let tap2 = ink_bytes(textureLoad(texels, tap_px(pixel, 2u, reach), 0));
-    let tap3 = ink_bytes(textureLoad(texels, tap_px(pixel, 3u, reach), 0));
+    let tap0 = ink_bytes(textureLoad(texels, pixel + ink_tap(0u, steps(), reach), 0));
+    let tap1 = ink_bytes(textureLoad(texels, pixel + ink_tap(1u, steps(), reach), 0));
+    let tap2 = ink_bytes(textureLoad(texels, pixel + ink_tap(2u, steps(), reach), 0));
+    let tap3 = ink_bytes(textureLoad(texels, pixel + ink_tap(3u, steps(), reach), 0));
     var is_line = false;
     if with_normal {
         is_line = normals_differ(centre.xyz, tap0.xyz, tap1.xyz, tap2.xyz, tap3.xyz);
@@ -47,10 +39,10 @@ fn fs_printed(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> 
 @fragment
 fn fs_inker(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let pixel = vec2<i32>(position.xy);
-    let reach = ink_reach(vec2<u32>(pixel), textureDimensions(texels));
-    let tap0 = textureLoad(texels, pixel + ink_tap_diagonal(0u, reach), 0);
-    let tap1 = textureLoad(texels, pixel + ink_tap_diagonal(1u, reach), 0);
-    let tap2 = textureLoad(texels, pixel + ink_tap_diagonal(2u, reach), 0);
-    let tap3 = textureLoad(texels, pixel + ink_tap_diagonal(3u, reach), 0);
+    let reach = ink_reach(vec2<u32>(pixel), textureDimensions(texels), longest_px());
+    let tap0 = textureLoad(texels, pixel + ink_tap(0u, steps(), reach), 0);
+    let tap1 = textureLoad(texels, pixel + ink_tap(1u, steps(), reach), 0);
+    let tap2 = textureLoad(texels, pixel + ink_tap(2u, steps(), reach), 0);
+    let tap3 = textureLoad(texels, pixel + ink_tap(3u, steps(), reach), 0);
     return ink_premultiplied(ink_printed_inker(inker, tap0, tap1, tap2, tap3), how);
 }

@@ -1,13 +1,13 @@
 //! The filters over separate textures: see [`crate::filter::separate`] for what they decide, and how the numbers
 //! of a depth buffer are read.
 
-use super::fullscreen::{Bound, Fullscreen, Output, flag, uniform};
+use super::fullscreen::{Bound, Fullscreen, Output, TAPS, flag, tap_constants, uniform};
 use super::target::{InkTarget, PassTarget, check_samples_and_size};
 use crate::ImageSpaceError;
 use crate::filter::separate::{SeparateDepthTest, SeparateFilter, SeparateUniform};
 use crate::picture::Taps;
 
-pub(super) const SEPARATE: (&str, &str) = ("pass/separate.wgsl", include_str!("separate.wgsl"));
+pub(super) const SEPARATE: &[(&str, &str)] = &[TAPS, ("pass/separate.wgsl", include_str!("separate.wgsl"))];
 
 /// The textures of a G-buffer, all of the target's size. Those of tests that the filter does not have may be `None`.
 #[derive(Clone, Copy, Debug, Default)]
@@ -86,16 +86,21 @@ impl SeparatePass {
     /// Makes the pipeline.
     ///
     /// # Errors
-    /// [`ImageSpaceError::SrgbPicture`], [`ImageSpaceError::PictureFormat`].
+    /// [`ImageSpaceError::SrgbPicture`], [`ImageSpaceError::PictureFormat`], [`ImageSpaceError::TapStep`].
     pub fn new(device: &wgpu::Device, filter: &SeparateFilter, target: InkTarget) -> Result<Self, ImageSpaceError> {
         target.check(device)?;
         let kind = Kind::from(filter);
+        kind.taps.validate()?;
+        let [x0, y0, x1, y1] = tap_constants(kind.taps);
         let constants = [
             flag("with_normal", kind.normal),
             flag("with_region", kind.region),
             ("depth_test", f64::from(kind.depth)),
-            flag("cross_taps", kind.taps == Taps::Cross),
             flag("soft", kind.soft),
+            x0,
+            y0,
+            x1,
+            y1,
         ];
         let bound = [Bound::Uniform, Bound::Float, Bound::Float, Bound::Whole, Bound::Nearest];
         let none = [wgpu::TextureFormat::R8Unorm, wgpu::TextureFormat::R8Uint].map(|format| {

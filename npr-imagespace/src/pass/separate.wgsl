@@ -14,7 +14,6 @@ override with_normal: bool;
 override with_region: bool;
 // The test of depth; 0 for none.
 override depth_test: u32;
-override cross_taps: bool;
 override soft: bool;
 
 const BEND: u32 = 1u;
@@ -29,13 +28,6 @@ fn size_px() -> vec2<u32> {
         return textureDimensions(depths);
     }
     return textureDimensions(regions);
-}
-
-fn tap_px(pixel: vec2<i32>, tap: u32, reach: vec2<i32>) -> vec2<i32> {
-    if cross_taps {
-        return pixel + ink_tap_cross(tap, reach);
-    }
-    return pixel + ink_tap_diagonal(tap, reach);
 }
 
 fn normal_at(at: vec2<i32>) -> vec3<f32> {
@@ -68,11 +60,11 @@ fn depth_ink(centre: f32, taps: vec4<f32>, softness: f32) -> f32 {
 @fragment
 fn fs_separate(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let pixel = vec2<i32>(position.xy);
-    let reach = ink_reach(vec2<u32>(pixel), size_px());
-    let at0 = tap_px(pixel, 0u, reach);
-    let at1 = tap_px(pixel, 1u, reach);
-    let at2 = tap_px(pixel, 2u, reach);
-    let at3 = tap_px(pixel, 3u, reach);
+    let reach = ink_reach(vec2<u32>(pixel), size_px(), longest_px());
+    let at0 = pixel + ink_tap(0u, steps(), reach);
+    let at1 = pixel + ink_tap(1u, steps(), reach);
+    let at2 = pixel + ink_tap(2u, steps(), reach);
+    let at3 = pixel + ink_tap(3u, steps(), reach);
     var softness = 0.0;
     if soft {
         softness = what.softness;

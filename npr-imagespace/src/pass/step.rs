@@ -8,7 +8,7 @@ use crate::ImageSpaceError;
 use crate::composite::Composite;
 use crate::morphology::{Kernel, Operation};
 
-pub(super) const STEP: (&str, &str) = ("pass/step.wgsl", include_str!("step.wgsl"));
+pub(super) const STEP: &[(&str, &str)] = &[("pass/step.wgsl", include_str!("step.wgsl"))];
 
 /// One step.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 //! The fused filter.
 
 use crate::device::{gpu, view};
-use crate::inputs::{Random, SIZES, direction, px, scene};
+use crate::inputs::{LONG, Random, SIZES, direction, px, scene};
 use crate::targets::{COMPOSITES, PICTURE, assert_areas, assert_composited, composited, difference, drawn};
 use npr_imagespace::composite::Composite;
 use npr_imagespace::filter::fused::{DepthTest, FilterUniform, FusedFilter, ShadowTest, ink_fused};
@@ -85,7 +85,7 @@ fn ink_and_pictures_are_those_of_the_cpu() {
     let mut random = Random(11);
     let (mut inked, mut pixels, mut borderline) = (0, 0, 0);
     for layout in [TexelLayout::Bits32, TexelLayout::Bits64] {
-        for taps in [Taps::Diagonal, Taps::Cross] {
+        for taps in [Taps::Diagonal, Taps::Cross, LONG] {
             for softness in [0.0, 0.1] {
                 let kind = FusedFilter { taps, softness, ..Default::default() };
                 let on_ink = FusedPass::new(&gpu.device, &kind, layout, InkTarget::Ink).unwrap();

@@ -1,7 +1,11 @@
 //! What the passes are tried on.
 
-use glam::{UVec2, Vec3};
+use glam::{IVec2, UVec2, Vec3};
+use npr_imagespace::picture::Taps;
 use std::f32::consts::TAU;
+
+/// Free steps of a filter, longer than a pixel.
+pub const LONG: Taps = Taps::Steps([IVec2::new(3, 1), IVec2::new(-1, 2)]);
 
 /// Width and height: single pixels, rows and columns, odd ones, and such that fill words of 4 and 32 px and do not.
 pub const SIZES: [[u32; 2]; 9] = [[1, 1], [1, 9], [70, 1], [2, 2], [3, 5], [33, 7], [64, 20], [7, 40], [61, 37]];

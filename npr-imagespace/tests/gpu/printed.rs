@@ -1,7 +1,7 @@
 //! The filters and the inker of 2002.
 
 use crate::device::{gpu, view};
-use crate::inputs::{Random, SIZES, direction, px, scene};
+use crate::inputs::{LONG, Random, SIZES, direction, px, scene};
 use crate::targets::{COMPOSITES, PICTURE, assert_areas, assert_composited, composited, drawn};
 use npr_imagespace::ImageSpaceError;
 use npr_imagespace::composite::Composite;
@@ -61,7 +61,7 @@ fn edges_are_those_of_the_cpu() {
     let mut random = Random(31);
     let (mut inked, mut pixels) = (0, 0);
     for edges in edges() {
-        for taps in [Taps::Diagonal, Taps::Cross] {
+        for taps in [Taps::Diagonal, Taps::Cross, LONG] {
             let edges = PrintedEdges { taps, ..edges };
             let filter = PrintedFilter::Edges(edges);
             let uniform = PrintedUniform::new(&edges).unwrap();
@@ -103,8 +103,8 @@ fn the_inker_is_that_of_the_cpu() {
     let mut random = Random(32);
     let (mut inked, mut pixels, mut borderline) = (0, 0, 0);
     for form in [InkerForm::Printed, InkerForm::Corrected, InkerForm::Explicit] {
-        for softness in [0.0, 0.5] {
-            let inker = Inker { form, softness, ..Default::default() };
+        for (softness, taps) in [(0.0, Taps::Diagonal), (0.5, Taps::Diagonal), (0.0, LONG)] {
+            let inker = Inker { form, softness, taps, ..Default::default() };
             let off = u8::from(softness > 0.0);
             // With thresholds off by what rounding amounts to, towards less ink and towards more.
             let shaken = [1.0f32, -1.0].map(|sign| Inker {
@@ -122,7 +122,7 @@ fn the_inker_is_that_of_the_cpu() {
                     });
                     let [less, more] = shaken.map(|inker| {
                         let ink = |_, taps: [[u8; 4]; 4]| ink_printed_inker(&inker, taps) as f32;
-                        filter_picture(&texels, px(size), Taps::Diagonal, ink).unwrap()
+                        filter_picture(&texels, px(size), inker.taps, ink).unwrap()
                     });
                     for (i, &got) in got.iter().enumerate() {
                         let (less, more) = (less[i], more[i]);

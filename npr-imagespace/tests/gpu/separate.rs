@@ -1,7 +1,7 @@
 //! The filters over separate textures.
 
 use crate::device::{gpu, view};
-use crate::inputs::{Random, SIZES, direction, px, scene};
+use crate::inputs::{LONG, Random, SIZES, direction, px, scene};
 use crate::targets::{COMPOSITES, PICTURE, assert_areas, assert_composited, composited, drawn};
 use glam::Vec3;
 use npr_imagespace::ImageSpaceError;
@@ -148,7 +148,7 @@ fn ink_and_pictures_are_those_of_the_cpu() {
     let mut random = Random(21);
     let mut count = Count::default();
     let mut at_reference = 0;
-    for taps in [Taps::Diagonal, Taps::Cross] {
+    for taps in [Taps::Diagonal, Taps::Cross, LONG] {
         for softness in [0.0, 0.3] {
             for filter in filters() {
                 let filter = SeparateFilter { taps, softness, ..filter };
