@@ -230,9 +230,12 @@ const FULLSCREEN: &str = include_str!("../src/pass/fullscreen.wgsl");
 
 /// The passes' own shaders, as they use them: after the library and the triangle.
 const PASSES: [(&str, &[&str]); 6] = [
-    (include_str!("../src/pass/fused.wgsl"), &["fs_fused"]),
-    (include_str!("../src/pass/separate.wgsl"), &["fs_separate"]),
-    (include_str!("../src/pass/printed.wgsl"), &["fs_printed", "fs_inker"]),
+    (concat!(include_str!("../src/pass/taps.wgsl"), include_str!("../src/pass/fused.wgsl")), &["fs_fused"]),
+    (concat!(include_str!("../src/pass/taps.wgsl"), include_str!("../src/pass/separate.wgsl")), &["fs_separate"]),
+    (
+        concat!(include_str!("../src/pass/taps.wgsl"), include_str!("../src/pass/printed.wgsl")),
+        &["fs_printed", "fs_inker"],
+    ),
     (include_str!("../src/pass/step.wgsl"), &["fs_step"]),
     (include_str!("../src/pass/disc.wgsl"), &["fs_bits", "fs_row", "fs_column", "fs_resolve"]),
     (include_str!("../src/pass/composite.wgsl"), &["fs_composite"]),

@@ -195,6 +195,7 @@ fn known(rust: &str) -> Option<&'static str> {
         "Vec4" | "DVec4" => "vec4<f32>",
         "UVec2" => "vec2<u32>",
         "IVec2" => "vec2<i32>",
+        "IVec4" => "vec4<i32>",
         "IVec3" => "vec3<i32>",
         "Mat4" | "DMat4" => "mat4x4<f32>",
         _ => return None,
