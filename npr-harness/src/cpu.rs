@@ -16,6 +16,7 @@ use crate::camera::PictureRays;
 use crate::edge_lines::cpu::draw_lines;
 use crate::hatch::cpu::Strokes;
 use crate::image_lines::cpu::draw_ink;
+use crate::image_lines::gbuffer::texel::GBufferTexel;
 use crate::plan::Plan;
 use crate::printed_fins::cpu::draw_printed;
 use crate::rays::Hit;
@@ -77,7 +78,7 @@ pub(crate) fn without_ink(
     let hits = hits.hits(view, options, || context.first_hits(options.threads));
     let beside_picture = plan.image.as_ref().is_some_and(|image| !image.own_surfaces);
     let mut fine = context.trace(hits.as_ref(), options.threads, true, beside_picture, progress);
-    let shared_texels = std::mem::take(&mut fine.texels);
+    let shared = (std::mem::take(&mut fine.texels), std::mem::take(&mut fine.gbuffer));
     if let Some(printed) = &plan.printed_fins {
         draw_printed(printed, scene, view, context.shift_px, &mut fine);
     }
@@ -86,15 +87,22 @@ pub(crate) fn without_ink(
     }
     let mut frame = if view.samples == 1 { fine } else { fine.resolved(view.samples) };
     if let Some(image) = &plan.image {
-        frame.texels = if image.own_surfaces {
+        (frame.texels, frame.gbuffer) = if image.own_surfaces {
             // One sample per pixel of the ink, independent of the picture's samples, so that lines are as wide as on
             // the GPU.
-            context.of_ink(image.size, options).trace(None, options.threads, false, true, &|_| {}).texels
+            let own = context.of_ink(image.size, options).trace(None, options.threads, false, true, &|_| {});
+            (own.texels, own.gbuffer)
         } else {
-            shared_texels
+            shared
         };
     }
     frame
+}
+
+/// A row of the G-buffer.
+enum TexelRow<'a> {
+    Packed(&'a mut [[u32; 2]]),
+    Unquantised(&'a mut [GBufferTexel]),
 }
 
 /// The visible surface point at a pixel.
@@ -178,8 +186,12 @@ impl FrameContext<'_> {
         let (row, pixels) = (width as usize, width as usize * height as usize);
         let mut color = vec![DVec4::ZERO; if picture { pixels } else { 0 }];
         let mut depth = vec![0.0; color.len()];
-        let mut texels = vec![[0; 2]; if texels { pixels } else { 0 }];
-        let rows_of_texels = texels.chunks_mut(row).map(Some).chain(std::iter::repeat_with(|| None));
+        let is_packed = self.plan.image.as_ref().is_some_and(|image| image.gbuffer.is_none());
+        let mut gbuffer = vec![[0; 4]; if texels && !is_packed { pixels } else { 0 }];
+        let mut texels = vec![[0; 2]; if texels && is_packed { pixels } else { 0 }];
+        let packed = texels.chunks_mut(row).map(TexelRow::Packed);
+        let rows_of_texels = packed.chain(gbuffer.chunks_mut(row).map(TexelRow::Unquantised)).map(Some);
+        let rows_of_texels = rows_of_texels.chain(std::iter::repeat_with(|| None));
         let rows_of_picture = color.chunks_mut(row).zip(depth.chunks_mut(row)).map(Some);
         let rows_of_picture = rows_of_picture.chain(std::iter::repeat_with(|| None));
         let rows = AtomicU32::new(0);
@@ -189,7 +201,7 @@ impl FrameContext<'_> {
             let done = rows.fetch_add(1, Ordering::Relaxed) + 1;
             progress(f64::from(done) / f64::from(height));
         });
-        CpuFrame { width, height, color, depth, texels }
+        CpuFrame { width, height, color, depth, texels, gbuffer }
     }
 
     /// The nearest unblended hit at each pixel.
@@ -235,7 +247,7 @@ impl FrameContext<'_> {
         width: u32,
         hits: Option<&[Option<Hit>]>,
         mut picture: Option<(&mut [DVec4], &mut [f64])>,
-        mut texels: Option<&mut [[u32; 2]]>,
+        mut texels: Option<TexelRow<'_>>,
     ) {
         for x in 0..width {
             let solid = hits.map_or_else(|| self.first_solid(x, y), |hits| hits[x as usize]);
@@ -243,8 +255,10 @@ impl FrameContext<'_> {
                 color[x as usize] = self.trace_pixel(solid.as_ref(), x, y);
                 depth[x as usize] = solid.map_or(0.0, |hit| self.plan.view.camera.buffer_depth(hit.t));
             }
-            if let Some(texels) = &mut texels {
-                texels[x as usize] = self.texel(solid.as_ref(), x, y);
+            match &mut texels {
+                Some(TexelRow::Packed(texels)) => texels[x as usize] = self.texel(solid.as_ref(), x, y),
+                Some(TexelRow::Unquantised(texels)) => texels[x as usize] = self.gbuffer_texel(solid.as_ref(), x, y),
+                None => {}
             }
         }
     }

@@ -368,6 +368,14 @@ pub enum HarnessError {
         /// The memory allowed, bytes.
         limit: u64,
     },
+    /// Settings of a style's G-buffer that contradict each other.
+    #[error("a G-buffer: {what} needs {needs}")]
+    GBuffer {
+        /// What was asked for.
+        what: &'static str,
+        /// What else it takes.
+        needs: &'static str,
+    },
     /// A number out of its range.
     #[error("{what} of {value}: it must lie in {range}")]
     Range {

@@ -1,6 +1,7 @@
 //! Image-space lines: edge detection in normals, regions and depths that are rendered with the picture.
 
 pub(crate) mod cpu;
+pub mod gbuffer;
 #[cfg(feature = "gpu")]
 pub(crate) mod gpu;
 pub mod plan;

@@ -1,6 +1,7 @@
 //! The output of the CPU executor, and its options.
 
 use crate::color::to_bytes;
+use crate::image_lines::gbuffer::texel::GBufferTexel;
 use crate::picture::Image;
 use glam::{DVec2, DVec4};
 
@@ -32,6 +33,8 @@ pub struct CpuFrame {
     pub depth: Vec<f64>,
     /// Per pixel of the ink: packed normal, region and depth, if lines are found in the image; else empty.
     pub texels: Vec<[u32; 2]>,
+    /// The same unquantised, if the style has a G-buffer of its own; else empty.
+    pub gbuffer: Vec<GBufferTexel>,
 }
 
 impl CpuFrame {
@@ -61,6 +64,6 @@ impl CpuFrame {
                 depth.push(nearest);
             }
         }
-        Self { width, height, color, depth, texels: Vec::new() }
+        Self { width, height, color, depth, texels: Vec::new(), gbuffer: Vec::new() }
     }
 }

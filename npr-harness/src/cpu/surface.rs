@@ -2,7 +2,9 @@
 
 use super::FrameContext;
 use crate::color::encode_rgb;
-use crate::image_lines::cpu::{InkSample, texel};
+use crate::image_lines::ImagePlan;
+use crate::image_lines::cpu::{InkSample, gbuffer_texel, texel};
+use crate::image_lines::gbuffer::texel::GBufferTexel;
 use crate::rays::Hit;
 use crate::shadow::cpu::{ShadowAt, shadow_at};
 use glam::{DVec2, DVec3, DVec4};
@@ -185,7 +187,22 @@ impl FrameContext<'_> {
 
     /// The packed G-buffer value of a pixel, for lines in the image.
     pub(super) fn texel(&self, hit: Option<&Hit>, x: u32, y: u32) -> [u32; 2] {
-        let Some(image) = &self.plan.image else { return [0; 2] };
+        self.plan.image.as_ref().map_or([0; 2], |image| self.of_sample(image, hit, x, y, texel))
+    }
+
+    /// The unquantised G-buffer value of a pixel.
+    pub(super) fn gbuffer_texel(&self, hit: Option<&Hit>, x: u32, y: u32) -> GBufferTexel {
+        self.plan.image.as_ref().map_or([0; 4], |image| self.of_sample(image, hit, x, y, gbuffer_texel))
+    }
+
+    fn of_sample<T>(
+        &self,
+        image: &ImagePlan,
+        hit: Option<&Hit>,
+        x: u32,
+        y: u32,
+        texel: impl Fn(&ImagePlan, Option<&InkSample<'_>>) -> T,
+    ) -> T {
         let Some(hit) = hit else { return texel(image, None) };
         let texture_bytes = || {
             let texture = self.material(hit).texture?;

@@ -22,6 +22,7 @@ fn parts(shade: &ShadeOnDevice, hatched: bool) -> Parts {
     parts.push(("npr-imagespace, format", npr_imagespace::format::FORMAT_WGSL));
     parts.push(("npr-imagespace, shadow", npr_imagespace::shadow::SHADOW_WGSL));
     parts.push(("npr-imagespace, artist", npr_imagespace::artist::ARTIST_WGSL));
+    parts.push(("gbuffer/texel.wgsl", crate::image_lines::gbuffer::texel::WGSL));
     if hatched {
         parts.extend(HATCH_WGSL);
     }

@@ -9,6 +9,7 @@ use super::uniform::uniform_buffer;
 use crate::camera::Camera;
 use crate::error::HarnessError;
 use crate::hatch::gpu::{HatchTextures, HatchUniform};
+use crate::image_lines::gbuffer::gpu::TEXEL_FORMAT;
 use crate::image_lines::plan::ImagePlan;
 use crate::plan::Plan;
 use crate::scene::Scene;
@@ -102,6 +103,8 @@ enum Paint {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 struct Inking {
     layout: TexelLayout,
+    /// Whether texels are unquantised.
+    unquantised: bool,
     line_kind: LineKind,
     region_of_texture: bool,
 }
@@ -389,6 +392,7 @@ impl SurfacePass {
                 let line_kind = image.line_kinds[drawn.material];
                 Inking {
                     layout: image.ink.layout,
+                    unquantised: image.gbuffer.is_some(),
                     line_kind,
                     region_of_texture: line_kind == LineKind::Regions && material.texture.is_some(),
                 }
@@ -536,7 +540,7 @@ impl SurfacePass {
             write_mask: if paint == Paint::Nothing { wgpu::ColorWrites::empty() } else { wgpu::ColorWrites::ALL },
         };
         let texels = inking.map(|inking| wgpu::ColorTargetState {
-            format: texel_format(inking.layout),
+            format: if inking.unquantised { TEXEL_FORMAT } else { texel_format(inking.layout) },
             blend: None,
             write_mask: wgpu::ColorWrites::ALL,
         });
@@ -552,6 +556,7 @@ impl SurfacePass {
                 ("surface_shadow_lines", f64::from(variant.shadow.lines)),
                 ("surface_clipped", flag(clipped)),
                 ("surface_narrow", flag(narrow)),
+                ("surface_unquantised", flag(inking.is_some_and(|inking| inking.unquantised))),
                 ("surface_line_kind", f64::from(line_kind as u32)),
                 ("surface_region_of_texture", flag(region_of_texture)),
                 ("surface_by_alpha", flag(by_alpha)),

@@ -44,6 +44,8 @@ struct SurfaceInk {
 override surface_clipped: bool = false;
 // Whether the G-buffer is packed into 32 bits instead of 64.
 override surface_narrow: bool = false;
+// Whether texels of the G-buffer are unquantised.
+override surface_unquantised: bool = false;
 // The source of the material's inner lines: 0 normals, 1 vertex colours, 2 texture, 3 regions, 4 none.
 override surface_line_kind: u32 = 0u;
 // Whether the colours of the texture are region numbers.
@@ -114,14 +116,14 @@ struct VertexLitSurface {
     @location(0) light: vec2<f32>,
 }
 
-// Colour, and the packed normal, region and depth in one or two 32-bit words.
+// Colour, and normal, region and depth packed into the first one or two 32-bit words, or unquantised in four.
 struct Inked {
     @location(0) color: vec4<f32>,
-    @location(1) texel: vec2<u32>,
+    @location(1) texel: vec4<u32>,
 }
 
 struct Texel {
-    @location(1) texel: vec2<u32>,
+    @location(1) texel: vec4<u32>,
 }
 
 // The alpha written with a surface's colour. A write mask cannot be used: WebGL2 has one for all targets of a pass.
@@ -371,22 +373,27 @@ fn shadowed_most() -> u32 {
     return select(INK_TEXEL64_SHADOWED_REGION_MAX, INK_TEXEL32_SHADOWED_REGION_MAX, surface_narrow);
 }
 
-fn words(normal: vec3<f32>, region: u32, position: vec4<f32>, at: ShadowAt) -> vec2<u32> {
+fn words(normal: vec3<f32>, region: u32, position: vec4<f32>, at: ShadowAt) -> vec4<u32> {
+    if surface_unquantised {
+        let v = position.z * ink.code.scale + ink.code.bias;
+        let shadowed = surface_shadow_lines == 2u && at.negated;
+        return gbuffer_pack(normal, region, select(1.0 / v, v, ink.code.parallel != 0u), shadowed);
+    }
     let depth = ink_depth_code_of(position.z, ink.code);
     let number = shadow_region(region, at, shadowed_most());
     if surface_narrow {
-        return vec2<u32>(ink_texel32_bits(normal, number, depth), 0u);
+        return vec4<u32>(ink_texel32_bits(normal, number, depth), 0u, 0u, 0u);
     }
-    return ink_texel64_bits(normal, number, depth);
+    return vec4<u32>(ink_texel64_bits(normal, number, depth), 0u, 0u);
 }
 
-fn plain_words(in: InkedSurface, front: bool, at: ShadowAt) -> vec2<u32> {
+fn plain_words(in: InkedSurface, front: bool, at: ShadowAt) -> vec4<u32> {
     let own = shadow_normal(facing(in.normal, front), at);
     let normal = inked_normal(own, vec4<f32>(1.0), vec4<f32>(1.0), in.position.xy);
     return words(normal, in.region, in.position, at);
 }
 
-fn textured_words(in: InkedTexturedSurface, front: bool, texel: vec4<f32>, at: ShadowAt) -> vec2<u32> {
+fn textured_words(in: InkedTexturedSurface, front: bool, texel: vec4<f32>, at: ShadowAt) -> vec4<u32> {
     var region = in.region;
     if surface_region_of_texture {
         region = ink_region_pair(in.region, texture_region(in.uv));
@@ -455,7 +462,7 @@ fn lit_texel(in: LitSurface) -> vec4<f32> {
     return vec4<f32>(1.0);
 }
 
-fn lit_words(in: LitSurface, texel: vec4<f32>, front: bool, at: ShadowAt) -> vec2<u32> {
+fn lit_words(in: LitSurface, texel: vec4<f32>, front: bool, at: ShadowAt) -> vec4<u32> {
     if surface_looked_up {
         return textured_words(InkedTexturedSurface(in.position, in.normal, in.uv, in.color, in.region), front, texel, at);
     }

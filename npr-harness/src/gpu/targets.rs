@@ -2,6 +2,8 @@
 
 use super::context::GpuContext;
 use crate::error::HarnessError;
+use crate::image_lines::gbuffer::gpu::{GBufferTargets, TEXEL_FORMAT};
+use crate::image_lines::gbuffer::style::GBufferTarget;
 use crate::image_lines::plan::ImagePlan;
 use crate::image_lines::style::InkScale;
 use crate::picture::Image;
@@ -58,6 +60,8 @@ pub(crate) struct InkTargets {
     pub(crate) found: Option<wgpu::TextureView>,
     /// The scratch textures of the dilation, if any.
     pub(crate) dilation: Option<DiscScratch>,
+    /// The encoded G-buffer, if the style has one of its own.
+    pub(crate) gbuffer: Option<GBufferTargets>,
     /// The dilated ink, if it is not composited directly.
     pub(crate) thick: Option<wgpu::TextureView>,
 }
@@ -69,14 +73,20 @@ impl InkTargets {
         let view = |label, format, usage| texture(context, label, format, usage, size).create_view(&Default::default());
         let read = wgpu::TextureUsages::TEXTURE_BINDING;
         let scaled = ink.scale != InkScale::One;
+        let texels = if ink.gbuffer.is_some() { TEXEL_FORMAT } else { texel_format(ink.layout) };
+        let of_gbuffer = |format| {
+            let copied = wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::COPY_DST;
+            view("G-buffer", format, if format == INK_FORMAT { read | copied } else { read })
+        };
         let depth = || view("depth of the ink", DEPTH_FORMAT, wgpu::TextureUsages::empty());
         Ok(Self {
             kind: ink_kind(image),
             size,
-            texels: view("normal, region and depth", texel_format(ink.layout), read | wgpu::TextureUsages::COPY_SRC),
+            texels: view("normal, region and depth", texels, read | wgpu::TextureUsages::COPY_SRC),
             depth: image.own_surfaces.then(depth),
             stencil: StencilTarget::default(),
-            found: (scaled || dilated).then(|| view("ink", INK_FORMAT, read)),
+            found: image.passes().any(|lines| image.is_stored(lines)).then(|| of_gbuffer(INK_FORMAT)),
+            gbuffer: ink.gbuffer.as_ref().map(|gbuffer| GBufferTargets::new(gbuffer, of_gbuffer)),
             dilation: dilated.then(|| DiscScratch::new(&context.device, size.into())),
             thick: (scaled && dilated).then(|| view("thick ink", INK_FORMAT, read)),
         })
@@ -84,10 +94,11 @@ impl InkTargets {
 }
 
 /// The properties for which ink targets are created.
-type InkKind = (TexelLayout, (u32, u32), bool, bool);
+type InkKind = (TexelLayout, (u32, u32), bool, bool, Option<std::mem::Discriminant<GBufferTarget>>);
 
 fn ink_kind(image: &ImagePlan) -> InkKind {
-    (image.ink.layout, image.size, image.has_dilation(), image.own_surfaces)
+    let target = image.gbuffer.as_ref().map(|plan| std::mem::discriminant(&plan.gbuffer.target));
+    (image.ink.layout, image.size, image.has_dilation(), image.own_surfaces, target)
 }
 
 fn texture(
@@ -190,10 +201,11 @@ impl Targets {
         Ok(Image::new(self.width, self.height, rgba8).expect("four bytes a pixel"))
     }
 
-    /// The packed normal, region and depth of the last frame's pixels; with 32 bits the second word is 0.
+    /// The packed normal, region and depth of the last frame's pixels; with 32 bits the second word is 0. None of
+    /// styles with a G-buffer of their own.
     pub(crate) fn read_texels(&self, context: &GpuContext) -> Result<Option<Vec<[u32; 2]>>, HarnessError> {
         let ink = self.ink.borrow();
-        let Some(ink) = ink.as_ref() else { return Ok(None) };
+        let Some(ink) = ink.as_ref().filter(|ink| ink.gbuffer.is_none()) else { return Ok(None) };
         let words: Vec<u32> = bytemuck::pod_collect_to_vec(&read_texture(context, ink.texels.texture())?);
         Ok(Some(match ink.kind.0 {
             TexelLayout::Bits32 => words.into_iter().map(|word| [word, 0]).collect(),

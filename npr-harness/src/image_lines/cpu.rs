@@ -1,11 +1,13 @@
 //! Image-space lines on the CPU: the packed G-buffer value of a pixel, and the ink over the picture.
 
+use super::gbuffer::style::Show;
+use super::gbuffer::texel::{self, GBufferTexel, gbuffer_pack};
 use super::plan::ImagePlan;
 use crate::color::encode_rgb;
 use crate::cpu::frame::CpuFrame;
 use crate::shadow::ShadowLines;
 use crate::shadow::cpu::ShadowAt;
-use glam::{DMat3, DVec3, DVec4, UVec2};
+use glam::{DMat3, DVec3, DVec4, UVec2, Vec3};
 use npr_imagespace::artist::{LineKind, ink_artist_direction, ink_artist_index, ink_artist_texel};
 use npr_imagespace::composite::ink_composite;
 use npr_imagespace::format::texel::{
@@ -41,13 +43,7 @@ pub(crate) struct InkSample<'a> {
 /// The packed G-buffer value of a pixel; `None` is background.
 pub(crate) fn texel(image: &ImagePlan, sample: Option<&InkSample<'_>>) -> [u32; 2] {
     let Some(sample) = sample else { return BACKGROUND };
-    let kind = sample.kind;
-    let shadow = if image.ink.shadows == ShadowLines::None { ShadowAt::default() } else { (sample.shadow)() };
-    let negated = image.ink.shadows == ShadowLines::Negated && kind == LineKind::Normals && shadow.negated;
-    let normal = ink_shadow_normal(normal(sample).as_vec3(), negated);
-    let of_face = sample.region;
-    let of_texture = if kind == LineKind::Regions { (sample.texture_bytes)() } else { None };
-    let region = of_texture.map_or(of_face, |rgb| ink_region_pair(of_face, ink_region_of_color(rgb)));
+    let (region, normal, shadow) = attributes(image, sample);
     let region = if image.ink.shadows.has_states() {
         let folded = ink_fold_region(region, image.ink.region_max());
         ink_shadow_region(folded, shadow.state as u32, image.ink.layout)
@@ -59,6 +55,26 @@ pub(crate) fn texel(image: &ImagePlan, sample: Option<&InkSample<'_>>) -> [u32; 
         TexelLayout::Bits32 => [ink_texel32_pack(normal, region, depth, &image.code), 0],
         TexelLayout::Bits64 => ink_texel64_pack(normal, region, depth, &image.code),
     }
+}
+
+/// The unquantised texel of a pixel; `None` is background.
+pub(crate) fn gbuffer_texel(image: &ImagePlan, sample: Option<&InkSample<'_>>) -> GBufferTexel {
+    let Some(sample) = sample else { return texel::BACKGROUND };
+    let (region, normal, shadow) = attributes(image, sample);
+    let negated = image.ink.shadows == ShadowLines::Negated && shadow.negated;
+    gbuffer_pack(normal, ink_fold_region(region, image.ink.region_max()), sample.depth as f32, negated)
+}
+
+/// Region, normal and shadow of a surface point; the normal is negated where the style does so.
+fn attributes(image: &ImagePlan, sample: &InkSample<'_>) -> (u32, Vec3, ShadowAt) {
+    let kind = sample.kind;
+    let shadow = if image.ink.shadows == ShadowLines::None { ShadowAt::default() } else { (sample.shadow)() };
+    let negated = image.ink.shadows == ShadowLines::Negated && kind == LineKind::Normals && shadow.negated;
+    let normal = ink_shadow_normal(normal(sample).as_vec3(), negated);
+    let of_face = sample.region;
+    let of_texture = if kind == LineKind::Regions { (sample.texture_bytes)() } else { None };
+    let region = of_texture.map_or(of_face, |rgb| ink_region_pair(of_face, ink_region_of_color(rgb)));
+    (region, normal, shadow)
 }
 
 /// The normal for line detection in world space, of any length; zero if there is none.
@@ -119,7 +135,15 @@ pub(crate) fn perturbed(image: &ImagePlan, blank: &CpuFrame, pixels: &[usize], p
         let along = |at: u32, of: u32, ink: u32| at * ink / of..((at + 1) * ink).div_ceil(of);
         for row in along(y, frame.height, size.1) {
             for column in along(x, frame.width, size.0) {
-                let texel = &mut frame.texels[row as usize * size.0 as usize + column as usize];
+                let at = row as usize * size.0 as usize + column as usize;
+                if let Some(gbuffer) = &image.gbuffer {
+                    let texel = &mut frame.gbuffer[at];
+                    let is_background = *texel == texel::BACKGROUND;
+                    let unlike = gbuffer_pack(Vec3::NEG_ONE, image.ink.region_max(), gbuffer.range.near, false);
+                    *texel = if is_background { unlike } else { texel::BACKGROUND };
+                    continue;
+                }
+                let texel = &mut frame.texels[at];
                 *texel = perturbation.on(*texel, image.ink.layout);
             }
         }
@@ -132,8 +156,15 @@ pub(crate) fn perturbed(image: &ImagePlan, blank: &CpuFrame, pixels: &[usize], p
 pub(crate) fn draw_ink(image: &ImagePlan, frame: &mut CpuFrame) {
     let size = image.size;
     let picture = UVec2::new(frame.width, frame.height);
+    if let Some(gbuffer) = image.gbuffer.as_ref().filter(|gbuffer| gbuffer.gbuffer.show != Show::Lines) {
+        gbuffer.show(frame);
+        return;
+    }
     for lines in image.passes() {
-        let ink = image.ink(lines, &frame.texels);
+        let ink = match &image.gbuffer {
+            Some(gbuffer) => lines.dilated(gbuffer.ink(&frame.gbuffer, UVec2::from(size)), UVec2::from(size)),
+            None => image.ink(lines, &frame.texels),
+        };
         let ink = if size == (frame.width, frame.height) {
             ink
         } else {

@@ -1,5 +1,7 @@
 //! Image-space lines on the GPU: filter, dilation and composite.
 
+use super::gbuffer::gpu::GBufferPasses;
+use super::gbuffer::style::Show;
 use super::plan::{ImageLines, ImagePlan};
 use crate::camera::Camera;
 use crate::error::HarnessError;
@@ -29,6 +31,7 @@ pub(crate) struct InkPasses {
     filters: RefCell<HashMap<FilterKey, FusedPass>>,
     dilations: RefCell<HashMap<InkTarget, DiscPass>>,
     composite: OnceCell<CompositePass>,
+    gbuffer: GBufferPasses,
 }
 
 /// A picture over which lines are drawn.
@@ -47,6 +50,10 @@ pub(crate) struct InkFrame<'a> {
 impl InkPasses {
     /// Finds the lines in the G-buffer and draws them over the picture.
     pub(crate) fn record(&self, encoder: &mut wgpu::CommandEncoder, frame: &InkFrame<'_>) -> Result<(), HarnessError> {
+        if let Some(gbuffer) = frame.image.gbuffer.as_ref().filter(|plan| plan.gbuffer.show != Show::Lines) {
+            self.gbuffer.show(frame.device, encoder, gbuffer, frame.ink, frame.picture);
+            return Ok(());
+        }
         frame.image.passes().try_for_each(|lines| self.record_lines(encoder, frame, lines))
     }
 
@@ -58,22 +65,29 @@ impl InkPasses {
         lines: &ImageLines,
     ) -> Result<(), HarnessError> {
         let InkFrame { device, image, ink, picture, picture_size, .. } = *frame;
-        let area = |size, around_px| frame.bounds.map(|bounds| frame.camera.area(bounds, size, around_px));
+        // Filters and steps of a style's own may reach any distance.
+        let bounds = frame.bounds.filter(|_| image.gbuffer.is_none());
+        let area = |size, around_px| bounds.map(|bounds| frame.camera.area(bounds, size, around_px));
         let onto =
             |view, size, around_px| PassTarget { view, composite: &lines.composite, area: area(size, around_px) };
-        // Lines extend one pixel beyond a surface, plus the radius of the dilation.
-        let dilation_px = lines.dilation.map_or(0, |disc| disc.radius_px.ceil() as u32 + 1);
-
+        // Lines extend beyond a surface as far as the filter's steps, plus the radius of the dilation.
         let filter = &lines.filter;
+        let filter_px = filter.taps.longest_px().max_element();
+        let dilation_px = lines.dilation.map_or(0, |disc| disc.radius_px.ceil() as u32 + 1) + filter_px - 1;
+
         let found = ink.found.as_ref().filter(|_| image.is_stored(lines));
-        let target = if found.is_some() { InkTarget::Ink } else { PICTURE };
-        let key = (filter.taps, filter.softness > 0.0, image.ink.layout, target);
-        let mut filters = self.filters.borrow_mut();
-        let pass = filters
-            .entry(key)
-            .or_insert_with(|| FusedPass::new(device, filter, image.ink.layout, target).expect(UNORM));
-        let view = found.unwrap_or(picture);
-        pass.record(device, encoder, filter, &image.code, &ink.texels, &onto(view, ink.size, 1))?;
+        if let Some(gbuffer) = &image.gbuffer {
+            self.gbuffer.find(device, encoder, gbuffer, ink)?;
+        } else {
+            let target = if found.is_some() { InkTarget::Ink } else { PICTURE };
+            let key = (filter.taps, filter.softness > 0.0, image.ink.layout, target);
+            let mut filters = self.filters.borrow_mut();
+            let pass = filters
+                .entry(key)
+                .or_insert_with(|| FusedPass::new(device, filter, image.ink.layout, target).expect(UNORM));
+            let view = found.unwrap_or(picture);
+            pass.record(device, encoder, filter, &image.code, &ink.texels, &onto(view, ink.size, filter_px))?;
+        }
         let Some(mut line) = found else { return Ok(()) };
 
         if let (Some(disc), Some(scratch)) = (&lines.dilation, &ink.dilation) {

@@ -1,5 +1,6 @@
 //! The part of a plan for image-space lines.
 
+use super::gbuffer::plan::GBufferPlan;
 use super::style::{ImageInk, InkScale, Regions};
 use crate::camera::{Camera, Projection};
 use crate::error::HarnessError;
@@ -36,6 +37,8 @@ pub struct ImagePlan {
     pub shadow_lines: Option<ImageLines>,
     /// Width and height of the target in which they are found, px.
     pub size: (u32, u32),
+    /// The G-buffer that replaces packed texels and fused filter, if the style asks for one.
+    pub gbuffer: Option<GBufferPlan>,
     /// Whether the ink has its own geometry pass, because the picture has another size or several samples per pixel.
     pub own_surfaces: bool,
 }
@@ -124,6 +127,16 @@ impl ImageLines {
     }
 }
 
+impl ImageLines {
+    /// The ink after the dilation, if any.
+    pub(crate) fn dilated(&self, ink: Vec<u8>, size_px: UVec2) -> Vec<u8> {
+        match (&self.dilation, &self.flood) {
+            (Some(disc), Some(plan)) => flood(&ink, size_px, disc, plan).expect("the disc was checked"),
+            _ => ink,
+        }
+    }
+}
+
 impl ImagePlan {
     /// # Errors
     /// An error if a threshold or the dilation is out of range.
@@ -156,18 +169,23 @@ impl ImagePlan {
         line_kinds.resize(materials, LineKind::Normals);
         let most = ink.region_max();
         let regions = RegionPlan::new(scene, ink.regions, &line_kinds, crease_angle_rad, most)?;
+        let gbuffer = ink.gbuffer.as_ref().map(|gbuffer| GBufferPlan::new(scene, gbuffer, camera)).transpose()?;
         let own_surfaces = ink.scale != InkScale::One || view.samples > 1;
-        Ok(Self { ink, code, regions, line_kinds, lines, shadow_lines, size: ink.scale.size(view.size), own_surfaces })
+        let size = ink.scale.size(view.size);
+        Ok(Self { ink, code, regions, line_kinds, lines, shadow_lines, size, gbuffer, own_surfaces })
     }
 
-    /// Whether the ink must be stored before it is composited: for a dilation, or because its size differs from the
-    /// picture's.
+    /// Whether the ink must be stored before it is composited: for a dilation, because its size differs from the
+    /// picture's, or because a G-buffer's own filters and steps make it.
     pub(crate) fn is_stored(&self, lines: &ImageLines) -> bool {
-        lines.dilation.is_some() || self.ink.scale != InkScale::One
+        lines.dilation.is_some() || self.ink.scale != InkScale::One || self.gbuffer.is_some()
     }
 
-    /// The encoding from the value of the depth buffer instead of eye depth.
+    /// The encoding from the value of the depth buffer instead of eye depth. Of a G-buffer the depth itself.
     pub fn buffer_code(&self, camera: &Camera) -> DepthCode {
+        if let Some(gbuffer) = &self.gbuffer {
+            return gbuffer.buffer;
+        }
         match camera.projection {
             Projection::Perspective { .. } => self.code.of_buffer(0.0, 1.0 / camera.near),
             Projection::Orthographic { far, .. } => self.code.of_buffer(far, camera.near - far),
@@ -203,10 +221,7 @@ impl ImagePlan {
             ink_fused(&uniform, &tap(centre), &taps.map(tap)) as f32
         })
         .expect("a texel for each pixel");
-        match (&lines.dilation, &lines.flood) {
-            (Some(disc), Some(plan)) => flood(&found, size_px, disc, plan).expect("the disc was checked"),
-            _ => found,
-        }
+        lines.dilated(found, size_px)
     }
 }
 

@@ -1,8 +1,10 @@
 //! The table `[lines.image]` of a style file.
 
+use super::gbuffer::schema::{GBufferTable, SharedKeys};
 use super::style::{ImageInk, InkScale, Regions};
 use crate::schema::{Color, black, one, yes};
 use crate::shadow::ShadowLines;
+use glam::IVec2;
 use npr_imagespace::composite::{AlphaTest, Composite};
 use npr_imagespace::filter::fused::{DepthTest, FusedFilter, ShadowTest};
 use npr_imagespace::format::texel::TexelLayout;
@@ -20,7 +22,7 @@ pub(crate) struct ImageTable {
     depth_step: f32,
     depth_plain: bool,
     regions: RegionsName,
-    taps: TapsName,
+    taps: TapsValue,
     softness: f32,
     layout: LayoutName,
     artist: bool,
@@ -29,6 +31,8 @@ pub(crate) struct ImageTable {
     #[serde(skip_serializing_if = "Option::is_none")]
     dilation: Option<DilationTable>,
     composite: CompositeTable,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    gbuffer: Option<GBufferTable>,
 }
 
 impl Default for ImageTable {
@@ -47,11 +51,37 @@ enum RegionsName {
     Patch,
 }
 
+/// An arrangement, or the steps to two taps.
+#[derive(Clone, Copy, Serialize, Deserialize)]
+#[serde(untagged, expecting = "\"diagonal\", \"cross\", or two steps [[x, y], [x, y]] in px")]
+enum TapsValue {
+    Name(TapsName),
+    Steps([[i32; 2]; 2]),
+}
+
 #[derive(Clone, Copy, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 enum TapsName {
     Diagonal,
     Cross,
+}
+
+impl TapsValue {
+    fn new(taps: Taps) -> Self {
+        match taps {
+            Taps::Diagonal => Self::Name(TapsName::Diagonal),
+            Taps::Cross => Self::Name(TapsName::Cross),
+            Taps::Steps(steps) => Self::Steps(steps.map(|step| step.to_array())),
+        }
+    }
+
+    fn taps(self) -> Taps {
+        match self {
+            Self::Name(TapsName::Diagonal) => Taps::Diagonal,
+            Self::Name(TapsName::Cross) => Taps::Cross,
+            Self::Steps(steps) => Taps::Steps(steps.map(IVec2::from)),
+        }
+    }
 }
 
 #[derive(Clone, Copy, Serialize, Deserialize)]
@@ -151,7 +181,13 @@ impl CompositeTable {
 
 impl ImageTable {
     pub(crate) fn new(ink: &ImageInk) -> Self {
-        let FusedFilter { normal_cos, depth, regions, taps, softness, .. } = ink.filter;
+        let FusedFilter { mut normal_cos, mut depth, mut regions, mut taps, mut softness, .. } = ink.filter;
+        if let Some(gbuffer) = &ink.gbuffer {
+            let keys = SharedKeys::of(gbuffer);
+            normal_cos = keys.normal_cos;
+            depth = keys.depth_step.map(|step| DepthTest { step, plain: false });
+            (regions, taps, softness) = (keys.regions, keys.taps, keys.softness);
+        }
         let fallback = FusedFilter::default();
         let test = depth.or(fallback.depth).unwrap_or_default();
         Self {
@@ -167,10 +203,7 @@ impl ImageTable {
                 Regions::Mesh => RegionsName::Mesh,
                 Regions::Patch => RegionsName::Patch,
             },
-            taps: match taps {
-                Taps::Diagonal => TapsName::Diagonal,
-                Taps::Cross => TapsName::Cross,
-            },
+            taps: TapsValue::new(taps),
             softness,
             layout: match ink.layout {
                 TexelLayout::Bits32 => LayoutName::Narrow,
@@ -193,23 +226,39 @@ impl ImageTable {
             },
             dilation: ink.dilation.map(DilationTable::new),
             composite: CompositeTable::new(ink.composite),
+            gbuffer: ink.gbuffer.as_ref().map(GBufferTable::new),
         }
     }
 
-    pub(crate) fn ink(self) -> ImageInk {
-        ImageInk {
-            filter: FusedFilter {
-                normal_cos: self.normals.then_some(self.normal_cos),
-                depth: self.depth.then_some(DepthTest { step: self.depth_step, plain: self.depth_plain }),
-                regions: !matches!(self.regions, RegionsName::None),
-                // Set by the plan.
-                shadows: ShadowTest::NoStates,
-                taps: match self.taps {
-                    TapsName::Diagonal => Taps::Diagonal,
-                    TapsName::Cross => Taps::Cross,
-                },
-                softness: self.softness,
-            },
+    /// An error says what contradicts what.
+    pub(crate) fn ink(self) -> Result<ImageInk, String> {
+        let fused = FusedFilter {
+            normal_cos: self.normals.then_some(self.normal_cos),
+            depth: self.depth.then_some(DepthTest { step: self.depth_step, plain: self.depth_plain }),
+            regions: !matches!(self.regions, RegionsName::None),
+            // Set by the plan.
+            shadows: ShadowTest::NoStates,
+            taps: self.taps.taps(),
+            softness: self.softness,
+        };
+        let gbuffer = match self.gbuffer {
+            None => None,
+            Some(_) if self.depth_plain => {
+                return Err("`depth-plain` cannot be there beside `gbuffer`, whose `depth-test` says it".into());
+            }
+            Some(_) if !matches!(self.layout, LayoutName::Wide) => {
+                return Err("`layout` cannot be there beside `gbuffer`, which has formats of its own".into());
+            }
+            Some(table) => Some(table.gbuffer(SharedKeys {
+                normal_cos: fused.normal_cos,
+                depth_step: fused.depth.map(|depth| depth.step),
+                regions: fused.regions,
+                taps: fused.taps,
+                softness: fused.softness,
+            })?),
+        };
+        Ok(ImageInk {
+            filter: if gbuffer.is_some() { FusedFilter::default() } else { fused },
             layout: match self.layout {
                 LayoutName::Narrow => TexelLayout::Bits32,
                 LayoutName::Wide => TexelLayout::Bits64,
@@ -237,6 +286,7 @@ impl ImageTable {
                 ScaleName::Double => InkScale::Double,
             },
             composite: self.composite.composite(),
-        }
+            gbuffer,
+        })
     }
 }

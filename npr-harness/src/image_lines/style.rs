@@ -1,5 +1,7 @@
 //! The settings of image-space lines in a style.
 
+use super::gbuffer::style::{GBuffer, Show};
+use super::gbuffer::texel::GBUFFER_REGION_MAX;
 use crate::error::HarnessError;
 use crate::schema::within_colors;
 use crate::shadow::ShadowLines;
@@ -70,11 +72,17 @@ pub struct ImageInk {
     pub scale: InkScale,
     /// How lines are composited over the picture.
     pub composite: Composite,
+    /// A G-buffer of other formats with filters of their own; [`ImageInk::filter`] and [`ImageInk::layout`] are not
+    /// used then.
+    pub gbuffer: Option<GBuffer>,
 }
 
 impl ImageInk {
     /// The largest region number that leaves room for the shadow state, if any.
     pub fn region_max(&self) -> u32 {
+        if self.gbuffer.is_some() {
+            return GBUFFER_REGION_MAX;
+        }
         if self.shadows.has_states() { self.layout.shadowed_region_max() } else { self.layout.region_max() }
     }
 
@@ -87,6 +95,16 @@ impl ImageInk {
             within_colors("a component of the lines' ink", &color.extend(opacity).to_array())?;
         }
         self.check_filters()?;
+        if let Some(gbuffer) = &self.gbuffer {
+            if self.shadows.has_states() {
+                let needs = "shadows = \"none\" or \"negated\"";
+                return Err(HarnessError::GBuffer { what: "lines over it", needs });
+            }
+            if gbuffer.show != Show::Lines && self.scale != InkScale::One {
+                return Err(HarnessError::GBuffer { what: "to show it", needs: "scale = \"one\"" });
+            }
+            gbuffer.validate(self.shadows == ShadowLines::Negated)?;
+        }
         if let ShadowLines::Separate { composite: Composite::Over { color, opacity }, .. } = self.shadows {
             within_colors("a component of the ink of shadows", &color.extend(opacity).to_array())?;
         }

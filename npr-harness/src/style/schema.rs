@@ -117,7 +117,7 @@ impl StyleTable {
             },
             lights: lights.collect::<Result<_, _>>()?,
             shadow: self.shadow.map(ShadowTable::shadow).transpose().map_err(|what| file.wrong(what))?,
-            lines: self.lines.lines(),
+            lines: self.lines.lines().map_err(|what| file.wrong(what))?,
             crease_angle_rad: self.crease_angle_deg.to_radians(),
         })
     }
@@ -175,11 +175,11 @@ impl LinesTable {
         }
     }
 
-    fn lines(self) -> Lines {
-        Lines {
+    fn lines(self) -> Result<Lines, String> {
+        Ok(Lines {
             printed: self.printed.map(PrintedTable::style),
             edges: self.edges.map(EdgesTable::style),
-            image: self.image.map(ImageTable::ink),
-        }
+            image: self.image.map(ImageTable::ink).transpose()?,
+        })
     }
 }

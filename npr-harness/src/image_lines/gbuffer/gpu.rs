@@ -1,0 +1,267 @@
+//! A G-buffer on the GPU: its texels' encoding, the filters over it, and the steps of morphology.
+
+use super::plan::GBufferPlan;
+use super::style::{Background, GBuffer, GBufferTarget, InkStep, Show, StepKind};
+use crate::error::HarnessError;
+use crate::gpu::targets::{COLOR_FORMAT, InkTargets};
+use crate::gpu::uniform::uniform_buffer;
+use npr_imagespace::composite::Composite;
+use npr_imagespace::format::depth::DepthFormat;
+use npr_imagespace::format::normal::NormalFormat;
+use npr_imagespace::pass::printed::PrintedPass;
+use npr_imagespace::pass::separate::{SeparatePass, SeparateTextures};
+use npr_imagespace::pass::step::{PingPong, Step, StepPass};
+use npr_imagespace::pass::{INK_FORMAT, InkTarget, PassTarget};
+use std::cell::RefCell;
+
+/// The format of unquantised texels.
+pub(crate) const TEXEL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
+const RGBA8: [wgpu::TextureFormat; 1] = [wgpu::TextureFormat::Rgba8Unorm];
+/// Of normals, depths and regions as the filters read them.
+const SEPARATE: [wgpu::TextureFormat; 3] =
+    [wgpu::TextureFormat::Rgba32Float, wgpu::TextureFormat::R32Float, wgpu::TextureFormat::R32Uint];
+
+/// The encoded G-buffer, and a second ink picture for steps of morphology.
+pub(crate) struct GBufferTargets {
+    encoded: Vec<wgpu::TextureView>,
+    ink: wgpu::TextureView,
+}
+
+impl GBufferTargets {
+    /// `texture` makes a texture of a format for rendering and reading.
+    pub(crate) fn new(gbuffer: &GBuffer, texture: impl Fn(wgpu::TextureFormat) -> wgpu::TextureView) -> Self {
+        let formats: &[_] = match gbuffer.target {
+            GBufferTarget::Rgba8(_) => &RGBA8,
+            GBufferTarget::Separate(_) => &SEPARATE,
+        };
+        Self { encoded: formats.iter().map(|&format| texture(format)).collect(), ink: texture(INK_FORMAT) }
+    }
+}
+
+/// `GBufferEncode` of `encode.wgsl`.
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+struct EncodeUniform {
+    near_far: [f32; 2],
+    normal_format: u32,
+    depth_format: u32,
+    plus_z: u32,
+    negated_depth: u32,
+    plain: u32,
+    region_sums: u32,
+}
+
+impl EncodeUniform {
+    fn new(GBufferPlan { gbuffer, range, .. }: &GBufferPlan) -> Self {
+        let (normals, depth, region_sums) = match &gbuffer.target {
+            GBufferTarget::Rgba8(_) => (Some(NormalFormat::Biased8), DepthFormat::Unorm8, false),
+            GBufferTarget::Separate(separate) => (separate.normals, separate.depth, separate.region_sums),
+        };
+        Self {
+            near_far: [range.near, range.far],
+            normal_format: match normals {
+                None => 0,
+                Some(NormalFormat::Biased8) => 1,
+                Some(NormalFormat::Oct5) => 2,
+                Some(NormalFormat::Oct8) => 3,
+                Some(NormalFormat::Oct16) => 4,
+                Some(NormalFormat::Half) => 5,
+            },
+            depth_format: match depth {
+                DepthFormat::Unorm8 => 0,
+                DepthFormat::Unorm16 | DepthFormat::Packed2x8 => 1,
+                DepthFormat::Packed4x8 => 2,
+                DepthFormat::Half => 3,
+                DepthFormat::Float => 4,
+            },
+            plus_z: u32::from(gbuffer.background == Background::PlusZ),
+            negated_depth: u32::from(gbuffer.negated_depth),
+            plain: u32::from(gbuffer.is_plain()),
+            region_sums: u32::from(region_sums),
+        }
+    }
+}
+
+/// The pipelines that encode, created on first use, each with its entry point.
+#[derive(Default)]
+pub(crate) struct GBufferPasses {
+    encoders: RefCell<Vec<(&'static str, wgpu::RenderPipeline)>>,
+}
+
+impl GBufferPasses {
+    /// Encodes the texels, finds lines, and leaves their ink after all steps in `ink.found`.
+    pub(crate) fn find(
+        &self,
+        device: &wgpu::Device,
+        encoder: &mut wgpu::CommandEncoder,
+        plan: &GBufferPlan,
+        ink: &InkTargets,
+    ) -> Result<(), HarnessError> {
+        let (Some(targets), Some(found)) = (&ink.gbuffer, &ink.found) else { return Ok(()) };
+        let views: Vec<_> = targets.encoded.iter().collect();
+        let black = Composite::default();
+        let onto = |view| PassTarget { view, composite: &black, area: None };
+        match &plan.gbuffer.target {
+            GBufferTarget::Rgba8(filter) => {
+                self.encode(device, encoder, plan, ink, ("fs_rgba8", &RGBA8), &views);
+                let pass = PrintedPass::new(device, filter, InkTarget::Ink)?;
+                pass.record(device, encoder, filter, views[0], &onto(found))?;
+            }
+            GBufferTarget::Separate(separate) => {
+                self.encode(device, encoder, plan, ink, ("fs_separate", &SEPARATE), &views);
+                let textures =
+                    SeparateTextures { normal: Some(views[0]), depth: Some(views[1]), region: Some(views[2]) };
+                let pass = SeparatePass::new(device, &separate.filter, InkTarget::Ink)?;
+                pass.record(device, encoder, &separate.filter, &textures, &onto(found))?;
+            }
+        }
+        let mut pictures = [found, &targets.ink];
+        for step in plan.gbuffer.steps.iter().flatten() {
+            if record_step(device, encoder, step, pictures)? == 1 {
+                pictures.reverse();
+            }
+        }
+        if !std::ptr::eq(pictures[0], found) {
+            encoder.copy_texture_to_texture(
+                pictures[0].texture().as_image_copy(),
+                found.texture().as_image_copy(),
+                found.texture().size(),
+            );
+        }
+        Ok(())
+    }
+
+    /// Replaces the picture by what the style shows of the G-buffer.
+    pub(crate) fn show(
+        &self,
+        device: &wgpu::Device,
+        encoder: &mut wgpu::CommandEncoder,
+        plan: &GBufferPlan,
+        ink: &InkTargets,
+        picture: &wgpu::TextureView,
+    ) {
+        let entry = match plan.gbuffer.show {
+            Show::Lines => return,
+            Show::Normals => "fs_show_normals",
+            Show::Depth => "fs_show_depth",
+            Show::Regions => "fs_show_regions",
+        };
+        self.encode(device, encoder, plan, ink, (entry, &[COLOR_FORMAT]), &[picture]);
+    }
+
+    fn encode(
+        &self,
+        device: &wgpu::Device,
+        encoder: &mut wgpu::CommandEncoder,
+        plan: &GBufferPlan,
+        ink: &InkTargets,
+        (entry, formats): (&'static str, &[wgpu::TextureFormat]),
+        views: &[&wgpu::TextureView],
+    ) {
+        let mut encoders = self.encoders.borrow_mut();
+        if !encoders.iter().any(|(known, _)| *known == entry) {
+            encoders.push((entry, pipeline(device, entry, formats)));
+        }
+        let Some((_, pipeline)) = encoders.iter().find(|(known, _)| *known == entry) else { return };
+        let uniform = uniform_buffer(device, bytemuck::bytes_of(&EncodeUniform::new(plan)));
+        let layout = pipeline.get_bind_group_layout(0);
+        // The layout has what the entry point reads.
+        let texels = wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(&ink.texels) };
+        let uniform = wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() };
+        let entries = [uniform, texels];
+        let first = usize::from(entry == "fs_show_regions");
+        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some(entry),
+            layout: &layout,
+            entries: &entries[first..],
+        });
+        let attachments: Vec<_> = views
+            .iter()
+            .map(|view| {
+                Some(wgpu::RenderPassColorAttachment {
+                    view,
+                    depth_slice: None,
+                    resolve_target: None,
+                    ops: wgpu::Operations {
+                        load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                        store: wgpu::StoreOp::Store,
+                    },
+                })
+            })
+            .collect();
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some(entry),
+            color_attachments: &attachments,
+            ..Default::default()
+        });
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(0, &group, &[]);
+        pass.draw(0..3, 0..1);
+    }
+}
+
+/// The parts of the shader that encodes.
+pub(crate) fn encode_wgsl() -> String {
+    [
+        npr_imagespace::format::FORMAT_WGSL,
+        npr_imagespace::shadow::SHADOW_WGSL,
+        super::texel::WGSL,
+        include_str!("encode.wgsl"),
+    ]
+    .concat()
+}
+
+fn pipeline(device: &wgpu::Device, entry: &str, formats: &[wgpu::TextureFormat]) -> wgpu::RenderPipeline {
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some("encode"),
+        source: wgpu::ShaderSource::Wgsl(encode_wgsl().into()),
+    });
+    let targets: Vec<_> = formats.iter().map(|&format| Some(format.into())).collect();
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some(entry),
+        layout: None,
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: Some("vs_encode"),
+            compilation_options: Default::default(),
+            buffers: &[],
+        },
+        primitive: Default::default(),
+        depth_stencil: None,
+        multisample: Default::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: Some(entry),
+            compilation_options: Default::default(),
+            targets: &targets,
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}
+
+/// Records a step with its repetitions; returns which of the two pictures holds the result.
+fn record_step(
+    device: &wgpu::Device,
+    encoder: &mut wgpu::CommandEncoder,
+    InkStep { kind, times }: &InkStep,
+    pictures: [&wgpu::TextureView; 2],
+) -> Result<usize, HarnessError> {
+    let soft = match *kind {
+        StepKind::Hard(operation, kernel) => {
+            return Ok(PingPong::new(device, kernel).record(device, encoder, operation, *times, pictures)?);
+        }
+        StepKind::SoftCross => Step::SoftCross,
+        StepKind::SoftDiagonal(threshold) => Step::SoftDiagonal { threshold },
+        StepKind::SoftDiagonalPrinted(threshold) => Step::SoftDiagonalPrinted { threshold },
+    };
+    let pass = StepPass::new(device, soft, InkTarget::Ink)?;
+    let composite = Composite::default();
+    let mut from = 0;
+    for _ in 0..*times {
+        let target = PassTarget { view: pictures[1 - from], composite: &composite, area: None };
+        pass.record(device, encoder, pictures[from], &target)?;
+        from = 1 - from;
+    }
+    Ok(from)
+}
