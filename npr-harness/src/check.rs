@@ -433,7 +433,7 @@ impl Checker<'_> {
     ) -> Result<(), HarnessError> {
         let look = LineStyle { width_px: [1.0; 4], ink: [0.0, 0.0, 0.0, 1.0] };
         let corrected = one_px_style(Lines::edges(look));
-        let printed = one_px_style(Lines::printed(PrintedLines { width_px: 1.0, ink: Vec3::ZERO }));
+        let printed = one_px_style(Lines::printed(PrintedLines { width_px: 1.0, ..PrintedLines::default() }));
         let truth = true_lines(flat, camera, SIZE, f64::from(corrected.crease_angle_rad));
         // The edges of an alpha-tested face are drawn only where a part of the face is visible, and the edges of the
         // file do not include the border that alpha creates. The exact contours account for neither.

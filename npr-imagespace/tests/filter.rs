@@ -2,12 +2,13 @@
 
 use glam::{DVec3, IVec2, IVec3, UVec2, Vec3};
 use npr_imagespace::ImageSpaceError;
+use npr_imagespace::composite::AlphaTest;
 use npr_imagespace::filter::depth::*;
 use npr_imagespace::filter::fused::*;
 use npr_imagespace::filter::ink_ramp;
 use npr_imagespace::filter::inker::*;
 use npr_imagespace::filter::normal::*;
-use npr_imagespace::filter::printed::ink_printed_inker;
+use npr_imagespace::filter::printed::{PrintedEdges, PrintedUniform, ink_printed_edges, ink_printed_inker};
 use npr_imagespace::filter::region::*;
 use npr_imagespace::format::printed::{CLEAR, CLEAR_PRINTED, ink_printed_encode};
 use npr_imagespace::format::texel::*;
@@ -541,4 +542,35 @@ proptest! {
             prop_assert!((a - 2 * b + c).abs() <= layout.depth_slack() as i32, "{:?} {} {} {}", layout, a, b, c);
         }
     }
+}
+
+/// Errata, alpha test: with GREATER and 0 the sequential reading keeps only white pixels; the co-issued one keeps listing
+/// 10's lines, and of listing 9's those that only the last tap finds.
+#[test]
+fn the_co_issued_alpha_lacks_the_last_instruction() {
+    let z = ink_printed_encode(Vec3::Z, 0.5);
+    let x = ink_printed_encode(Vec3::X, 0.5);
+    let far = ink_printed_encode(Vec3::Z, 0.6);
+    let ink = |normal: bool, depth: bool, test: AlphaTest, taps: [[u8; 4]; 4]| {
+        let whole = PrintedEdges::default();
+        let edges = PrintedEdges {
+            normal: whole.normal.filter(|_| normal),
+            depth: whole.depth.filter(|_| depth),
+            co_issued: Some(test),
+            ..whole
+        };
+        ink_printed_edges(&edges, &PrintedUniform::new(&edges).unwrap(), z, taps)
+    };
+    // Listing 9: the last tap alone differs, another one does, none does.
+    assert!(ink(true, false, AlphaTest::PRINTED, [z, z, z, x]));
+    assert!(!ink(true, false, AlphaTest::PRINTED, [z, x, z, z]));
+    assert!(!ink(true, false, AlphaTest::PRINTED, [z; 4]));
+    // With LESS it is the reverse: lines of the last tap alone are lost.
+    assert!(!ink(true, false, AlphaTest::CORRECTED, [z, z, z, x]));
+    assert!(ink(true, false, AlphaTest::CORRECTED, [z, x, z, z]));
+    // Listing 10: alpha is the sum, 26 of 255, less 5.1, so that GREATER and 0 keeps the line.
+    assert!(ink(false, true, AlphaTest::PRINTED, [z, far, z, z]));
+    assert!(!ink(false, true, AlphaTest::PRINTED, [z; 4]));
+    assert!(!ink(false, true, AlphaTest { less: false, reference: 21 }, [z, far, z, z]));
+    assert!(ink(false, true, AlphaTest { less: false, reference: 20 }, [z, far, z, z]));
 }

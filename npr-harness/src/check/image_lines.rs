@@ -136,6 +136,7 @@ fn printed_filters() -> [(&'static str, PrintedFilter, [u8; 4]); 4] {
         normal: Some(PrintedNormal { cos: NORMAL_COS_CARD_MITCHELL, printed_background: true }),
         depth: Some(PrintedDepth { form: DepthPlain::SumPrinted, threshold: DEPTH_SUM_CARD_MITCHELL }),
         taps: Taps::Diagonal,
+        co_issued: None,
     };
     let inker = |form| PrintedFilter::Inker(Inker { form, ..Inker::default() });
     [

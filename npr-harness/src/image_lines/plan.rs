@@ -154,7 +154,10 @@ impl ImagePlan {
             ShadowLines::Lines => ShadowTest::Lines,
             ShadowLines::Separate { .. } => ShadowTest::Ignored,
         };
-        let lines = ImageLines::new(FusedFilter { shadows: test, ..ink.filter }, ink.dilation, ink.composite)?;
+        // The co-issued reading has its alpha test in the filter.
+        let is_tested = ink.gbuffer.is_some_and(|gbuffer| gbuffer.is_co_issued());
+        let composite = if is_tested { Composite::Multiply } else { ink.composite };
+        let lines = ImageLines::new(FusedFilter { shadows: test, ..ink.filter }, ink.dilation, composite)?;
         FilterUniform::new(&lines.filter, ink.layout, &code)?;
         let shadow_lines = match ink.shadows {
             ShadowLines::Separate { composite, dilation } => Some(ImageLines::new(

@@ -241,6 +241,7 @@ impl ImageTable {
             taps: self.taps.taps(),
             softness: self.softness,
         };
+        let composite = self.composite.composite();
         let gbuffer = match self.gbuffer {
             None => None,
             Some(_) if self.depth_plain => {
@@ -255,6 +256,10 @@ impl ImageTable {
                 regions: fused.regions,
                 taps: fused.taps,
                 softness: fused.softness,
+                alpha_test: match composite {
+                    Composite::AlphaTested(test) => Some(test),
+                    _ => None,
+                },
             })?),
         };
         Ok(ImageInk {
@@ -285,7 +290,7 @@ impl ImageTable {
                 ScaleName::One => InkScale::One,
                 ScaleName::Double => InkScale::Double,
             },
-            composite: self.composite.composite(),
+            composite,
             gbuffer,
         })
     }

@@ -5,7 +5,8 @@ use crate::error::HarnessError;
 use crate::scene::{Mesh, Object, Scene};
 use crate::schema::{within, within_colors};
 use glam::{DMat4, DVec2, Vec3};
-use npr_outline::fin_printed::{FinView, PrintedFins, printed_fins};
+use npr_outline::fin_printed::{FinDepth, FinView, PrintedFins, printed_fins};
+use npr_outline::normal_format::NormalFormat;
 use std::convert::Infallible;
 use std::sync::Arc;
 
@@ -16,6 +17,18 @@ pub struct PrintedLines {
     pub width_px: f32,
     /// Display-referred colour.
     pub ink: Vec3,
+    /// Whether widths follow the distance from the eye's plane instead of clip z, so that they are the same at every
+    /// distance. Parallel views always do.
+    pub eye_depth: bool,
+    /// How the face normals of the edges are stored.
+    pub normals: NormalFormat,
+}
+
+impl Default for PrintedLines {
+    /// Those of the style `printed-fins`.
+    fn default() -> Self {
+        Self { width_px: 2.0, ink: Vec3::ZERO, eye_depth: false, normals: NormalFormat::F32 }
+    }
 }
 
 impl PrintedLines {
@@ -36,13 +49,13 @@ pub struct PrintedFinPlan {
 
 /// The cache key of the fins.
 #[derive(PartialEq)]
-struct FinsKey;
+struct FinsKey(NormalFormat);
 
 impl PrintedFinPlan {
     pub(crate) fn new(scene: &Scene, style: PrintedLines) -> Self {
         let of_mesh = |mesh: &Arc<Mesh>| {
-            let make = || Ok::<_, Infallible>(printed_fins(mesh.model(), mesh.edges()));
-            let Ok(fins) = mesh.derived().get(FinsKey, make);
+            let make = || Ok::<_, Infallible>(printed_fins(mesh.model(), mesh.edges()).quantised(style.normals));
+            let Ok(fins) = mesh.derived().get(FinsKey(style.normals), make);
             fins
         };
         Self { fins: scene.meshes().iter().map(of_mesh).collect(), style }
@@ -64,6 +77,7 @@ impl PrintedFinPlan {
             clip_from_world: view.clip_from_world * DMat4::from(*object.scene_from_mesh()),
             eye: object.homogeneous(view.eye.extend(1.0)).truncate(),
             thickness: view.thickness / object.scale(),
+            depth: if self.style.eye_depth { FinDepth::Eye } else { view.depth },
             ..view
         })
     }

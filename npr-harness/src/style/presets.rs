@@ -326,7 +326,7 @@ pub fn styles() -> Vec<Style> {
             "printed-fins",
             "the outline of the 2002 chapter's listing 1, as printed",
             Shade::Toon(hard),
-            Lines::printed(PrintedLines { width_px: 2.0, ink: Vec3::ZERO }),
+            Lines::printed(PrintedLines::default()),
         ),
     ]
 }

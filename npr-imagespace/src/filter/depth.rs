@@ -79,7 +79,12 @@ pub fn depth_code_threshold(threshold: f32, most: u32) -> u32 {
 
 /// The plain tests on codes of at most 16 bits, in integers.
 pub fn ink_depth_plain_codes(centre: u32, taps: [u32; 4], form: DepthPlain, threshold: u32) -> bool {
-    form.measure(taps.map(|tap| centre.abs_diff(tap))) >= threshold
+    ink_depth_plain_measure(centre, taps, form) >= threshold
+}
+
+/// What the plain tests compare with their threshold, on codes of at most 16 bits.
+pub fn ink_depth_plain_measure(centre: u32, taps: [u32; 4], form: DepthPlain) -> u32 {
+    form.measure(taps.map(|tap| centre.abs_diff(tap)))
 }
 
 /// The test of second differences, on eye-space depths: ink 0..=1.

@@ -21,14 +21,19 @@ fn ink_depth_plain(centre: f32, taps: vec4<f32>, form: u32, threshold: f32, soft
 
 // On codes of 16 bits or fewer; `threshold` in codes, rounded up.
 fn ink_depth_plain_codes(centre: u32, taps: vec4<u32>, form: u32, threshold: u32) -> bool {
+    return ink_depth_plain_measure(centre, taps, form) >= threshold;
+}
+
+// What the plain tests compare with their threshold, on codes of 16 bits or fewer.
+fn ink_depth_plain_measure(centre: u32, taps: vec4<u32>, form: u32) -> u32 {
     let d = max(vec4<u32>(centre), taps) - min(vec4<u32>(centre), taps);
     if form == INK_DEPTH_SUM {
-        return d.x + d.y + d.z + d.w >= threshold;
+        return d.x + d.y + d.z + d.w;
     }
     if form == INK_DEPTH_SUM_PRINTED {
-        return d.x + d.w >= threshold;
+        return d.x + d.w;
     }
-    return max(max(d.x, d.y), max(d.z, d.w)) >= threshold;
+    return max(max(d.x, d.y), max(d.z, d.w));
 }
 
 // Ink of one pair of opposite taps, all three of them surfaces; v is 1/z, or z in a parallel view.

@@ -4,7 +4,10 @@
 //! each and multiplies the results. The inker of [`crate::filter::inker`] uses floats, as its source does.
 
 use crate::ImageSpaceError;
-use crate::filter::depth::{DEPTH_SUM_CARD_MITCHELL, DepthPlain, depth_code_threshold, ink_depth_plain_codes};
+use crate::composite::AlphaTest;
+use crate::filter::depth::{
+    DEPTH_SUM_CARD_MITCHELL, DepthPlain, depth_code_threshold, ink_depth_plain_codes, ink_depth_plain_measure,
+};
 use crate::filter::inker::{Inker, ink_inker};
 use crate::filter::normal::{
     NORMAL_COS_CARD_MITCHELL, ink_normal_bytes_edge, ink_normal_bytes_edge_printed, normal_bytes_threshold,
@@ -30,6 +33,10 @@ pub struct PrintedEdges {
     pub depth: Option<PrintedDepth>,
     /// The neighbours that are compared.
     pub taps: Taps,
+    /// An alpha test of the edge images, whose alpha is that of the co-issued reading ([`ink_printed_co_issued`]).
+    /// `None` for the sequential one, in which alpha is that of the final colour; the composite tests it then
+    /// ([`crate::composite::Composite::AlphaTested`]).
+    pub co_issued: Option<AlphaTest>,
 }
 
 /// How normals are compared.
@@ -63,6 +70,7 @@ impl Default for PrintedEdges {
             normal: Some(PrintedNormal { cos: NORMAL_COS_CARD_MITCHELL, printed_background: false }),
             depth: Some(PrintedDepth { form: DepthPlain::Sum, threshold: DEPTH_SUM_CARD_MITCHELL }),
             taps: Taps::Diagonal,
+            co_issued: None,
         }
     }
 }
@@ -70,7 +78,7 @@ impl Default for PrintedEdges {
 /// [`PrintedEdges`] in steps of bytes: `InkPrinted` of the WGSL, 16 bytes. Which tests are enabled is not in
 /// it.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct PrintedUniform {
     /// Of [`normal_bytes_threshold`].
     pub normal_threshold: i32,
@@ -78,8 +86,8 @@ pub struct PrintedUniform {
     pub depth_threshold: u32,
     /// Of [`DepthPlain`]: 0 sum, 1 sum as printed, 2 any.
     pub depth_form: u32,
-    /// Unused, 0.
-    pub padding: u32,
+    /// The threshold of depth in codes, unrounded.
+    pub depth_codes: f32,
 }
 
 impl PrintedUniform {
@@ -101,7 +109,7 @@ impl PrintedUniform {
             normal_threshold: normal_bytes_threshold(normal_cos),
             depth_threshold: depth_code_threshold(depth.threshold, 255),
             depth_form: depth.form as u32,
-            padding: 0,
+            depth_codes: depth.threshold * 255.0,
         })
     }
 }
@@ -117,7 +125,34 @@ pub fn ink_printed_edges(edges: &PrintedEdges, uniform: &PrintedUniform, centre:
     let jumps = |asked: PrintedDepth| {
         ink_depth_plain_codes(depth(centre), taps.map(depth), asked.form, uniform.depth_threshold)
     };
-    edges.normal.is_some_and(differs) || edges.depth.is_some_and(jumps)
+    match edges.co_issued {
+        None => edges.normal.is_some_and(differs) || edges.depth.is_some_and(jumps),
+        Some(test) => {
+            // The first three taps, the last of them twice.
+            let three = [taps[0], taps[1], taps[2], taps[2]];
+            let first_differ = |normal: PrintedNormal| {
+                let differ =
+                    if normal.printed_background { ink_normal_bytes_edge_printed } else { ink_normal_bytes_edge };
+                differ(rgb(centre), three.map(rgb), uniform.normal_threshold)
+            };
+            let sum = |asked: PrintedDepth| ink_depth_plain_measure(depth(centre), taps.map(depth), asked.form);
+            edges.normal.is_some_and(|n| ink_printed_co_issued(differs(n), u32::from(!first_differ(n)) * 255, test))
+                || edges.depth.is_some_and(|d| {
+                    let alpha = (sum(d) as f32 - uniform.depth_codes + 0.5).clamp(0.0, 255.0) as u32;
+                    ink_printed_co_issued(jumps(d), alpha, test)
+                })
+        }
+    }
+}
+
+/// Whether a line of an edge image passes an alpha test where its alpha, 0..=255, is that of the co-issued reading.
+///
+/// Listings 9 and 10 end in an instruction that is paired with `mov r0.a, r0.r`. If both halves of a pair read before
+/// either writes, alpha is what red was before: in listing 9 the comparison with three of the four taps, in listing 10
+/// the sum of differences less its threshold.
+pub fn ink_printed_co_issued(is_line: bool, alpha: u32, test: AlphaTest) -> bool {
+    let passes = if test.less { alpha < u32::from(test.reference) } else { alpha > u32::from(test.reference) };
+    is_line && passes
 }
 
 /// The inker on bytes: ink 0..=1 of a pixel from its four taps.

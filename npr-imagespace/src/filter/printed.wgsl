@@ -7,7 +7,14 @@ struct InkPrinted {
     depth_threshold: u32,
     // Of the INK_DEPTH_ forms.
     depth_form: u32,
-    padding: u32,
+    // The threshold of depth in codes, unrounded.
+    depth_codes: f32,
+}
+
+// Whether a line of an edge image passes an alpha test where its alpha, 0..255, is that of the co-issued reading. `less`
+// and `reference` are those of the test.
+fn ink_printed_co_issued(is_line: bool, alpha: u32, less: u32, reference: u32) -> bool {
+    return is_line && select(alpha > reference, alpha < reference, less != 0u);
 }
 
 // The inker on texels as loaded: ink 0..1 of a pixel from its four taps.

@@ -4,6 +4,7 @@
 use super::fullscreen::{Bound, Fullscreen, Output, TAPS, flag, tap_constants, uniform};
 use super::target::{InkTarget, PassTarget, check_view};
 use crate::ImageSpaceError;
+use crate::composite::AlphaTest;
 use crate::filter::inker::InkerUniform;
 use crate::filter::printed::{PrintedFilter, PrintedUniform};
 use crate::picture::Taps;
@@ -18,6 +19,7 @@ enum Kind {
         normal: Option<bool>,
         depth: bool,
         taps: Taps,
+        co_issued: Option<AlphaTest>,
     },
     Inker {
         taps: Taps,
@@ -31,6 +33,7 @@ impl From<&PrintedFilter> for Kind {
                 normal: edges.normal.map(|normal| normal.printed_background),
                 depth: edges.depth.is_some(),
                 taps: edges.taps,
+                co_issued: edges.co_issued,
             },
             PrintedFilter::Inker(inker) => Self::Inker { taps: inker.taps },
         }
@@ -52,16 +55,20 @@ impl PrintedPass {
     pub fn new(device: &wgpu::Device, filter: &PrintedFilter, target: InkTarget) -> Result<Self, ImageSpaceError> {
         target.check(device)?;
         let kind = Kind::from(filter);
-        let (label, normal, depth, taps) = match kind {
-            Kind::Edges { normal, depth, taps } => ("printed", normal, depth, taps),
-            Kind::Inker { taps } => ("inker", None, false, taps),
+        let (label, normal, depth, taps, co_issued) = match kind {
+            Kind::Edges { normal, depth, taps, co_issued } => ("printed", normal, depth, taps, co_issued),
+            Kind::Inker { taps } => ("inker", None, false, taps, None),
         };
+        let test = co_issued.unwrap_or(AlphaTest::CORRECTED);
         taps.validate()?;
         let [x0, y0, x1, y1] = tap_constants(taps);
         let constants = [
             flag("with_normal", normal.is_some()),
             flag("printed_background", normal == Some(true)),
             flag("with_depth", depth),
+            flag("co_issued", co_issued.is_some()),
+            flag("alpha_less", test.less),
+            ("alpha_reference", f64::from(test.reference)),
             x0,
             y0,
             x1,

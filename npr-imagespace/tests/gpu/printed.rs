@@ -4,7 +4,7 @@ use crate::device::{gpu, view};
 use crate::inputs::{LONG, Random, SIZES, direction, px, scene};
 use crate::targets::{COMPOSITES, PICTURE, assert_areas, assert_composited, composited, drawn};
 use npr_imagespace::ImageSpaceError;
-use npr_imagespace::composite::Composite;
+use npr_imagespace::composite::{AlphaTest, Composite};
 use npr_imagespace::filter::depth::DepthPlain;
 use npr_imagespace::filter::inker::{Inker, InkerForm};
 use npr_imagespace::filter::printed::*;
@@ -51,6 +51,11 @@ fn edges() -> Vec<PrintedEdges> {
             all.push(PrintedEdges { normal: None, depth, ..Default::default() });
             all.push(PrintedEdges { depth, ..Default::default() });
         }
+    }
+    for co_issued in [AlphaTest::PRINTED, AlphaTest::CORRECTED, AlphaTest { less: false, reference: 5 }].map(Some) {
+        all.push(PrintedEdges { co_issued, ..Default::default() });
+        let depth = Some(PrintedDepth { form: DepthPlain::SumPrinted, threshold: 0.02 });
+        all.push(PrintedEdges { co_issued, normal: None, depth, ..Default::default() });
     }
     all
 }

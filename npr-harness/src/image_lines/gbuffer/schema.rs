@@ -3,6 +3,7 @@
 //! Cosines, steps, taps and softness are those of `[lines.image]`.
 
 use super::style::{Background, GBuffer, GBufferTarget, InkStep, MOST_STEPS, SeparateTargets, Show, StepKind};
+use npr_imagespace::composite::AlphaTest;
 use npr_imagespace::filter::depth::DepthPlain;
 use npr_imagespace::filter::inker::{Inker, InkerForm};
 use npr_imagespace::filter::printed::{PrintedDepth, PrintedEdges, PrintedFilter, PrintedNormal};
@@ -29,6 +30,8 @@ pub(crate) struct GBufferTable {
     region_test: Option<RegionTestName>,
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     negated_depth: bool,
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    co_issued: bool,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     inker: Option<InkerTable>,
     #[serde(default)]
@@ -191,6 +194,8 @@ pub(crate) struct SharedKeys {
     pub(crate) regions: bool,
     pub(crate) taps: Taps,
     pub(crate) softness: f32,
+    /// That of the composite.
+    pub(crate) alpha_test: Option<AlphaTest>,
 }
 
 impl SharedKeys {
@@ -203,9 +208,11 @@ impl SharedKeys {
                 regions: true,
                 taps: edges.taps,
                 softness: 0.0,
+                alpha_test: edges.co_issued,
             },
             GBufferTarget::Rgba8(PrintedFilter::Inker(inker)) => {
-                Self { normal_cos: None, depth_step: None, regions: true, taps: inker.taps, softness: inker.softness }
+                let (taps, softness) = (inker.taps, inker.softness);
+                Self { normal_cos: None, depth_step: None, regions: true, taps, softness, alpha_test: None }
             }
             GBufferTarget::Separate(SeparateTargets { filter, .. }) => Self {
                 normal_cos: filter.normal.map(|normal| normal.cos),
@@ -216,6 +223,7 @@ impl SharedKeys {
                 regions: filter.regions,
                 taps: filter.taps,
                 softness: filter.softness,
+                alpha_test: None,
             },
         }
     }
@@ -239,6 +247,7 @@ impl GBufferTable {
             depth_format: None,
             region_test: None,
             negated_depth: gbuffer.negated_depth,
+            co_issued: false,
             inker: None,
             show: match gbuffer.show {
                 Show::Lines => ShowName::Lines,
@@ -251,6 +260,7 @@ impl GBufferTable {
         match &gbuffer.target {
             GBufferTarget::Rgba8(PrintedFilter::Edges(edges)) => {
                 table.depth_test = edges.depth.map(|depth| plain(depth.form));
+                table.co_issued = edges.co_issued.is_some();
             }
             GBufferTarget::Rgba8(PrintedFilter::Inker(inker)) => table.inker = Some(InkerTable::new(inker)),
             GBufferTarget::Separate(separate) => {
@@ -292,6 +302,11 @@ impl GBufferTable {
             DepthTestName::Each => Some(DepthPlain::Any),
             DepthTestName::Step | DepthTestName::Bend => None,
         };
+        let is_listings = self.target == TargetName::Rgba8 && self.inker.is_none();
+        if self.co_issued && !(is_listings && keys.alpha_test.is_some()) {
+            let needs = "an RGBA8 target without the inker, and composite.alpha-tested";
+            return Err(format!("the co-issued reading of listings 9 and 10 needs {needs}"));
+        }
         let target = match self.target {
             TargetName::Rgba8 => {
                 let is_separate =
@@ -326,6 +341,7 @@ impl GBufferTable {
                         normal: keys.normal_cos.map(|cos| PrintedNormal { cos, printed_background }),
                         depth: keys.depth_step.map(|threshold| PrintedDepth { form, threshold }),
                         taps: keys.taps,
+                        co_issued: if self.co_issued { keys.alpha_test } else { None },
                     })
                 })
             }

@@ -134,6 +134,11 @@ impl GBuffer {
         }
     }
 
+    /// Whether lines are tested by the alpha of the co-issued reading of listings 9 and 10.
+    pub(crate) fn is_co_issued(&self) -> bool {
+        matches!(self.target, GBufferTarget::Rgba8(PrintedFilter::Edges(PrintedEdges { co_issued: Some(_), .. })))
+    }
+
     /// Checks the numbers, and that all of it can work together. `negated` says that the style negates normals in
     /// shadow.
     pub(crate) fn validate(&self, negated: bool) -> Result<(), HarnessError> {
