@@ -293,6 +293,7 @@ impl Camera {
             eye,
             thickness: width_px * 2.0 * self.half_extent(aspect).y / size_px.y,
             depth,
+            reversed: false,
         }
     }
 }

@@ -477,6 +477,7 @@ fn one_px_style(lines: Lines) -> Style {
         paper: Vec3::ONE,
         shade: Shade::Paper,
         normals: Default::default(),
+        mesh_normals: false,
         lights: vec![Default::default()],
         shadow: None,
         lines,

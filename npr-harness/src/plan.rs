@@ -73,6 +73,8 @@ pub struct Plan {
     pub looks_up: bool,
     /// Whether any material is alpha-tested.
     pub cut_out: bool,
+    /// Whether normals are used untransformed, [`Style::mesh_normals`].
+    pub mesh_normals: bool,
     /// Whether any material is alpha-blended.
     pub blended: bool,
     /// Whether back faces are culled although their material is double-sided, because they cannot be visible.
@@ -139,6 +141,7 @@ impl Plan {
             draws_surfaces: paint.is_some() || edge_lines.is_some() || printed_fins.is_some() || beside_picture,
             looks_up: textured || cut_out || image.as_ref().is_some_and(says_lines),
             cut_out,
+            mesh_normals: style.mesh_normals,
             blended: paint.is_some() && scene.has_blend(),
             cull_back: scene.is_closed() && scene.clip.is_none() && !sees_the_inside(scene, &view.camera),
             shadow: None,

@@ -31,6 +31,9 @@ pub struct Style {
     pub shade: Shade,
     /// How the three normals of a triangle are used.
     pub normals: NormalUse,
+    /// Whether normals are used as they are in the vertex buffer, untransformed, as the listings of Card & Mitchell 2002
+    /// have them. They are world space only where an object's transform is the identity.
+    pub mesh_normals: bool,
     /// One or two lights. A shade that supports one replaces two by an approximation, see
     /// [`crate::lights::lights_in_world`]. A light's brightness multiplies its N·L, and its colour the surface's
     /// colour; Gooch shading ignores both.

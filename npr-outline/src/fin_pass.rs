@@ -28,7 +28,7 @@ pub(crate) struct FinUniform {
     pub near: f32,
     pub far: f32,
     pub as_printed: u32,
-    pub padding: u32,
+    pub reversed: u32,
 }
 
 /// Fins in vertex buffers: one of positions and smooth normals, one of face normals in the pass's format.
@@ -244,7 +244,7 @@ impl FinUniform {
             near,
             far,
             as_printed,
-            padding: 0,
+            reversed: u32::from(view.reversed),
         }
     }
 }

@@ -11,7 +11,8 @@
 //!   clip z, z = f / (f − n) · (w − n) in the chapter's Direct3D: lines grow thinner towards the near plane and have
 //!   no width there. [`FinDepth::Printed`] is that, [`FinDepth::Eye`] takes w instead.
 //! - *The text's reversal.* "If the value is less than zero, the vertex offset is set to zero" is the reverse of the
-//!   listing and of step 6e. The listing is followed: below zero, the offset is one.
+//!   listing and of step 6e. The listing is followed: below zero, the offset is one. [`FinView::reversed`] follows the
+//!   text: everything but the silhouette is drawn.
 //! - *Products of exactly zero*, of a face seen edge-on or one without area, are not drawn; and since each vertex is
 //!   tested by itself, rounded normals can give the two ends of one edge different results, which leaves half a fin.
 //! - *Creases are never drawn*, though the text counts them among the outline: only silhouettes and boundaries
@@ -119,13 +120,15 @@ pub struct FinView {
     pub thickness: f64,
     /// The depth that [`FinView::thickness`] is multiplied with.
     pub depth: FinDepth,
+    /// Whether the text is followed, which displaces where the listing does not and the reverse.
+    pub reversed: bool,
 }
 
 /// Whether the listing displaces a vertex: 1 where the product of the two normals' dot products with the view vector,
-/// from the eye to the vertex, is below zero, and 0 elsewhere.
-fn fin_printed_flag(position: DVec3, n_face0: DVec3, n_face1: DVec3, eye: DVec3) -> f64 {
+/// from the eye to the vertex, is below zero, and 0 elsewhere; `reversed`, as the text has it, 0 where it is below zero.
+fn fin_printed_flag(position: DVec3, n_face0: DVec3, n_face1: DVec3, eye: DVec3, reversed: bool) -> f64 {
     let view = (position - eye).normalize_or_zero();
-    if view.dot(n_face0) * view.dot(n_face1) < 0.0 { 1.0 } else { 0.0 }
+    if (view.dot(n_face0) * view.dot(n_face1) < 0.0) != reversed { 1.0 } else { 0.0 }
 }
 
 /// The depth at a vertex with clip-space w.
@@ -139,7 +142,8 @@ pub fn fin_printed_depth(w: f64, depth: FinDepth) -> f64 {
 /// Listing 1: a vertex in clip space, displaced along its smooth normal where its edge is a silhouette.
 fn fin_printed_vertex(vertex: &PrintedFin, view: &FinView) -> DVec4 {
     let position = vertex.position.as_dvec3();
-    let flag = fin_printed_flag(position, vertex.n_face0.as_dvec3(), vertex.n_face1.as_dvec3(), view.eye);
+    let flag =
+        fin_printed_flag(position, vertex.n_face0.as_dvec3(), vertex.n_face1.as_dvec3(), view.eye, view.reversed);
     let clip = view.clip_from_world * position.extend(1.0);
     let thickness = fin_printed_depth(clip.w, view.depth) * view.thickness;
     view.clip_from_world * (position + vertex.smooth_normal.as_dvec3() * (thickness * flag)).extend(1.0)

@@ -379,7 +379,7 @@ fn printed_fins_are_those_of_the_rasteriser() {
             let quantised = fins.quantised(format);
             for depth in [FinDepth::Eye, FinDepth::Printed { near: NEAR, far: 50.0 }] {
                 let thickness = 3.0 * lines.depth_per_px.x;
-                let view = FinView { clip_from_world: lines.clip_from_world, eye, thickness, depth };
+                let view = FinView { clip_from_world: lines.clip_from_world, eye, thickness, depth, reversed: false };
                 let picture = gpu.picture(size);
                 // A wall that hides some of the fins.
                 gpu.fill_depth(&picture, [1e-4, 2e-5, 0.001]);

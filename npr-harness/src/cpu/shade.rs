@@ -64,7 +64,7 @@ impl FrameContext<'_> {
         let (object, mesh) = self.scene.placed(hit.object);
         let model = mesh.model();
         model.faces[hit.face as usize].map(|v| {
-            let normal = object.normal(model.normals[v as usize]);
+            let normal = self.normal(object, model.normals[v as usize]);
             self.lit_point(if hit.front { normal } else { -normal }, object.point(model.positions[v as usize]))
         })
     }

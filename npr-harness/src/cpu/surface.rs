@@ -6,8 +6,9 @@ use crate::image_lines::ImagePlan;
 use crate::image_lines::cpu::{InkSample, gbuffer_texel, texel};
 use crate::image_lines::gbuffer::texel::GBufferTexel;
 use crate::rays::Hit;
+use crate::scene::Object;
 use crate::shadow::cpu::{ShadowAt, shadow_at};
-use glam::{DVec2, DVec3, DVec4};
+use glam::{DVec2, DVec3, DVec4, Vec3};
 use npr_imagespace::artist::LineKind;
 use npr_mesh::{AlphaMode, Material};
 use npr_toon::painter::toon_material;
@@ -102,11 +103,16 @@ impl FrameContext<'_> {
         (0..3).map(|i| model.uvs[corners[i] as usize].as_dvec2() * weights[i]).sum()
     }
 
+    /// A normal of a mesh, as the plan places it.
+    pub(super) fn normal(&self, object: &Object, normal: Vec3) -> DVec3 {
+        if self.plan.mesh_normals { normal.as_dvec3() } else { object.normal(normal) }
+    }
+
     pub(super) fn interpolate(&self, hit: &Hit, weights: [f64; 3]) -> Surface {
         let (object, mesh) = self.scene.placed(hit.object);
         let model = mesh.model();
         let corners = model.faces[hit.face as usize].map(|v| v as usize);
-        let normal: DVec3 = (0..3).map(|i| object.normal(model.normals[corners[i]]) * weights[i]).sum();
+        let normal: DVec3 = (0..3).map(|i| self.normal(object, model.normals[corners[i]]) * weights[i]).sum();
         let at = (0..3).map(|i| object.point(model.positions[corners[i]]) * weights[i]).sum();
         Surface { normal: if hit.front { normal } else { -normal }, at }
     }

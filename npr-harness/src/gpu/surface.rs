@@ -146,6 +146,7 @@ struct Variant {
     /// Whether there is a colour target, even if it is not written.
     colored: bool,
     clipped: bool,
+    mesh_normals: bool,
     inking: Option<Inking>,
 }
 
@@ -413,6 +414,7 @@ impl SurfacePass {
                 depth: targets.depth.texture().format(),
                 colored,
                 clipped: scene.clip.is_some(),
+                mesh_normals: plan.mesh_normals,
                 inking,
             };
             let Some(indices) = (if blended { blended_indices.as_ref() } else { uploaded.indices.as_ref() }) else {
@@ -555,6 +557,7 @@ impl SurfacePass {
                 ("surface_shadow", f64::from(variant.shadow.source)),
                 ("surface_shadow_lines", f64::from(variant.shadow.lines)),
                 ("surface_clipped", flag(clipped)),
+                ("surface_mesh_normals", flag(variant.mesh_normals)),
                 ("surface_narrow", flag(narrow)),
                 ("surface_unquantised", flag(inking.is_some_and(|inking| inking.unquantised))),
                 ("surface_line_kind", f64::from(line_kind as u32)),

@@ -44,6 +44,8 @@ struct SurfaceInk {
 override surface_clipped: bool = false;
 // Whether the G-buffer is packed into 32 bits instead of 64.
 override surface_narrow: bool = false;
+// Whether normals are used as they are in the vertex buffer.
+override surface_mesh_normals: bool = false;
 // Whether texels of the G-buffer are unquantised.
 override surface_unquantised: bool = false;
 // The source of the material's inner lines: 0 normals, 1 vertex colours, 2 texture, 3 regions, 4 none.
@@ -154,6 +156,9 @@ fn placed_position(position: vec3<f32>, instance: Instance) -> vec3<f32> {
 
 // Transforms a normal by the inverse transpose, preserving its length.
 fn placed_normal(normal: vec3<f32>, instance: Instance) -> vec3<f32> {
+    if surface_mesh_normals {
+        return normal;
+    }
     let x = vec3<f32>(instance.row_x.x, instance.row_y.x, instance.row_z.x);
     let y = vec3<f32>(instance.row_x.y, instance.row_y.y, instance.row_z.y);
     let z = vec3<f32>(instance.row_x.z, instance.row_y.z, instance.row_z.z);

@@ -20,6 +20,8 @@ pub struct PrintedLines {
     /// Whether widths follow the distance from the eye's plane instead of clip z, so that they are the same at every
     /// distance. Parallel views always do.
     pub eye_depth: bool,
+    /// Whether fins are displaced as the text on listing 1 has it, which is the reverse of the listing.
+    pub reversed: bool,
     /// How the face normals of the edges are stored.
     pub normals: NormalFormat,
 }
@@ -27,7 +29,7 @@ pub struct PrintedLines {
 impl Default for PrintedLines {
     /// Those of the style `printed-fins`.
     fn default() -> Self {
-        Self { width_px: 2.0, ink: Vec3::ZERO, eye_depth: false, normals: NormalFormat::F32 }
+        Self { width_px: 2.0, ink: Vec3::ZERO, eye_depth: false, reversed: false, normals: NormalFormat::F32 }
     }
 }
 
@@ -77,6 +79,7 @@ impl PrintedFinPlan {
             clip_from_world: view.clip_from_world * DMat4::from(*object.scene_from_mesh()),
             eye: object.homogeneous(view.eye.extend(1.0)).truncate(),
             thickness: view.thickness / object.scale(),
+            reversed: self.style.reversed,
             depth: if self.style.eye_depth { FinDepth::Eye } else { view.depth },
             ..view
         })

@@ -11,6 +11,7 @@ pub(crate) struct PrintedTable {
     width_px: f32,
     ink: Color,
     depth: DepthName,
+    reversed: bool,
     normals: NormalsName,
 }
 
@@ -46,6 +47,7 @@ impl PrintedTable {
             width_px: style.width_px,
             ink: Color(style.ink),
             depth: if style.eye_depth { DepthName::Eye } else { DepthName::ClipZ },
+            reversed: style.reversed,
             normals: match style.normals {
                 NormalFormat::F32 => NormalsName::Float,
                 NormalFormat::Snorm16 => NormalsName::Short,
@@ -61,6 +63,7 @@ impl PrintedTable {
             width_px: self.width_px,
             ink: self.ink.0,
             eye_depth: matches!(self.depth, DepthName::Eye),
+            reversed: self.reversed,
             normals: match self.normals {
                 NormalsName::Float => NormalFormat::F32,
                 NormalsName::Short => NormalFormat::Snorm16,

@@ -126,6 +126,7 @@ pub fn styles() -> Vec<Style> {
         paper: PAPER,
         shade,
         normals: NormalUse::PerPixel,
+        mesh_normals: false,
         lights: vec![StyleLight::KEY],
         shadow: None,
         lines,

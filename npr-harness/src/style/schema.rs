@@ -25,6 +25,7 @@ pub(super) struct StyleTable {
     paper: Color,
     crease_angle_deg: f32,
     normals: NormalsName,
+    normal_space: SpaceName,
     light: Vec<LightTable>,
     shade: ShadeTable,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -41,6 +42,7 @@ impl Default for StyleTable {
             paper: Color(Vec3::ONE),
             crease_angle_deg: 45.0,
             normals: NormalsName::PerPixel,
+            normal_space: SpaceName::World,
             light: vec![LightTable::new(&StyleLight::KEY)],
             shade: ShadeTable::new(&Shade::Toon(Bands::default())),
             shadow: None,
@@ -55,6 +57,13 @@ enum NormalsName {
     PerPixel,
     Interpolated,
     PerVertex,
+}
+
+#[derive(Clone, Copy, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum SpaceName {
+    World,
+    Mesh,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -92,6 +101,7 @@ impl StyleTable {
                 NormalUse::Interpolated => NormalsName::Interpolated,
                 NormalUse::PerVertex => NormalsName::PerVertex,
             },
+            normal_space: if style.mesh_normals { SpaceName::Mesh } else { SpaceName::World },
             light: style.lights.iter().map(LightTable::new).collect(),
             shade: ShadeTable::new(&style.shade),
             shadow: style.shadow.as_ref().map(ShadowTable::new),
@@ -115,6 +125,7 @@ impl StyleTable {
                 NormalsName::Interpolated => NormalUse::Interpolated,
                 NormalsName::PerVertex => NormalUse::PerVertex,
             },
+            mesh_normals: matches!(self.normal_space, SpaceName::Mesh),
             lights: lights.collect::<Result<_, _>>()?,
             shadow: self.shadow.map(ShadowTable::shadow).transpose().map_err(|what| file.wrong(what))?,
             lines: self.lines.lines().map_err(|what| file.wrong(what))?,

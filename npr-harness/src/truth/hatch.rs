@@ -65,6 +65,7 @@ pub fn hatched(shade: &HatchShade, normals: NormalUse, to_light: DVec3) -> Style
         paper: Vec3::ONE,
         shade: Shade::Hatch(shade.clone()),
         normals,
+        mesh_normals: false,
         lights: vec![StyleLight { light, frame: LightFrame::World }],
         lines: Lines::NONE,
         ..style("toon").expect("a style of this crate")

@@ -16,7 +16,7 @@ fn edges_of(model: &Model) -> Edges {
 fn view(eye: DVec3, depth: FinDepth) -> FinView {
     let clip_from_view = proj::perspective(1.0, 1.0, FAR, NEAR);
     let clip_from_world = clip_from_view * look_at_mat4(eye, DVec3::ZERO, DVec3::Y);
-    FinView { clip_from_world, eye, thickness: 0.01, depth }
+    FinView { clip_from_world, eye, thickness: 0.01, depth, reversed: false }
 }
 
 #[test]
@@ -59,7 +59,7 @@ fn the_listing_draws_silhouettes_and_neither_creases_nor_edges_seen_edge_on() {
     let flags: f64 = fins
         .vertices
         .iter()
-        .map(|v| fin_printed_flag(v.position.as_dvec3(), v.n_face0.as_dvec3(), v.n_face1.as_dvec3(), eye))
+        .map(|v| fin_printed_flag(v.position.as_dvec3(), v.n_face0.as_dvec3(), v.n_face1.as_dvec3(), eye, false))
         .sum();
     let by_hand = |edge: &Edge| {
         let side = |face: u32| {
@@ -173,4 +173,16 @@ fn triangles_are_cut_at_the_near_plane_and_by_the_scene() {
     depth_at_row(63);
     // Behind the eye altogether.
     assert!(pixels(&[[at(-1.0, 1.0), at(1.0, 1.0), at(0.0, 3.0)]], 64).is_empty());
+}
+
+/// Errata, offset: the text displaces exactly the fins that the listing does not.
+#[test]
+fn the_text_draws_all_but_the_silhouettes() {
+    let model = embedded::cube();
+    let fins = printed_fins(&model, &edges_of(&model));
+    let listing = view(DVec3::new(5.0, 6.0, 7.0), FinDepth::Eye);
+    let text = FinView { reversed: true, ..listing };
+    let (drawn, rest) = (fin_printed_triangles(&fins, &listing), fin_printed_triangles(&fins, &text));
+    assert_eq!((drawn.len(), rest.len()), (12, 12), "six silhouettes, and six edges that are none");
+    assert!(drawn.iter().all(|triangle| !rest.contains(triangle)));
 }

@@ -26,7 +26,7 @@ fn uniforms_are_laid_out_as_in_the_shaders() {
     );
     assert_eq!(
         layout(&crate::fin_pass::wgsl(), "FinPrintedView"),
-        fields!(FinUniform: clip_from_world, eye, thickness, ink, near, far, as_printed, padding)
+        fields!(FinUniform: clip_from_world, eye, thickness, ink, near, far, as_printed, reversed)
     );
 }
 

@@ -145,7 +145,8 @@ fn the_fin_pass_refuses_other_textures_and_matrices() {
     let model = embedded::cube();
     let fins = pass.upload(&gpu.device, &printed_fins(&model, &edges_of(&model))).unwrap();
     let draw = |clip_from_world, color: &wgpu::TextureView, depth: &wgpu::TextureView| {
-        let view = FinView { clip_from_world, eye: DVec3::ZERO, thickness: 0.01, depth: FinDepth::Eye };
+        let view =
+            FinView { clip_from_world, eye: DVec3::ZERO, thickness: 0.01, depth: FinDepth::Eye, reversed: false };
         recorded(gpu, |encoder| pass.record(&gpu.device, encoder, &fins, &view, [0.0; 4], color, depth))
     };
     let reversed = proj::perspective(1.0, 1.3, 100.0, 0.1);
