@@ -340,6 +340,16 @@ pub enum HarnessError {
         /// The existing names.
         known: String,
     },
+    /// A figure that does not exist.
+    #[error("no figure is called {name:?} ({}there are: {known})", did_you_mean(nearest))]
+    UnknownFigure {
+        /// The value requested.
+        name: String,
+        /// A figure with a similar name, if there is one.
+        nearest: Option<String>,
+        /// The existing names.
+        known: String,
+    },
     /// A picture without pixels, or with a side that exceeds the limit.
     #[error("a picture of {width} × {height} px: each side must lie in 1..={limit}")]
     Size {

@@ -51,6 +51,7 @@ mod derived;
 pub mod edge_lines;
 pub mod error;
 pub mod executor;
+pub mod figures;
 pub mod gallery;
 #[cfg(feature = "gpu")]
 pub mod gpu;

@@ -1,6 +1,6 @@
 //! The command's arguments.
 
-use crate::{check, inspect, render, tam};
+use crate::{check, figures, inspect, render, tam};
 use clap::{Parser, Subcommand};
 use clap_complete::Shell;
 
@@ -22,6 +22,8 @@ pub enum Command {
     Inspect(inspect::Options),
     /// GPU against CPU reference, lines against exact contours; exit status 1 when a limit is exceeded.
     Check(check::Options),
+    /// The figures of the documents, and what their errata change: pictures, style files and a page with captions.
+    Figures(figures::Options),
     /// Draws a tonal art map for hatching into a folder, or unpacks one: its images, one file with all, and sheets.
     Tam(tam::Options),
     /// The styles there are.

@@ -1,9 +1,11 @@
 //! `npr`: pictures, tables and checks from the command line.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
+mod backend;
 mod check;
 mod cli;
 mod completions;
+mod figures;
 mod gallery;
 mod inspect;
 mod loading;
@@ -25,6 +27,7 @@ fn main() -> ExitCode {
         Some(Command::Render(options)) => render::run(&options),
         Some(Command::Inspect(options)) => inspect::run(&options),
         Some(Command::Check(options)) => check::run(&options),
+        Some(Command::Figures(options)) => figures::run(&options),
         Some(Command::Tam(options)) => tam::run(&options),
         Some(Command::Styles) => style::list(),
         Some(Command::Style { name }) => style::print(&name),

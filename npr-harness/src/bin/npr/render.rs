@@ -1,10 +1,11 @@
 //! `npr render`.
 
+use crate::backend::BackendName;
 use crate::loading::{Loading, load};
 use crate::picture::Destination;
 use crate::style::{known_style, style_file};
 use crate::terminal::{announce, one_line, progress_bar, say, tell};
-use clap::{Args, ValueEnum};
+use clap::Args;
 use glam::{DVec3, DVec4};
 use npr_harness::camera::{Camera, Framing};
 use npr_harness::capabilities::Capabilities;
@@ -79,13 +80,6 @@ pub struct Options {
     loading: Loading,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-enum BackendName {
-    Auto,
-    Gpu,
-    Cpu,
-}
-
 fn parse_size(text: &str) -> Result<(u32, u32), String> {
     let number = |part: &str| part.parse::<u32>().map_err(|_| format!("{part:?} is not a number of pixels"));
     let (width, height) = text.split_once(['x', 'X']).ok_or("expected WIDTHxHEIGHT, such as 1280x720")?;
@@ -144,11 +138,7 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
     }
     options.loading.check([&options.input])?;
     let style = known_style(&options.style)?;
-    let backend = match options.backend {
-        BackendName::Auto => Backend::Auto,
-        BackendName::Gpu => Backend::Gpu,
-        BackendName::Cpu => Backend::Cpu,
-    };
+    let backend = Backend::from(options.backend);
     let check = |on_device| check_picture(&style, options.size, samples, on_device, memory as u64);
     // The executor depends on the model, but a picture too large for either is rejected at once.
     check(backend == Backend::Gpu)?;

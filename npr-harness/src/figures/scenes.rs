@@ -1,0 +1,155 @@
+//! The scenes and views of figures.
+
+use crate::camera::{Camera, Projection};
+use crate::gallery::{painted_camera, painted_scene, still_life_camera};
+use crate::scene::Scene;
+use glam::{DAffine3, DVec3, Mat4, Vec3, Vec4};
+use npr_imagespace::artist::LineKind;
+use npr_mesh::{Material, Model, embedded};
+
+/// A scene and its view.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Setting {
+    /// The built-in still life.
+    StillLife,
+    /// The still life, with the near plane at half the distance.
+    NearPlane,
+    /// The scene that an artist painted lines on.
+    Painted,
+    /// A cube, a cylinder, a ball and a ring, seen from the side of +z.
+    Front,
+    /// A ball and a cylinder of few segments.
+    Coarse,
+    /// A sheet of tiles of one plane, each a mesh of its own.
+    Tiles,
+    /// A teapot placed twice, upright and lying.
+    TwoTeapots,
+    /// A teapot so close that it fills the view, and a small one far behind it.
+    Deep,
+}
+
+impl Setting {
+    /// All settings.
+    pub const ALL: [Self; 8] = [
+        Self::StillLife,
+        Self::NearPlane,
+        Self::Painted,
+        Self::Front,
+        Self::Coarse,
+        Self::Tiles,
+        Self::TwoTeapots,
+        Self::Deep,
+    ];
+
+    /// The scene.
+    pub fn scene(self) -> Scene {
+        match self {
+            Self::StillLife | Self::NearPlane => Scene::new(embedded::scene()),
+            Self::Painted => painted_scene(),
+            Self::Front => Scene::new(front()),
+            Self::Coarse => Scene::new(coarse()),
+            Self::Tiles => tiles(),
+            Self::TwoTeapots => two_teapots(),
+            Self::Deep => Scene::new(deep()),
+        }
+    }
+
+    /// The view.
+    pub fn camera(self) -> Camera {
+        let looking = |eye: DVec3, target: DVec3, fov_deg: f64| Camera {
+            eye,
+            target,
+            up: DVec3::Y,
+            projection: Projection::Perspective { fov_y_rad: fov_deg.to_radians() },
+            near: 0.1,
+        };
+        match self {
+            Self::StillLife => still_life_camera(),
+            Self::NearPlane => Camera { near: 7.0, ..still_life_camera() },
+            Self::Painted => painted_camera(),
+            Self::Front => looking(DVec3::new(0.0, 1.0, 14.0), DVec3::new(0.0, 1.0, 0.0), 22.0),
+            Self::Coarse => looking(DVec3::new(0.0, 2.2, 9.0), DVec3::new(0.0, 1.0, 0.0), 22.0),
+            Self::Tiles => looking(DVec3::new(0.0, 0.0, 10.0), DVec3::ZERO, 34.0),
+            Self::TwoTeapots => looking(DVec3::new(0.0, 4.5, 15.0), DVec3::new(0.0, 1.2, 0.0), 28.0),
+            Self::Deep => looking(DVec3::new(0.0, 1.8, 9.0), DVec3::new(0.6, 1.3, 0.0), 34.0),
+        }
+    }
+}
+
+fn material(r: f32, g: f32, b: f32) -> Material {
+    Material { base_color: Vec4::new(r, g, b, 1.0), ..Material::default() }
+}
+
+fn at(x: f32, y: f32, z: f32) -> Mat4 {
+    Mat4::from_translation(Vec3::new(x, y, z))
+}
+
+fn front() -> Model {
+    let mut model = Model::default();
+    let parts = [
+        (embedded::cube(), at(-3.6, 1.0, 0.0) * Mat4::from_scale(Vec3::splat(0.9)), material(0.2, 0.4, 0.6)),
+        (embedded::cylinder(64), at(-1.2, 1.0, 0.0) * Mat4::from_scale(Vec3::splat(0.9)), material(0.6, 0.3, 0.15)),
+        (embedded::sphere(64), at(1.2, 1.0, 0.0) * Mat4::from_scale(Vec3::splat(0.95)), material(0.7, 0.5, 0.1)),
+        (embedded::torus(0.75, 0.3, 64, 32), at(3.6, 1.0, 0.0) * Mat4::from_rotation_x(1.1), material(0.2, 0.45, 0.2)),
+    ];
+    for (part, place, material) in parts {
+        model.append(&embedded::placed(part, place, material));
+    }
+    model
+}
+
+fn coarse() -> Model {
+    let mut model = Model::default();
+    let (ball, can) = (material(0.7, 0.5, 0.1), material(0.6, 0.3, 0.15));
+    model.append(&embedded::placed(embedded::sphere(10), at(-1.3, 1.0, 0.0), ball));
+    model.append(&embedded::placed(embedded::cylinder(10), at(1.4, 1.0, 0.0), can));
+    model
+}
+
+/// 16 × 9 tiles without gaps, so that neither normals nor depths differ, and 144 regions do.
+fn tiles() -> Scene {
+    let mut model = Model::default();
+    for number in 0..16 * 9u32 {
+        let (x, y) = ((number % 16) as f32, (number / 16) as f32);
+        let corner = |dx: f32, dy: f32| Vec3::new((x + dx) * 0.6 - 4.8, (y + dy) * 0.6 - 2.7, 0.0);
+        let tile = Model {
+            positions: vec![corner(0.0, 0.0), corner(1.0, 0.0), corner(1.0, 1.0), corner(0.0, 1.0)],
+            normals: vec![Vec3::Z; 4],
+            faces: vec![[0, 1, 2], [0, 2, 3]],
+            face_material: vec![0; 2],
+            face_polygon: vec![0; 2],
+            materials: vec![material(0.8, 0.8, 0.75)],
+            ..Model::default()
+        };
+        model.append(&tile);
+    }
+    let mut scene = Scene::new(model);
+    scene.line_kinds = vec![LineKind::Normals; scene.materials().len()];
+    scene
+}
+
+fn two_teapots() -> Scene {
+    let mut teapot = embedded::teapot(12);
+    teapot.materials = vec![Material { double_sided: true, ..material(0.7, 0.3, 0.15) }];
+    let placed = |name: &str, world_from_mesh| npr_mesh::Object { name: name.into(), mesh: 0, world_from_mesh };
+    let upright = DAffine3::from_translation(DVec3::new(-3.0, 0.0, 0.0));
+    // On its side, and turned around.
+    let lying = DAffine3::from_translation(DVec3::new(3.2, 1.6, 0.0))
+        * DAffine3::from_rotation_y(2.2)
+        * DAffine3::from_rotation_z(std::f64::consts::FRAC_PI_2)
+        * DAffine3::from_translation(DVec3::new(0.0, -1.5, 0.0));
+    Scene::with_objects(vec![teapot], vec![placed("upright", upright), placed("lying", lying)])
+        .expect("the transforms are regular")
+}
+
+fn deep() -> Model {
+    let mut model = Model::default();
+    let pot = |place: Mat4| {
+        let material = Material { double_sided: true, ..material(0.7, 0.3, 0.15) };
+        embedded::placed(embedded::teapot(12), place, material)
+    };
+    model.append(&pot(at(-1.0, 0.0, 2.5)));
+    model.append(&pot(at(6.0, 0.0, -9.0)));
+    model.append(&pot(at(14.0, 0.0, -34.0)));
+    model
+}
