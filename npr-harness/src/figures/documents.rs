@@ -39,6 +39,7 @@ pub fn figures() -> Vec<Figure> {
 }
 
 fn chapter() -> Vec<Figure> {
+    let objects = Setting::Objects;
     let still_life = Setting::StillLife;
     let hatched = |keys: &str, tables: &str, shade: &str| {
         format!("{keys}\n{FROM_THE_LEFT}{tables}\n[shade.hatch]\n{SIX_TONES}{shade}\n")
@@ -53,9 +54,9 @@ fn chapter() -> Vec<Figure> {
                       are found between pixels. Printed: vertex-shader fins; here: lines of constant width.",
             columns: 3,
             panels: vec![
-                Panel::style("N·L", still_life, "[shade.lambert]\nambient = 0.1\n"),
-                Panel::style("lines along edges", still_life, "shade = \"paper\"\n[lines.edges]\n"),
-                Panel::style("listings 9 and 10", still_life, lines(LISTINGS, "target = \"rgba8\"")),
+                Panel::style("N·L", objects, "[shade.lambert]\nambient = 0.1\n"),
+                Panel::style("lines along edges", objects, "shade = \"paper\"\n[lines.edges]\n"),
+                Panel::style("listings 9 and 10", objects, lines(LISTINGS, "target = \"rgba8\"\nfar = 2.0")),
             ],
         },
         Figure {
@@ -127,20 +128,27 @@ fn chapter() -> Vec<Figure> {
             name: "chapter-9",
             shows: "Card & Mitchell 2002, figure 9: edges of normals, of depth, and both",
             caption: "Thresholds 0.85 and 0.02. Two errors of print are corrected: all four differences of depth count, \
-                      and the background is no normal. What an 8-bit depth cannot separate has no line, and slanted \
-                      surfaces far away become ink where their sum of differences reaches the threshold.",
+                      and the background is no normal. Slanted surfaces become ink where their differences add up to the threshold.",
             columns: 3,
             panels: vec![
-                Panel::style("normals", still_life, lines(&format!("{LISTINGS}\ndepth = false"), "target = \"rgba8\"")),
-                Panel::style("depth", still_life, lines(&format!("{LISTINGS}\nnormals = false"), "target = \"rgba8\"")),
-                Panel::style("both", still_life, lines(LISTINGS, "target = \"rgba8\"")),
+                Panel::style(
+                    "normals",
+                    objects,
+                    lines(&format!("{LISTINGS}\ndepth = false"), "target = \"rgba8\"\nfar = 2.0"),
+                ),
+                Panel::style(
+                    "depth",
+                    objects,
+                    lines(&format!("{LISTINGS}\nnormals = false"), "target = \"rgba8\"\nfar = 2.0"),
+                ),
+                Panel::style("both", objects, lines(LISTINGS, "target = \"rgba8\"\nfar = 2.0")),
             ],
         },
         Figure {
             name: "chapter-10",
             shows: "Card & Mitchell 2002, figure 10: how shadow outlines come about",
             caption: "By listings 9 and 10 themselves over the 8-bit target, not by shadow states: normals are negated \
-                      in shadow, and the border of the side that faces away from the light becomes a line, too. \
+                      in shadow, and the border of the side that faces away from the light becomes a line, too. The far ground is so slanted that its differences of depth reach listing 10's threshold. \
                       Strokes follow the form, where the chapter lays them by texture coordinates.",
             columns: 2,
             panels: vec![

@@ -33,12 +33,12 @@ fn pair(
 /// The errata, in the order of their numbers. The others of the list have no second form that runs, or are choices; see
 /// `docs/errata.md`.
 pub fn errata() -> Vec<Erratum> {
-    let still_life = Setting::StillLife;
+    let (still_life, objects) = (Setting::StillLife, Setting::Objects);
     let fins = |keys: &str| format!("shade = \"paper\"\n[lines.printed]\n{keys}\n");
     let listings = |keys: &str, gbuffer: &str| {
         format!(
             "shade = \"paper\"\n[lines.image]\nnormal-cos = 0.85\ndepth-step = 0.02\n{keys}\n[lines.image.gbuffer]\ntarget = \
-             \"rgba8\"\n{gbuffer}\n"
+             \"rgba8\"\nfar = 2.0\n{gbuffer}\n"
         )
     };
     let bands = "[shade.toon]\nthresholds = [0.05, 0.6]\ntones = [[0.35, 0.33, 0.42], [0.7, 0.69, 0.74], [1, 1, 1]]\n";
@@ -46,7 +46,7 @@ pub fn errata() -> Vec<Erratum> {
         let composite = format!("composite = {{ alpha-tested = {test} }}");
         format!(
             "{bands}[lines.image]\nnormal-cos = 0.85\ndepth-step = 0.02\n{composite}\n[lines.image.gbuffer]\ntarget = \
-             \"rgba8\"\n{gbuffer}\n"
+             \"rgba8\"\nfar = 2.0\n{gbuffer}\n"
         )
     };
     let inker = |form: &str| listings("", &format!("inker = {{ form = \"{form}\" }}"));
@@ -75,11 +75,11 @@ pub fn errata() -> Vec<Erratum> {
          discards the lines, and the reference, (DWORD) 0.5f, is 0. If both halves of a co-issued pair of instructions \
          read before either writes, listing 10's alpha is its sum, and GREATER then keeps the edges of depth; of those of \
          normals it keeps what the last tap alone finds.",
-        still_life,
+        objects,
         [composited("{ less = false, reference = 0 }", ""), composited("{ less = true, reference = 128 }", "")],
     );
     let co_issued = composited("{ less = false, reference = 0 }", "co-issued = true");
-    alpha.figure.panels.push(Panel::style("as printed, co-issued", still_life, co_issued));
+    alpha.figure.panels.push(Panel::style("as printed, co-issued", objects, co_issued));
 
     vec![
         pair(
@@ -107,7 +107,7 @@ pub fn errata() -> Vec<Erratum> {
             "A rounded normal is not perpendicular to its face, and the two ends of an edge can disagree: half a fin is \
              left, or one is drawn that is no silhouette. Corrected here are the normals alone; lines along edges are \
              classified once for an edge.",
-            Setting::Deep,
+            Setting::Cans,
             [fins("normals = \"byte\"\nwidth-px = 3"), fins("width-px = 3")],
         ),
         pair(
@@ -133,7 +133,7 @@ pub fn errata() -> Vec<Erratum> {
             "erratum-8",
             "Chapter, listing 10: the first and the last difference of depth, or all four",
             "The accumulating additions overwrite each other's result, so that only two of the four differences count.",
-            still_life,
+            objects,
             [listings("normals = false", "depth-test = \"sum-printed\""), listings("normals = false", "")],
         ),
         alpha,
@@ -153,7 +153,7 @@ pub fn errata() -> Vec<Erratum> {
             "Only the first difference is squared, so that the sign of the second decides whether it makes a line: \
              borders are inked on one side. Corrected: a threshold for normals and one for depth. With the missing \
              instruction added and nothing else, any slanted surface is ink.",
-            still_life,
+            objects,
             [inker("printed"), inker("explicit")],
         ),
         {
@@ -163,7 +163,7 @@ pub fn errata() -> Vec<Erratum> {
                 "Article, listing 4: the missing instruction added, or two thresholds",
                 "With both differences squared the constants sum to the threshold, and every difference of depth is ink: \
                  8-bit rounding hid that in 2002.",
-                still_life,
+                objects,
                 [inker("corrected"), inker("explicit")],
             );
             erratum.figure.panels[0].legend = "instruction added";
@@ -174,7 +174,7 @@ pub fn errata() -> Vec<Erratum> {
             "erratum-13",
             "Article, listing 5: smooth dilation by two samples, or by four",
             "The comment combines four samples with a threshold and a clamp; the program reads two and does not clamp.",
-            still_life,
+            objects,
             [
                 stepped("{ kind = \"soft-diagonal-printed\", threshold = 0.25 }"),
                 stepped("{ kind = \"soft-diagonal\", threshold = 0.25 }"),
@@ -186,7 +186,7 @@ pub fn errata() -> Vec<Erratum> {
             "Slides, dilation: the shader's soft one, or the text's minimum",
             "The shader adds five samples up: one on a line gives 0.4 of a line, two 0.8, three a whole one. The text's \
              dilation is the darkest of the five.",
-            still_life,
+            objects,
             [stepped("{ kind = \"soft-cross\" }"), stepped("{ kind = \"dilate\", kernel = \"cross\" }")],
         ),
         pair(

@@ -12,6 +12,8 @@ use npr_mesh::{Material, Model, embedded};
 pub enum Setting {
     /// The built-in still life.
     StillLife,
+    /// The still life without its ground.
+    Objects,
     /// The still life, with the near plane at half the distance.
     NearPlane,
     /// The scene that an artist painted lines on.
@@ -24,33 +26,35 @@ pub enum Setting {
     Tiles,
     /// A teapot placed twice, upright and lying.
     TwoTeapots,
-    /// A teapot so close that it fills the view, and a small one far behind it.
-    Deep,
+    /// Round cans of long narrow faces, close to the viewer.
+    Cans,
 }
 
 impl Setting {
     /// All settings.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::StillLife,
+        Self::Objects,
         Self::NearPlane,
         Self::Painted,
         Self::Front,
         Self::Coarse,
         Self::Tiles,
         Self::TwoTeapots,
-        Self::Deep,
+        Self::Cans,
     ];
 
     /// The scene.
     pub fn scene(self) -> Scene {
         match self {
             Self::StillLife | Self::NearPlane => Scene::new(embedded::scene()),
+            Self::Objects => Scene::new(objects()),
             Self::Painted => painted_scene(),
             Self::Front => Scene::new(front()),
             Self::Coarse => Scene::new(coarse()),
             Self::Tiles => tiles(),
             Self::TwoTeapots => two_teapots(),
-            Self::Deep => Scene::new(deep()),
+            Self::Cans => Scene::new(cans()),
         }
     }
 
@@ -64,14 +68,14 @@ impl Setting {
             near: 0.1,
         };
         match self {
-            Self::StillLife => still_life_camera(),
+            Self::StillLife | Self::Objects => still_life_camera(),
             Self::NearPlane => Camera { near: 7.0, ..still_life_camera() },
             Self::Painted => painted_camera(),
-            Self::Front => looking(DVec3::new(0.0, 1.0, 14.0), DVec3::new(0.0, 1.0, 0.0), 22.0),
+            Self::Front => looking(DVec3::new(0.0, 1.0, 14.0), DVec3::new(0.0, 1.0, 0.0), 26.0),
             Self::Coarse => looking(DVec3::new(0.0, 2.2, 9.0), DVec3::new(0.0, 1.0, 0.0), 22.0),
             Self::Tiles => looking(DVec3::new(0.0, 0.0, 10.0), DVec3::ZERO, 34.0),
-            Self::TwoTeapots => looking(DVec3::new(0.0, 4.5, 15.0), DVec3::new(0.0, 1.2, 0.0), 28.0),
-            Self::Deep => looking(DVec3::new(0.0, 1.8, 9.0), DVec3::new(0.6, 1.3, 0.0), 34.0),
+            Self::TwoTeapots => looking(DVec3::new(0.0, 4.5, 15.0), DVec3::new(0.0, 1.6, 0.0), 31.0),
+            Self::Cans => looking(DVec3::new(0.0, 1.4, 3.4), DVec3::new(0.0, 0.9, 0.0), 50.0),
         }
     }
 }
@@ -106,12 +110,12 @@ fn coarse() -> Model {
     model
 }
 
-/// 16 × 9 tiles without gaps, so that neither normals nor depths differ, and 144 regions do.
+/// 48 × 27 tiles without gaps, so that neither normals nor depths differ, and 1,296 regions do.
 fn tiles() -> Scene {
     let mut model = Model::default();
-    for number in 0..16 * 9u32 {
-        let (x, y) = ((number % 16) as f32, (number / 16) as f32);
-        let corner = |dx: f32, dy: f32| Vec3::new((x + dx) * 0.6 - 4.8, (y + dy) * 0.6 - 2.7, 0.0);
+    for number in 0..48 * 27u32 {
+        let (x, y) = ((number % 48) as f32, (number / 48) as f32);
+        let corner = |dx: f32, dy: f32| Vec3::new((x + dx) * 0.2 - 4.8, (y + dy) * 0.2 - 2.7, 0.0);
         let tile = Model {
             positions: vec![corner(0.0, 0.0), corner(1.0, 0.0), corner(1.0, 1.0), corner(0.0, 1.0)],
             normals: vec![Vec3::Z; 4],
@@ -142,14 +146,30 @@ fn two_teapots() -> Scene {
         .expect("the transforms are regular")
 }
 
-fn deep() -> Model {
+fn objects() -> Model {
+    let mut model = embedded::scene();
+    // The ground is the last material.
+    let ground = model.materials.len() as u32 - 1;
+    let kept = model.face_material.iter().filter(|&&material| material != ground).count();
+    model.faces.truncate(kept);
+    model.face_material.truncate(kept);
+    model.face_polygon.truncate(kept);
+    model.face_mesh.truncate(kept);
+    model
+}
+
+fn cans() -> Model {
     let mut model = Model::default();
-    let pot = |place: Mat4| {
-        let material = Material { double_sided: true, ..material(0.7, 0.3, 0.15) };
-        embedded::placed(embedded::teapot(12), place, material)
-    };
-    model.append(&pot(at(-1.0, 0.0, 2.5)));
-    model.append(&pot(at(6.0, 0.0, -9.0)));
-    model.append(&pot(at(14.0, 0.0, -34.0)));
+    for (x, z, radius, height, segments) in [
+        (-1.5, 0.0, 0.5, 1.0, 501),
+        (-0.2, 0.7, 0.35, 0.8, 367),
+        (0.9, 0.2, 0.45, 1.1, 433),
+        (1.9, -0.8, 0.4, 1.2, 613),
+    ] {
+        // Tilted, so that normals have no component of 0, which every format holds exactly.
+        let tilted = Mat4::from_rotation_z(0.17 * x) * Mat4::from_rotation_x(0.11 + 0.2 * z);
+        let place = at(x, height, z) * tilted * Mat4::from_scale(Vec3::new(radius, height, radius));
+        model.append(&embedded::placed(embedded::cylinder(segments), place, material(0.6, 0.6, 0.6)));
+    }
     model
 }

@@ -24,7 +24,7 @@ impl GBufferPlan {
     pub(crate) fn new(scene: &Scene, gbuffer: &GBuffer, camera: &Camera) -> Result<Self, HarnessError> {
         let (near, far) = scene.depth_range(camera);
         // A flat scene that faces the viewer has one depth.
-        let far = far.max(near * (1.0 + 1e-5));
+        let far = (far * f64::from(gbuffer.far)).max(near * (1.0 + 1e-5));
         let range = DepthRange::new(near as f32, far as f32)?;
         let mut gbuffer = *gbuffer;
         let (scale, bias, parallel) = match camera.projection {

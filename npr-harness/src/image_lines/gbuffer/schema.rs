@@ -3,6 +3,7 @@
 //! Cosines, steps, taps and softness are those of `[lines.image]`.
 
 use super::style::{Background, GBuffer, GBufferTarget, InkStep, MOST_STEPS, SeparateTargets, Show, StepKind};
+use crate::schema::one;
 use npr_imagespace::composite::AlphaTest;
 use npr_imagespace::filter::depth::DepthPlain;
 use npr_imagespace::filter::inker::{Inker, InkerForm};
@@ -28,6 +29,8 @@ pub(crate) struct GBufferTable {
     depth_format: Option<DepthFormatName>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     region_test: Option<RegionTestName>,
+    #[serde(default = "one")]
+    far: f32,
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     negated_depth: bool,
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
@@ -246,6 +249,7 @@ impl GBufferTable {
             normal_format: None,
             depth_format: None,
             region_test: None,
+            far: gbuffer.far,
             negated_depth: gbuffer.negated_depth,
             co_issued: false,
             inker: None,
@@ -396,6 +400,7 @@ impl GBufferTable {
         Ok(GBuffer {
             target,
             background: if printed_background { Background::PlusZ } else { Background::None },
+            far: self.far,
             negated_depth: self.negated_depth,
             steps,
             show: match self.show {

@@ -23,6 +23,8 @@ pub struct GBuffer {
     pub target: GBufferTarget,
     /// What stands where there is no surface.
     pub background: Background,
+    /// Where the depths of fixed-point formats end, in multiples of the scene's farthest depth, 1..=1e6: a far plane.
+    pub far: f32,
     /// Whether depth is negated where normals are ([`crate::shadow::ShadowLines::Negated`]), as on the slides of
     /// Mitchell, Brennan & Card. This needs [`GBufferTarget::Separate`] with a depth format that has a sign, and a test
     /// on plain differences.
@@ -116,6 +118,7 @@ impl Default for GBuffer {
                 ..PrintedEdges::default()
             })),
             background: Background::None,
+            far: 1.0,
             negated_depth: false,
             steps: [None; MOST_STEPS],
             show: Show::Lines,
@@ -158,6 +161,7 @@ impl GBuffer {
                 SeparateUniform::new(&separate.filter)?;
             }
         }
+        within("a G-buffer's far plane", self.far, 1.0, 1e6, "1..=1e6 times the farthest depth")?;
         let has_sign = match &self.target {
             GBufferTarget::Separate(separate) => matches!(separate.depth, DepthFormat::Half | DepthFormat::Float),
             GBufferTarget::Rgba8(_) => false,

@@ -60,14 +60,15 @@ pub fn gbuffer_normal(texel: GBufferTexel) -> Vec3 {
     Vec3::new(x, y, if texel[2] & GBUFFER_BEHIND == 0 { z } else { -z })
 }
 
-/// The colour that stands for a region: channels in steps of 4, scattered by a multiplicative hash; white for
+/// The colour that stands for a region: channels in steps of 4, scattered by a hash; white for
 /// background.
 pub fn gbuffer_region_color(region: u32) -> [u8; 3] {
     if region == 0 {
         return [255; 3];
     }
-    // Fibonacci hashing: the upper bits of a product with 2^32 over the golden ratio.
-    let hash = region.wrapping_mul(0x9e37_79b1);
+    // Two multiplications, so that neighbouring numbers have unrelated colours.
+    let mixed = region.wrapping_mul(0x9e37_79b1);
+    let hash = (mixed ^ mixed >> 15).wrapping_mul(0x85eb_ca6b);
     [26, 20, 14].map(|shift| ((hash >> shift & 63) * 4) as u8)
 }
 

@@ -27,7 +27,8 @@ fn gbuffer_normal(texel: vec4<u32>) -> vec3<f32> {
 
 // The colour that stands for a region, in bytes; white for background.
 fn gbuffer_region_color(region: u32) -> vec3<u32> {
-    let hash = region * 0x9e3779b1u;
+    let mixed = region * 0x9e3779b1u;
+    let hash = (mixed ^ (mixed >> 15u)) * 0x85ebca6bu;
     let color = ((vec3<u32>(hash) >> vec3<u32>(26u, 20u, 14u)) & vec3<u32>(63u)) * 4u;
     return select(color, vec3<u32>(255u), region == 0u);
 }
