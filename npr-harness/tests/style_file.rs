@@ -179,9 +179,9 @@ fn lines_with_one_key_have_defaults_for_the_rest() {
 
 #[test]
 fn lines_of_several_kinds_stand_in_one_style() {
-    let style = parse("[lines.edges]\n[lines.image]\n[lines.printed]\n").expect("a style");
-    let Lines { printed, edges, image } = style.lines;
-    assert!(printed.is_some() && edges.is_some() && image.is_some());
+    let style = parse("[lines.edges]\n[lines.image]\n[lines.printed]\n[lines.hull]\n").expect("a style");
+    let Lines { hull, printed, edges, image } = style.lines;
+    assert!(hull.is_some() && printed.is_some() && edges.is_some() && image.is_some());
     assert!(message("[lines.fins]\n").contains("unknown field `fins`"), "{}", message("[lines.fins]\n"));
 }
 
