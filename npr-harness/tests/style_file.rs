@@ -5,6 +5,7 @@ mod common;
 use common::Folder;
 use glam::{UVec2, Vec3};
 use npr_harness::error::HarnessError;
+use npr_harness::hull_lines::HullLines;
 use npr_harness::image_lines::ImageInk;
 use npr_harness::lights::{LightFrame, StyleLight};
 use npr_harness::picture::Image;
@@ -17,6 +18,7 @@ use npr_hatch::{TamParameters, Thresholds, draw, store};
 use npr_imagespace::composite::Composite;
 use npr_imagespace::morphology::disc::Disc;
 use npr_outline::LineKind;
+use npr_outline::hull::HullNormals;
 use npr_toon::row::{RampRow, TexelFilter};
 use npr_toon::source::Light;
 use npr_toon::table::RampTable;
@@ -62,6 +64,10 @@ fn every_style_survives_being_written_and_read() {
         lines: Lines::image(ImageInk { shadows: apart, ..ImageInk::default() }),
         ..named("normals")
     });
+    for normals in [HullNormals::Welded, HullNormals::Vertices] {
+        let hull = HullLines { width_px: 3.5, ink: Vec3::new(0.25, 0.5, 0.75), normals };
+        all.push(Style { lines: Lines { hull: Some(hull), ..named("cartoon").lines }, ..named("cartoon") });
+    }
     for style in all {
         let text = style.to_toml().expect("every style has a form");
         assert_eq!(parse(&text).unwrap_or_else(|e| panic!("{e}\n{text}")), style, "{text}");
@@ -101,6 +107,7 @@ fn an_unknown_key_is_named() {
         "[shade.hatch.map]\n",
         "[lines.edges]\nsilhouette-px = 1\nboundary-px = 1\ncrease-px = 1\nink = [0, 0, 0]\n",
         "[lines.printed]\nwidth-px = 1\nink = [0, 0, 0]\n",
+        "[lines.hull]\nwidth-px = 1\nink = [0, 0, 0]\nnormals = \"welded\"\n",
         "[shadow]\n",
         "[lines.image]\n",
         "[lines.image.shadows.separate]\ncomposite = \"multiply\"\n",
@@ -171,6 +178,8 @@ fn lines_with_one_key_have_defaults_for_the_rest() {
     let red = edges("[lines.edges]\nink = \"#ff0000\"\n");
     assert_eq!((red.width_px, red.ink), (usual.width_px, [1.0, 0.0, 0.0, 1.0]));
     assert_eq!(edges("[lines.edges]\nopacity = 0.5\n").ink[3], 0.5);
+    let hull = HullLines { width_px: 2.0, ink: Vec3::ZERO, normals: HullNormals::Welded };
+    assert_eq!(parse("[lines.hull]\n").expect("a style").lines, Lines::hull(hull));
     assert_eq!(parse("[lines.printed]\n").expect("a style").lines, named("printed-fins").lines);
     let style = parse("[lines.image.composite.over]\nopacity = 0.5\n").expect("a style");
     let ink = style.lines.image.expect("lines in the image");
@@ -249,6 +258,11 @@ fn what_is_wrong_is_said() {
         ("[shadow]\nside = 512", "only a shadow map has a side"),
         ("[shadow]\nmethod = \"map\"\nside = 8", "the side of a shadow map of 8"),
         ("[shadow]\nterminator = 1", "a shadow's terminator of 1"),
+        ("[lines.hull]\nwidth-px = 257", "a hull's width of 257"),
+        ("[lines.hull]\nwidth-px = -1", "0..=256 px"),
+        ("[lines.hull]\nwidth-px = nan", "a hull's width of"),
+        ("[lines.hull]\nink = [0, 2, 0]", "a component of the hull's ink of 2"),
+        ("[lines.hull]\nnormals = \"faces\"", "unknown variant `faces`, expected `welded` or `vertices`"),
         ("[lines.image]\nshadows = \"lines\"", "draws lines around shadows, and has none"),
         ("= 3", "mine.toml:1:1"),
     ];
