@@ -235,6 +235,39 @@ fn an_open_surface_has_no_band_from_the_front_and_a_displaced_copy_from_the_back
     assert!(gaps(&depth, &inked, SIZE) > 100 && inked.iter().any(|&inked| inked));
 }
 
+/// The width beside a hard edge is the component of its ends' displacement across it.
+#[test]
+fn beside_the_edges_of_a_cube_the_band_is_narrower_than_asked() {
+    let model = embedded::cube();
+    let edges = edges_of(&model);
+    let hull = Hull::new(&model, &edges, HullNormals::Welded);
+    let (mut shares, width_px) = (Vec::new(), 4.0);
+    for eye in directions().map(|direction| 6.0 * direction) {
+        let view = view(looking_from(eye), SIZE, width_px);
+        for edge in &edges.edges {
+            let ends = edge.ends.map(|vertex| model.positions[vertex as usize].as_dvec3());
+            let faces_eye = |face: u32| {
+                let normal = edges.face_normals[face as usize].as_dvec3();
+                normal.dot(eye - ends[0]) > 0.0
+            };
+            if faces_eye(edge.faces()[0]) == faces_eye(edge.faces()[1]) {
+                continue;
+            }
+            let px = |clip: DVec4| clip.truncate().truncate() / clip.w * 0.5 * view.viewport_px;
+            let [from, to] = ends.map(|end| px(view.clip_from_world * end.extend(1.0)));
+            let across = (to - from).normalize().perp();
+            for end in ends {
+                let corner = hull.vertices.iter().find(|v| v.position.as_dvec3() == end).unwrap();
+                shares.push(hull_offset(corner.normal.as_dvec3(), &view).dot(across).abs() / width_px);
+            }
+        }
+    }
+    let mean = shares.iter().sum::<f64>() / shares.len() as f64;
+    let least = shares.iter().copied().fold(1.0, f64::min);
+    println!("{} ends of edges: {mean:.3} of the width in the mean, {least:.3} at least", shares.len());
+    assert!(shares.iter().all(|share| *share < 1.0 + 1e-9) && least > 0.5 && (0.7..0.95).contains(&mean));
+}
+
 #[test]
 fn the_hull_hides_and_is_hidden_as_depth_says() {
     let model = embedded::sphere(32);
