@@ -1,3 +1,5 @@
+#![allow(clippy::print_stdout)]
+
 use super::*;
 use crate::raster::rasterise;
 use glam::dcamera::rh::proj::directx as proj;
