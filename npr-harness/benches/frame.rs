@@ -7,14 +7,17 @@
 mod common;
 
 use common::Case;
+use glam::Vec3;
 use npr_harness::edge_lines::EdgeLineMethod;
 use npr_harness::gpu;
+use npr_harness::hull_lines::HullLines;
 use npr_harness::image_lines::ImageInk;
 use npr_harness::plan::Plan;
 use npr_harness::shade::Shade;
 use npr_harness::shade::lambert::Lambert;
 use npr_harness::style::{Lines, Style, style};
 use npr_imagespace::format::texel::TexelLayout;
+use npr_outline::hull::HullNormals;
 use npr_toon::normal::NormalUse;
 
 fn main() {
@@ -35,6 +38,7 @@ fn main() {
     let with = |shade: &Shade| Style { shade: shade.clone(), lines: Lines::NONE, ..base.clone() };
     let as_normals = |normals| Style { normals, ..with(&without_highlight) };
     let printed = style("printed-fins").expect("a style of this crate").lines;
+    let hull = HullLines { width_px: 2.0, ink: Vec3::ZERO, normals: HullNormals::Welded };
     let mut cases: Vec<Case<'_>> = [
         ("Lambert", with(&lambert)),
         ("toon", with(&base.shade)),
@@ -49,6 +53,7 @@ fn main() {
         ("the same without highlight", Style { lines: found(TexelLayout::Bits32), ..with(&without_highlight) }),
         ("Lambert + edge lines", Style { shade: lambert, ..base.clone() }),
         ("toon + edge lines", base.clone()),
+        ("toon + inverted hull", Style { lines: Lines::hull(hull), ..base.clone() }),
         ("toon + printed fins, all edges", Style { lines: printed, ..base.clone() }),
     ]
     .map(|(name, style)| Case::new(name, style))

@@ -15,6 +15,7 @@ pub use primary_hits::PrimaryHits;
 use crate::camera::PictureRays;
 use crate::edge_lines::cpu::draw_lines;
 use crate::hatch::cpu::Strokes;
+use crate::hull_lines::cpu::draw_hulls;
 use crate::image_lines::cpu::draw_ink;
 use crate::image_lines::gbuffer::texel::GBufferTexel;
 use crate::plan::Plan;
@@ -79,6 +80,9 @@ pub(crate) fn without_ink(
     let beside_picture = plan.image.as_ref().is_some_and(|image| !image.own_surfaces);
     let mut fine = context.trace(hits.as_ref(), options.threads, true, beside_picture, progress);
     let shared = (std::mem::take(&mut fine.texels), std::mem::take(&mut fine.gbuffer));
+    if let Some(hulls) = &plan.hulls {
+        draw_hulls(hulls, scene, view, context.shift_px, &mut fine);
+    }
     if let Some(printed) = &plan.printed_fins {
         draw_printed(printed, scene, view, context.shift_px, &mut fine);
     }

@@ -325,7 +325,9 @@ pub enum HarnessError {
         material: String,
     },
     /// A scene with a clipping plane, and a style with lines that do not support it.
-    #[error("style {style} draws a model's edges, which a clip plane does not cut; lines in the image are cut with it")]
+    #[error(
+        "style {style} draws a model's edges or its hull, which a clip plane does not cut; lines in the image are cut with it"
+    )]
     ClippedEdges {
         /// The name of the style.
         style: String,

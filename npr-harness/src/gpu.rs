@@ -23,6 +23,7 @@ pub use targets::Targets;
 
 use crate::edge_lines::{EdgeLineMethod, EdgeLinePlan};
 use crate::error::HarnessError;
+use crate::hull_lines::gpu::{self as hull_lines, HullLinePass, HullTargets};
 use crate::image_lines::gpu::{InkFrame, InkPasses};
 use crate::picture::Image;
 use crate::plan::Plan;
@@ -53,6 +54,7 @@ pub struct GpuRenderer<'a> {
     surface: SurfacePass,
     /// Index 0: edges are classified on the CPU; index 1: on the GPU.
     lines: [OnceCell<LinePass>; 2],
+    hulls: HullLinePass,
     printed: OnceCell<FinPass>,
     ink: InkPasses,
     shadows: ShadowPasses,
@@ -67,6 +69,7 @@ impl<'a> GpuRenderer<'a> {
             context,
             surface: SurfacePass::new(&context.device),
             lines: Default::default(),
+            hulls: Default::default(),
             printed: OnceCell::new(),
             ink: Default::default(),
             shadows: Default::default(),
@@ -102,6 +105,9 @@ impl<'a> GpuRenderer<'a> {
         }
         if let Some(shadow) = &plan.shadow {
             uploaded.casting = self.shadows.upload(self.context, &shadow.technique)?;
+        }
+        if let Some(hulls) = &plan.hulls {
+            uploaded.hulls = Some(hull_lines::upload(device, hulls)?);
         }
         if let Some(printed) = &plan.printed_fins {
             let upload = |fins: &Arc<PrintedFins>| self.printed().upload(device, fins);
@@ -165,6 +171,10 @@ impl<'a> GpuRenderer<'a> {
             samples: view.samples,
         };
         self.surface.record(&mut encoder, &frame, shadow.as_ref(), &drawn)?;
+        if let (Some(plan), Some(hulls)) = (&plan.hulls, &uploaded.hulls) {
+            let over = HullTargets { color: &canvas.color_view, depth: &canvas.depth_view, size };
+            self.hulls.record(device, &mut encoder, (plan, hulls), scene, view, &over)?;
+        }
         let scale = f64::from(view.samples);
         if let (Some(printed), Some(fins)) = (&plan.printed_fins, &uploaded.fins) {
             for object in scene.objects().iter().filter(|object| object.lines != ObjectLines::None) {

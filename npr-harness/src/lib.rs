@@ -18,7 +18,7 @@
 //! | for | modules |
 //! | --- | --- |
 //! | what is shown | [`scene`], [`camera`], [`view`], [`lights`], [`texture`], [`color`] |
-//! | how it looks | [`style`], and a module for each technique: [`shade`], [`hatch`], [`edge_lines`], [`printed_fins`], [`image_lines`], [`shadow`] |
+//! | how it looks | [`style`], and a module for each technique: [`shade`], [`hatch`], [`edge_lines`], [`printed_fins`], [`hull_lines`], [`image_lines`], [`shadow`] |
 //! | rendering | [`plan`], [`capabilities`], [`picture_limits`], [`executor`], [`gpu`], [`cpu`], [`rays`], [`picture`] |
 //! | measuring | [`truth`], what is exactly right; [`compare`]; [`check`] |
 //! | the command | [`gallery`], [`inspect`], [`suggest`], [`error`] |
@@ -56,6 +56,7 @@ pub mod gallery;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod hatch;
+pub mod hull_lines;
 pub mod image_lines;
 pub mod inspect;
 pub mod lights;

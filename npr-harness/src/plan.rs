@@ -12,6 +12,7 @@ use crate::edge_lines::EdgeLinePlan;
 use crate::edge_lines::plan::device_bytes;
 use crate::error::HarnessError;
 use crate::hatch::{HatchMapping, HatchPlan};
+use crate::hull_lines::HullPlan;
 use crate::image_lines::{ImagePlan, InkScale};
 use crate::lights::{casting_light, lights_in_world};
 use crate::picture_limits::check_picture;
@@ -79,6 +80,8 @@ pub struct Plan {
     pub blended: bool,
     /// Whether back faces are culled although their material is double-sided, because they cannot be visible.
     pub cull_back: bool,
+    /// The inverted hulls.
+    pub hulls: Option<HullPlan>,
     /// The printed fins.
     pub printed_fins: Option<PrintedFinPlan>,
     /// Lines along edges.
@@ -110,7 +113,8 @@ impl Plan {
         let view = View { samples: view.samples.max(1), ..*view };
         check_picture(style, view.size, view.samples, capabilities.is_adapter(), capabilities.memory_bytes)?;
         let lines = &style.lines;
-        if scene.clip.is_some() && (lines.edges.is_some() || lines.printed.is_some()) {
+        let of_model = lines.edges.is_some() || lines.printed.is_some() || lines.hull.is_some();
+        if scene.clip.is_some() && of_model {
             return Err(HarnessError::ClippedEdges { style: style.name.clone() });
         }
         let used = |test: &dyn Fn(&npr_mesh::Material) -> bool| scene.materials().iter().any(test);
@@ -129,6 +133,7 @@ impl Plan {
             }
             None => None,
         };
+        let hulls = lines.hull.map(|hull| HullPlan::new(scene, hull));
         let printed_fins = lines.printed.map(|printed| PrintedFinPlan::new(scene, printed));
         let cut_out = used(&|m| matches!(m.alpha_mode, AlphaMode::Mask { .. }));
         let colored = || scene.meshes().iter().any(|mesh| !mesh.model().colors.is_empty());
@@ -138,7 +143,11 @@ impl Plan {
         let mut plan = Self {
             view,
             paper: style.paper,
-            draws_surfaces: paint.is_some() || edge_lines.is_some() || printed_fins.is_some() || beside_picture,
+            draws_surfaces: paint.is_some()
+                || edge_lines.is_some()
+                || printed_fins.is_some()
+                || hulls.is_some()
+                || beside_picture,
             looks_up: textured || cut_out || image.as_ref().is_some_and(says_lines),
             cut_out,
             mesh_normals: style.mesh_normals,
@@ -150,6 +159,7 @@ impl Plan {
             left_out: Vec::new(),
             methods: Vec::new(),
             paint,
+            hulls,
             printed_fins,
             edge_lines,
             image,
@@ -301,6 +311,12 @@ impl Plan {
             "back faces",
             "the model is open, cut, or seen from inside",
             "the model is closed: they are hidden",
+        );
+        add(
+            self.hulls.is_some(),
+            "inverted hull: displaced back faces",
+            "the style asks for it",
+            "no outline is made of back faces",
         );
         add(
             self.printed_fins.is_some(),

@@ -7,6 +7,7 @@ mod schema;
 pub use presets::{style, styles};
 
 use crate::error::HarnessError;
+use crate::hull_lines::HullLines;
 use crate::image_lines::ImageInk;
 use crate::lights::StyleLight;
 use crate::printed_fins::PrintedLines;
@@ -49,6 +50,8 @@ pub struct Style {
 /// The lines of a style. Any kinds can be combined; they are drawn over each other in this order.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Lines {
+    /// Inverted hulls: displaced back faces in ink, hidden by surfaces and hiding what is drawn after them.
+    pub hull: Option<HullLines>,
     /// Fins as printed in Card & Mitchell 2002, for comparison.
     pub printed: Option<PrintedLines>,
     /// Edge lines: screen-aligned, antialiased, hidden where their centreline is hidden.
@@ -59,7 +62,7 @@ pub struct Lines {
 
 impl Lines {
     /// No lines.
-    pub const NONE: Self = Self { printed: None, edges: None, image: None };
+    pub const NONE: Self = Self { hull: None, printed: None, edges: None, image: None };
 
     /// Only edge lines.
     pub fn edges(style: LineStyle) -> Self {
@@ -69,6 +72,11 @@ impl Lines {
     /// Only image-space lines.
     pub fn image(ink: ImageInk) -> Self {
         Self { image: Some(ink), ..Self::NONE }
+    }
+
+    /// Only inverted hulls.
+    pub fn hull(style: HullLines) -> Self {
+        Self { hull: Some(style), ..Self::NONE }
     }
 
     /// Only printed fins.
@@ -93,7 +101,8 @@ impl Style {
         }
         // The shade that supports the most lights.
         Painter::new(self.lights.iter().map(|light| light.light).collect())?;
-        let Lines { printed, edges, image } = &self.lines;
+        let Lines { hull, printed, edges, image } = &self.lines;
+        hull.as_ref().map_or(Ok(()), HullLines::validate)?;
         printed.as_ref().map_or(Ok(()), PrintedLines::validate)?;
         edges.as_ref().map_or(Ok(()), crate::edge_lines::plan::validate)?;
         image.as_ref().map_or(Ok(()), ImageInk::validate)?;

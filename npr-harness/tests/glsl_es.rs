@@ -16,6 +16,8 @@ const LINE_PASS: &str = include_str!("../../npr-outline/src/line_pass.wgsl");
 const NORMAL_FORMAT: &str = include_str!("../../npr-outline/src/normal_format.wgsl");
 const FIN_PRINTED: &str = include_str!("../../npr-outline/src/fin_printed.wgsl");
 const FIN_PASS: &str = include_str!("../../npr-outline/src/fin_pass.wgsl");
+const HULL: &str = include_str!("../../npr-outline/src/hull.wgsl");
+const HULL_PASS: &str = include_str!("../../npr-outline/src/hull_pass.wgsl");
 const SHADOW_VOLUME: &str = include_str!("../../npr-outline/src/shadow_volume.wgsl");
 const SHADOW_PASS: &str = include_str!("../../npr-outline/src/shadow_pass.wgsl");
 const SHADOW_MASK: &str = include_str!("../../npr-outline/src/shadow_mask.wgsl");
@@ -94,6 +96,7 @@ fn every_shader_translates() {
         ("shadow map", SHADOW_MAP.into()),
         ("lines", [LINE, LINE_INK, LINE_PASS].concat()),
         ("printed fins", [NORMAL_FORMAT, FIN_PRINTED, FIN_PASS].concat()),
+        ("inverted hulls", [HULL, HULL_PASS].concat()),
         ("shadow volumes", [SHADOW_VOLUME, SHADOW_PASS].concat()),
         ("shadow mask", SHADOW_MASK.into()),
         ("disc", ink(DISC)),

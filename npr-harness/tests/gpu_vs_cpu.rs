@@ -12,6 +12,7 @@ use npr_harness::compare::compare;
 use npr_harness::cpu::PrimaryHits;
 use npr_harness::executor::Executor;
 use npr_harness::gallery::still_life_camera;
+use npr_harness::hull_lines::HullLines;
 use npr_harness::image_lines::ImageInk;
 use npr_harness::picture::Image;
 use npr_harness::printed_fins::PrintedLines;
@@ -196,9 +197,10 @@ fn broken_styles(style: &Style) -> Vec<Style> {
         other.tones[0] *= 1.03;
         broken.push(Style { shade: Shade::Toon(other), ..style.clone() });
     }
-    let Lines { printed, edges, image } = style.lines;
+    let Lines { hull, printed, edges, image } = style.lines;
     let lines = Lines {
         edges: edges.map(|look| LineStyle { width_px: look.width_px.map(|w| w + 0.05), ..look }),
+        hull: hull.map(|hull| HullLines { width_px: hull.width_px + 0.25, ..hull }),
         printed: printed.map(|fins| PrintedLines { width_px: fins.width_px + 0.25, ..fins }),
         image: image.map(|ink| ImageInk {
             filter: FusedFilter { normal_cos: Some(0.7), ..ink.filter },

@@ -5,6 +5,7 @@ mod common;
 use common::Folder;
 use glam::{UVec2, Vec3};
 use npr_harness::error::HarnessError;
+use npr_harness::hull_lines::HullLines;
 use npr_harness::image_lines::ImageInk;
 use npr_harness::lights::{LightFrame, StyleLight};
 use npr_harness::picture::Image;
@@ -17,6 +18,7 @@ use npr_hatch::{TamParameters, Thresholds, draw, store};
 use npr_imagespace::composite::Composite;
 use npr_imagespace::morphology::disc::Disc;
 use npr_outline::LineKind;
+use npr_outline::hull::HullNormals;
 use npr_toon::row::{RampRow, TexelFilter};
 use npr_toon::source::Light;
 use npr_toon::table::RampTable;
@@ -62,6 +64,24 @@ fn every_style_survives_being_written_and_read() {
         lines: Lines::image(ImageInk { shadows: apart, ..ImageInk::default() }),
         ..named("normals")
     });
+    for normals in [HullNormals::Welded, HullNormals::Vertices] {
+        let hull = HullLines { width_px: 3.5, ink: Vec3::new(0.25, 0.5, 0.75), normals };
+        all.push(Style { lines: Lines { hull: Some(hull), ..named("cartoon").lines }, ..named("cartoon") });
+    }
+    for text in [
+        "[lines.image]\ntaps = [[3, -1], [0, 2]]\n[lines.image.gbuffer]\ntarget = \"separate\"\nnormal-format = \
+         \"octahedral-5\"\ndepth-format = \"packed-2x8\"\ndepth-test = \"step\"\nfar = 3.5\nbackground = \"plus-z\"\n",
+        "[shadow]\n[lines.image]\nshadows = \"negated\"\ndepth-step = 0.25\nnormals = false\n[lines.image.gbuffer]\n\
+         target = \"separate\"\nnegated-depth = true\ndepth-format = \"half\"\ndepth-test = \"sum-printed\"\nregion-test = \
+         \"color-sums\"\nshow = \"regions\"\n",
+        "[lines.image]\nsoftness = 0.5\n[lines.image.gbuffer]\ntarget = \"rgba8\"\ninker = { form = \"printed\", \
+         normal-fall = 0.125 }\nstep = [{ kind = \"open\", kernel = \"square\", times = 3 }, { kind = \"soft-diagonal\", \
+         threshold = 0.75 }, { kind = \"close\" }, { kind = \"soft-diagonal-printed\" }]\n",
+        "normal-space = \"mesh\"\n[lines.printed]\ndepth = \"eye\"\nreversed = true\nnormals = \"octahedral-8\"\n",
+    ] {
+        let style = parse(text).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        all.push(Style { name: "one".into(), ..style });
+    }
     for style in all {
         let text = style.to_toml().expect("every style has a form");
         assert_eq!(parse(&text).unwrap_or_else(|e| panic!("{e}\n{text}")), style, "{text}");
@@ -101,6 +121,7 @@ fn an_unknown_key_is_named() {
         "[shade.hatch.map]\n",
         "[lines.edges]\nsilhouette-px = 1\nboundary-px = 1\ncrease-px = 1\nink = [0, 0, 0]\n",
         "[lines.printed]\nwidth-px = 1\nink = [0, 0, 0]\n",
+        "[lines.hull]\nwidth-px = 1\nink = [0, 0, 0]\nnormals = \"welded\"\n",
         "[shadow]\n",
         "[lines.image]\n",
         "[lines.image.shadows.separate]\ncomposite = \"multiply\"\n",
@@ -171,6 +192,8 @@ fn lines_with_one_key_have_defaults_for_the_rest() {
     let red = edges("[lines.edges]\nink = \"#ff0000\"\n");
     assert_eq!((red.width_px, red.ink), (usual.width_px, [1.0, 0.0, 0.0, 1.0]));
     assert_eq!(edges("[lines.edges]\nopacity = 0.5\n").ink[3], 0.5);
+    let hull = HullLines { width_px: 2.0, ink: Vec3::ZERO, normals: HullNormals::Welded };
+    assert_eq!(parse("[lines.hull]\n").expect("a style").lines, Lines::hull(hull));
     assert_eq!(parse("[lines.printed]\n").expect("a style").lines, named("printed-fins").lines);
     let style = parse("[lines.image.composite.over]\nopacity = 0.5\n").expect("a style");
     let ink = style.lines.image.expect("lines in the image");
@@ -179,9 +202,9 @@ fn lines_with_one_key_have_defaults_for_the_rest() {
 
 #[test]
 fn lines_of_several_kinds_stand_in_one_style() {
-    let style = parse("[lines.edges]\n[lines.image]\n[lines.printed]\n").expect("a style");
-    let Lines { printed, edges, image } = style.lines;
-    assert!(printed.is_some() && edges.is_some() && image.is_some());
+    let style = parse("[lines.edges]\n[lines.image]\n[lines.printed]\n[lines.hull]\n").expect("a style");
+    let Lines { hull, printed, edges, image } = style.lines;
+    assert!(hull.is_some() && printed.is_some() && edges.is_some() && image.is_some());
     assert!(message("[lines.fins]\n").contains("unknown field `fins`"), "{}", message("[lines.fins]\n"));
 }
 
@@ -206,6 +229,9 @@ fn two_kinds_of_one_thing_are_named_with_their_place() {
         assert!(matches!(parse(text), Err(HarnessError::TwoKinds { .. })), "{text}");
     }
 }
+
+const RGBA8: &str = "[lines.image.gbuffer]\ntarget = \"rgba8\"\n";
+const SEPARATE: &str = "[lines.image.gbuffer]\ntarget = \"separate\"\n";
 
 #[test]
 fn what_is_wrong_is_said() {
@@ -249,7 +275,36 @@ fn what_is_wrong_is_said() {
         ("[shadow]\nside = 512", "only a shadow map has a side"),
         ("[shadow]\nmethod = \"map\"\nside = 8", "the side of a shadow map of 8"),
         ("[shadow]\nterminator = 1", "a shadow's terminator of 1"),
+        ("[lines.hull]\nwidth-px = 257", "a hull's width of 257"),
+        ("[lines.hull]\nwidth-px = -1", "0..=256 px"),
+        ("[lines.hull]\nwidth-px = nan", "a hull's width of"),
+        ("[lines.hull]\nink = [0, 2, 0]", "a component of the hull's ink of 2"),
+        ("[lines.hull]\nnormals = \"faces\"", "unknown variant `faces`, expected `welded` or `vertices`"),
         ("[lines.image]\nshadows = \"lines\"", "draws lines around shadows, and has none"),
+        ("normal-space = \"eye\"", "unknown variant `eye`"),
+        ("[lines.printed]\nnormals = \"int\"", "unknown variant `int`"),
+        ("[lines.image]\ntaps = [[0, 0], [1, 1]]", "a step of (0, 0) px to a tap"),
+        ("[lines.image]\ntaps = [[1, 1], [65, 0]]", "a step of (65, 0) px to a tap"),
+        ("[lines.image]\ntaps = \"square\"", "\"diagonal\", \"cross\", or two steps [[x, y], [x, y]] in px"),
+        ("[lines.image.gbuffer]\n", "missing field `target`"),
+        (&format!("{RGBA8}depth-format = \"float\""), "formats and region tests of a G-buffer need target"),
+        (&format!("{RGBA8}depth-test = \"bend\""), "an RGBA8 target needs a depth test"),
+        (&format!("{RGBA8}inker = {{}}\ndepth-test = \"sum\""), "the inker has a depth test of its own"),
+        (&format!("{RGBA8}inker = {{ normal-cos = 2 }}"), "the inker's cosine of 2"),
+        (&format!("{RGBA8}co-issued = true"), "needs an RGBA8 target without the inker, and composite.alpha-tested"),
+        (&format!("{RGBA8}far = 0.5"), "a G-buffer's far plane of 0.5"),
+        (&format!("{RGBA8}step = [{{ kind = \"erode\", times = 65 }}]"), "the repetitions of a step of 65"),
+        (&format!("{RGBA8}step = [{{ kind = \"erode\", threshold = 1 }}]"), "only smoothed diagonal steps"),
+        (&format!("{RGBA8}step = [{{ kind = \"soft-cross\", kernel = \"cross\" }}]"), "a kernel of its own"),
+        (&format!("{RGBA8}step = [{}]", "{ kind = \"erode\" },".repeat(5)), "5 steps of morphology: at most 4"),
+        (&format!("[lines.image]\nsoftness = 0.1\n{RGBA8}"), "lines on bytes are hard"),
+        (&format!("[lines.image]\ndepth-plain = true\n{RGBA8}"), "`depth-plain` cannot be there beside `gbuffer`"),
+        (&format!("[lines.image]\nlayout = \"32-bit\"\n{RGBA8}"), "`layout` cannot be there beside `gbuffer`"),
+        (&format!("[shadow]\n[lines.image]\nshadows = \"lines\"\n{RGBA8}"), "lines over it needs shadows"),
+        (&format!("[lines.image]\nscale = \"half\"\n{RGBA8}show = \"depth\""), "to show it needs scale"),
+        (&format!("{SEPARATE}inker = {{}}"), "the inker needs target = \"rgba8\""),
+        (&format!("{SEPARATE}negated-depth = true"), "negated depth needs negated normals"),
+        (&format!("[shadow]\n[lines.image]\nshadows = \"negated\"\n{SEPARATE}negated-depth = true"), "with a sign"),
         ("= 3", "mine.toml:1:1"),
     ];
     for (text, said) in cases {

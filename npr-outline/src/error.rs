@@ -24,6 +24,14 @@ pub enum OutlineError {
         /// The device's limit, bytes.
         limit: u64,
     },
+    /// More vertices or faces of a hull than fit into one buffer of the device.
+    #[error("{bytes} bytes of a hull's vertices or faces exceed the device's limit of {limit} for one buffer")]
+    HullTooLarge {
+        /// The bytes that are needed.
+        bytes: u64,
+        /// The device's limit, bytes.
+        limit: u64,
+    },
     /// A colour format whose stores encode sRGB, in which coverage would blend in linear light.
     #[cfg(feature = "wgpu")]
     #[error("a colour target of format {format:?}: stores must not encode sRGB")]

@@ -25,6 +25,9 @@
 //! [`fin_printed`] and `fin_pass` are the fins of 2002 as printed, with all edges of a model in a vertex buffer, for
 //! comparison. [`normal_format`] has their face normals in f32, i16, i8 and octahedral records.
 //!
+//! [`hull`] and `hull_pass` are the inverted hull, the outline that games use most: displaced back faces in ink, without
+//! edges. [`raster`] draws its triangles and the fins' on the CPU.
+//!
 //! [`shadow_volume`] makes shadow volumes from the same edges, `shadow_pass` counts them in a stencil buffer, and
 //! `shadow_mask` converts the counts to a texture that every device can read in a shader.
 //!
@@ -36,6 +39,8 @@
 //! - D. Card, J. L. Mitchell: *Non-Photorealistic Rendering with Pixel and Vertex Shaders*, in *Direct3D ShaderX*,
 //!   2002, "Rendering Outlines" and listing 1. Its contradictions are listed in [`fin_printed`], the corrections
 //!   are in [`contour`] and [`segment`].
+//! - R. Raskar, M. Cohen: *Image Precision Silhouette Edges*, I3D 1999, and R. Raskar: *Hardware Support for
+//!   Non-photorealistic Rendering*, Graphics Hardware 2001: back faces, extended ([`hull`]).
 #![warn(missing_docs)]
 
 pub mod contour;
@@ -45,10 +50,14 @@ pub mod filled_buffer;
 #[cfg(feature = "wgpu")]
 pub mod fin_pass;
 pub mod fin_printed;
+pub mod hull;
+#[cfg(feature = "wgpu")]
+pub mod hull_pass;
 #[cfg(feature = "wgpu")]
 pub mod line_pass;
 pub mod line_style;
 pub mod normal_format;
+pub mod raster;
 pub mod segment;
 #[cfg(feature = "wgpu")]
 mod shader;

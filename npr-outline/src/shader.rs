@@ -34,6 +34,7 @@ mod tests {
                 &["contour.wgsl", "segment.wgsl", "edge_record.wgsl", "compaction.wgsl"],
             ),
             (crate::fin_pass::wgsl(), &["normal_format.wgsl", "fin_printed.wgsl", "fin_pass.wgsl"]),
+            (crate::hull_pass::wgsl(), &["hull.wgsl", "hull_pass.wgsl"]),
             (crate::shadow_pass::wgsl(), &["shadow_volume.wgsl", "shadow_pass.wgsl"]),
         ] {
             let (head, rest) = source.split_once('\n').unwrap();

@@ -6,6 +6,8 @@
 
 #[path = "gpu/device.rs"]
 mod device;
+#[path = "gpu/hulls.rs"]
+mod hulls;
 #[path = "gpu/refusals.rs"]
 mod refusals;
 

@@ -16,6 +16,8 @@ const COMPACTION: &str = include_str!("../src/compaction.wgsl");
 const NORMAL_FORMAT: &str = include_str!("../src/normal_format.wgsl");
 const FIN_PRINTED: &str = include_str!("../src/fin_printed.wgsl");
 const FIN_PASS: &str = include_str!("../src/fin_pass.wgsl");
+const HULL: &str = include_str!("../src/hull.wgsl");
+const HULL_PASS: &str = include_str!("../src/hull_pass.wgsl");
 
 const SHADOW_VOLUME: &str = include_str!("../src/shadow_volume.wgsl");
 const SHADOW_PASS: &str = include_str!("../src/shadow_pass.wgsl");
@@ -43,6 +45,7 @@ fn modules_validate_as_the_passes_use_them() {
     );
     assert_eq!(entry_points(&[CONTOUR, LINE, EDGE_RECORD, COMPACTION]), ["compact"]);
     assert_eq!(entry_points(&[NORMAL_FORMAT, FIN_PRINTED, FIN_PASS]), ["vs_fin", "vs_fin_oct", "fs_fin"]);
+    assert_eq!(entry_points(&[HULL, HULL_PASS]), ["vs_hull", "fs_hull"]);
     assert_eq!(entry_points(&[SHADOW_VOLUME, SHADOW_PASS]), ["vs_side", "vs_cap", "vs_placed"]);
     assert_eq!(entry_points(&[SHADOW_MASK]), ["vs_shadow_mask", "fs_in_shadow", "fs_lit"]);
 }
@@ -50,12 +53,13 @@ fn modules_validate_as_the_passes_use_them() {
 #[test]
 fn libraries_have_no_bindings_no_entry_points_and_one_prefix_each() {
     // Together, too: no name stands in two of them.
-    validated(&[CONTOUR, LINE, NORMAL_FORMAT, FIN_PRINTED, SHADOW_VOLUME]);
+    validated(&[CONTOUR, LINE, NORMAL_FORMAT, FIN_PRINTED, HULL, SHADOW_VOLUME]);
     let libraries = [
         (CONTOUR, "outline_"),
         (LINE, "outline_"),
         (NORMAL_FORMAT, "normal_"),
         (FIN_PRINTED, "fin_printed_"),
+        (HULL, "hull_"),
         (SHADOW_VOLUME, "outline_"),
     ];
     for (library, prefix) in libraries {
@@ -74,6 +78,7 @@ const TWINS: Twins<'_> = Twins {
         ("LineView", "OutlineView"),
         ("ScreenSegment", "OutlineSegment"),
         ("FinView", "FinPrintedView"),
+        ("HullView", "HullView"),
     ],
     members: &[
         ("EdgePlanes", &[("plane0", "vec4<f32>"), ("plane1", "vec4<f32>")]),
@@ -101,10 +106,11 @@ fn functions_have_the_signatures_of_the_rust_ones() {
         ("segment.wgsl", "segment.rs"),
         ("normal_format.wgsl", "normal_format.rs"),
         ("fin_printed.wgsl", "fin_printed.rs"),
+        ("hull.wgsl", "hull.rs"),
         ("shadow_volume.wgsl", "shadow_volume.rs"),
     ];
     let source = |file: &str| std::fs::read_to_string(format!("{}/src/{file}", env!("CARGO_MANIFEST_DIR"))).unwrap();
-    let module = validated(&[CONTOUR, LINE, NORMAL_FORMAT, FIN_PRINTED, SHADOW_VOLUME]);
+    let module = validated(&[CONTOUR, LINE, NORMAL_FORMAT, FIN_PRINTED, HULL, SHADOW_VOLUME]);
     let differences: Vec<_> =
         (files.iter()).flat_map(|(wgsl, rust)| TWINS.differences(&module, &source(wgsl), &source(rust))).collect();
     assert!(differences.is_empty(), "{}", differences.join("\n"));

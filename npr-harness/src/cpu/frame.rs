@@ -10,8 +10,8 @@ use glam::{DVec2, DVec4};
 pub struct CpuOptions {
     /// The offset of the surface samples from the pixel centres, px; pixels whose colour changes with it are those
     /// where the reference is sensitive to sampling. Lines do not move, since their coverage is analytic, but their
-    /// visibility is tested against the moved samples. The printed fins, which have no coverage, are sampled like
-    /// surfaces.
+    /// visibility is tested against the moved samples. Inverted hulls and printed fins, which have no coverage, are
+    /// sampled like surfaces.
     pub shift_px: DVec2,
     /// Shrinks faces by this distance at mesh boundaries, px. The surface that then shows between two adjacent faces
     /// that are not connected may also show on a GPU, which rounds the corners.

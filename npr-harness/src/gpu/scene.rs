@@ -15,6 +15,7 @@ use npr_hatch::upload::TamChannels;
 use npr_mesh::{AlphaMode, Model};
 use npr_outline::ContourEdges;
 use npr_outline::fin_pass::FinsOnDevice;
+use npr_outline::hull_pass::HullOnDevice;
 use npr_outline::line_pass::EdgesOnDevice;
 use std::cell::RefCell;
 use std::collections::{HashMap, HashSet};
@@ -61,6 +62,8 @@ pub struct GpuScene {
     pub(super) edges: Option<RefCell<Vec<ObjectEdges>>>,
     /// The version of the scene's materials that was uploaded.
     pub(super) materials_version: u64,
+    /// Per mesh: its hull, if inverted hulls are drawn.
+    pub(super) hulls: Option<Vec<HullOnDevice>>,
     /// Per mesh: fins for all edges, if printed fins are drawn.
     pub(super) fins: Option<Vec<FinsOnDevice>>,
     /// The shadow casters, if shadow volumes are drawn.
@@ -162,6 +165,7 @@ impl GpuScene {
             most_draws: if context.is_software() { SOFTWARE_DRAWS } else { usize::MAX },
             edges: None,
             materials_version: scene.materials_version(),
+            hulls: None,
             fins: None,
             casting: None,
             hatch,

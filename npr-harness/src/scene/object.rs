@@ -162,7 +162,7 @@ impl Object {
     }
 
     /// The inverse transpose of the transform's linear part.
-    fn normal_matrix(&self) -> DMat3 {
+    pub(crate) fn normal_matrix(&self) -> DMat3 {
         self.placement.mesh_from_scene.matrix3.transpose()
     }
 

@@ -3,6 +3,7 @@
 use super::{Lines, Style};
 use crate::edge_lines::schema::EdgesTable;
 use crate::error::HarnessError;
+use crate::hull_lines::schema::HullTable;
 use crate::image_lines::schema::ImageTable;
 use crate::lights::{LightFrame, StyleLight};
 use crate::printed_fins::schema::PrintedTable;
@@ -166,6 +167,8 @@ impl LightTable {
 #[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
 struct LinesTable {
     #[serde(skip_serializing_if = "Option::is_none")]
+    hull: Option<HullTable>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     printed: Option<PrintedTable>,
     #[serde(skip_serializing_if = "Option::is_none")]
     edges: Option<EdgesTable>,
@@ -175,11 +178,12 @@ struct LinesTable {
 
 impl LinesTable {
     fn is_empty(&self) -> bool {
-        self.printed.is_none() && self.edges.is_none() && self.image.is_none()
+        self.hull.is_none() && self.printed.is_none() && self.edges.is_none() && self.image.is_none()
     }
 
     fn new(lines: &Lines) -> Self {
         Self {
+            hull: lines.hull.as_ref().map(HullTable::new),
             printed: lines.printed.as_ref().map(PrintedTable::new),
             edges: lines.edges.as_ref().map(EdgesTable::new),
             image: lines.image.as_ref().map(ImageTable::new),
@@ -188,6 +192,7 @@ impl LinesTable {
 
     fn lines(self) -> Result<Lines, String> {
         Ok(Lines {
+            hull: self.hull.map(HullTable::style),
             printed: self.printed.map(PrintedTable::style),
             edges: self.edges.map(EdgesTable::style),
             image: self.image.map(ImageTable::ink).transpose()?,

@@ -4,12 +4,14 @@
 use crate::device::{COLOR_FORMAT, Gpu, gpu};
 use crate::line_view;
 use glam::dcamera::rh::proj::directx as proj;
-use glam::{DAffine3, DMat4, DVec3, DVec4};
+use glam::{DAffine3, DMat3, DMat4, DVec3, DVec4};
 use npr_mesh::edges::{EdgeOptions, find};
 use npr_mesh::{Model, embedded};
 use npr_outline::OutlineError;
 use npr_outline::fin_pass::FinPass;
 use npr_outline::fin_printed::{FinDepth, FinView, printed_fins};
+use npr_outline::hull::{Hull, HullNormals, HullView};
+use npr_outline::hull_pass::{HullOnDevice, HullPass, PlacedHull};
 use npr_outline::line_pass::{COVERAGE_FORMAT, LineGroup, LinePass, LineSource, LineTargets};
 use npr_outline::line_style::LineStyle;
 use npr_outline::normal_format::NormalFormat;
@@ -71,16 +73,17 @@ fn color_formats_that_encode_srgb_and_that_are_no_floats_are_refused() {
         [
             LinePass::new(&gpu.device, format, false).map(|_| ()),
             FinPass::new(&gpu.device, format, NormalFormat::F32).map(|_| ()),
+            HullPass::new(&gpu.device, format).map(|_| ()),
         ]
     };
     for format in [TextureFormat::Rgba8UnormSrgb, TextureFormat::Bgra8UnormSrgb] {
-        assert_eq!(made(format), [Err(OutlineError::SrgbTarget { format }); 2]);
+        assert_eq!(made(format), [Err(OutlineError::SrgbTarget { format }); 3]);
     }
     for format in [TextureFormat::Rgba8Uint, TextureFormat::Depth32Float] {
         assert!(made(format).iter().all(|made| matches!(made, Err(OutlineError::ViewFormat { .. }))));
     }
     for format in [TextureFormat::Rgba8Unorm, TextureFormat::Bgra8Unorm, TextureFormat::Rgba16Float] {
-        assert_eq!(made(format), [Ok(()); 2]);
+        assert_eq!(made(format), [Ok(()); 3]);
     }
 }
 
@@ -163,6 +166,61 @@ fn the_fin_pass_refuses_other_textures_and_matrices() {
     let views = formats.map(|format| texture(gpu, format, SIZE, 1));
     let outcome = draw(proj::perspective(1.0, 1.3, 0.1, 100.0), &views[0], &views[1]);
     assert!(matches!(outcome, Err(OutlineError::StandardDepth { .. })), "{outcome:?}");
+}
+
+#[test]
+fn the_hull_pass_refuses_other_textures_widths_and_matrices() {
+    let Some(gpu) = gpu() else { return };
+    let pass = HullPass::new(&gpu.device, COLOR_FORMAT).unwrap();
+    let model = embedded::cube();
+    let hull = Hull::new(&model, &edges_of(&model), HullNormals::Welded);
+    let hull = HullOnDevice::new(&gpu.device, &hull).unwrap();
+    let lines = line_view(SIZE, DMat4::IDENTITY);
+    let view = HullView {
+        clip_from_world: lines.clip_from_world,
+        view_from_normal: DMat3::IDENTITY,
+        viewport_px: lines.viewport_px,
+        depth_per_px: lines.depth_per_px,
+        width_px: 2.0,
+        mirrored: false,
+    };
+    let draw = |view: HullView, color: &wgpu::TextureView, depth: &wgpu::TextureView| {
+        let placed = [PlacedHull { hull: &hull, view }];
+        recorded(gpu, |encoder| pass.record(&gpu.device, encoder, &placed, [0.0; 4], color, depth))
+    };
+    let formats = [COLOR_FORMAT, TextureFormat::Depth32Float];
+    for i in 0..2 {
+        for (format, size, samples, is_right) in others(formats[i]) {
+            let mut views = formats.map(|format| texture(gpu, format, SIZE, 1));
+            views[i] = texture(gpu, format, size, samples);
+            let outcome = draw(view, &views[0], &views[1]);
+            assert_eq!(outcome.is_ok(), is_right, "texture {i}: {outcome:?}");
+            assert!(is_right || is_refused(&outcome, format, size, samples), "texture {i}: {outcome:?}");
+        }
+    }
+    let [color, depth] = formats.map(|format| texture(gpu, format, SIZE, 1));
+    for (width_px, is_right) in [(0.0, true), (1e3, true), (-1.0, false), (f64::NAN, false), (f64::INFINITY, false)] {
+        let outcome = draw(HullView { width_px, ..view }, &color, &depth);
+        assert_eq!(outcome.is_ok(), is_right, "{outcome:?}");
+        assert!(is_right || matches!(outcome, Err(OutlineError::Width { .. })), "{outcome:?}");
+    }
+    let other = line_view(OTHER_SIZE, DMat4::IDENTITY).viewport_px;
+    let outcome = draw(HullView { viewport_px: other, ..view }, &color, &depth);
+    assert!(matches!(outcome, Err(OutlineError::ViewSize { .. })), "{outcome:?}");
+    let mirror = DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0));
+    for (clip_from_world, is_right) in [
+        (proj::perspective(1.0, 1.3, 100.0, 0.1), true),
+        (proj::perspective(1.0, 1.3, 0.1, 100.0), false),
+        (proj::orthographic(-1.0, 1.0, -1.0, 1.0, 100.0, 0.1), true),
+        (proj::orthographic(-1.0, 1.0, -1.0, 1.0, 0.1, 100.0), false),
+    ] {
+        for (mirrored, mirror) in [(false, DMat4::IDENTITY), (true, mirror)] {
+            let view = HullView { clip_from_world: clip_from_world * mirror, mirrored, ..view };
+            let outcome = draw(view, &color, &depth);
+            assert_eq!(outcome.is_ok(), is_right, "{mirrored}: {outcome:?}");
+            assert!(is_right || matches!(outcome, Err(OutlineError::StandardDepth { .. })), "{outcome:?}");
+        }
+    }
 }
 
 #[test]
