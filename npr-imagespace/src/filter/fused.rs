@@ -143,8 +143,9 @@ impl FilterUniform {
     /// Checks the filter and brings it into the integers of texels with this layout and this code of depth.
     ///
     /// # Errors
-    /// If a threshold is out of its range.
+    /// If a threshold is out of its range; [`ImageSpaceError::TapStep`].
     pub fn new(filter: &FusedFilter, layout: TexelLayout, code: &DepthCode) -> Result<Self, ImageSpaceError> {
+        filter.taps.validate()?;
         let cos = filter.normal_cos.unwrap_or(0.0);
         if !(0.0..=1.0).contains(&cos) {
             return Err(ImageSpaceError::NormalThreshold { cos });
