@@ -7,11 +7,13 @@ mod documents;
 mod errata;
 mod page;
 mod scenes;
+mod variants;
 
 pub use documents::figures;
 pub use errata::{Erratum, errata};
 pub use page::write;
 pub use scenes::Setting;
+pub use variants::variants;
 
 use crate::error::HarnessError;
 use crate::executor::{Backend, CpuReason, Executor, Picture, Rendered, Work};
@@ -98,9 +100,9 @@ impl Figure {
     }
 }
 
-/// The figures of the documents and of the errata.
+/// The figures of the documents, of their other systems, and of the errata.
 pub fn all() -> Vec<Figure> {
-    figures().into_iter().chain(errata().into_iter().map(|erratum| erratum.figure)).collect()
+    figures().into_iter().chain(variants()).chain(errata().into_iter().map(|erratum| erratum.figure)).collect()
 }
 
 /// The work for all figures.

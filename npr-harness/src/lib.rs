@@ -72,6 +72,7 @@ pub mod shade;
 pub mod shadow;
 pub mod style;
 pub mod suggest;
+pub mod systems;
 pub mod texture;
 pub mod truth;
 pub mod view;

@@ -3,9 +3,10 @@
 use crate::camera::{Camera, Projection};
 use crate::gallery::{painted_camera, painted_scene, still_life_camera};
 use crate::scene::Scene;
-use glam::{DAffine3, DVec3, Mat4, Vec3, Vec4};
+use glam::{DAffine3, DVec3, DVec4, Mat4, Vec2, Vec3, Vec4};
 use npr_imagespace::artist::LineKind;
-use npr_mesh::{Material, Model, embedded};
+use npr_mesh::pn_triangles::tessellate;
+use npr_mesh::{AlphaMode, Material, Model, Texture, Wrap, embedded};
 
 /// A scene and its view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -28,11 +29,17 @@ pub enum Setting {
     TwoTeapots,
     /// Round cans of long narrow faces, close to the viewer.
     Cans,
+    /// A coarse ball, rounded as PN triangles, that passes through a cube.
+    Crossing,
+    /// The same, cut by a plane.
+    Clipped,
+    /// Alpha-tested cards with round holes, before a ball.
+    CutOut,
 }
 
 impl Setting {
     /// All settings.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 12] = [
         Self::StillLife,
         Self::Objects,
         Self::NearPlane,
@@ -42,6 +49,9 @@ impl Setting {
         Self::Tiles,
         Self::TwoTeapots,
         Self::Cans,
+        Self::Crossing,
+        Self::Clipped,
+        Self::CutOut,
     ];
 
     /// The scene.
@@ -55,6 +65,13 @@ impl Setting {
             Self::Tiles => tiles(),
             Self::TwoTeapots => two_teapots(),
             Self::Cans => Scene::new(cans()),
+            Self::Crossing => Scene::new(crossing()),
+            Self::Clipped => {
+                let mut scene = Scene::new(crossing());
+                scene.clip = Some(scene.plane_here(DVec4::new(-0.5, 0.0, -1.0, 1.1)));
+                scene
+            }
+            Self::CutOut => Scene::new(cut_out()),
         }
     }
 
@@ -75,6 +92,8 @@ impl Setting {
             Self::Coarse => looking(DVec3::new(0.0, 2.2, 9.0), DVec3::new(0.0, 1.0, 0.0), 22.0),
             Self::Tiles => looking(DVec3::new(0.0, 0.0, 10.0), DVec3::ZERO, 34.0),
             Self::TwoTeapots => looking(DVec3::new(0.0, 4.5, 15.0), DVec3::new(0.0, 1.6, 0.0), 31.0),
+            Self::Crossing | Self::Clipped => looking(DVec3::new(2.5, 3.0, 7.5), DVec3::new(0.0, 0.1, 0.0), 26.0),
+            Self::CutOut => looking(DVec3::new(0.5, 1.5, 8.0), DVec3::new(0.0, 0.1, 0.0), 26.0),
             Self::Cans => looking(DVec3::new(0.0, 1.4, 3.4), DVec3::new(0.0, 0.9, 0.0), 50.0),
         }
     }
@@ -172,4 +191,57 @@ fn cans() -> Model {
         model.append(&embedded::placed(embedded::cylinder(segments), place, material(0.6, 0.6, 0.6)));
     }
     model
+}
+
+fn crossing() -> Model {
+    let mut model = Model::default();
+    let (blue, yellow) = (material(0.2, 0.4, 0.6), material(0.7, 0.5, 0.1));
+    model.append(&embedded::placed(embedded::cube(), at(-0.5, 0.0, 0.0) * Mat4::from_rotation_y(0.4), blue));
+    let round = tessellate(&embedded::sphere(10), 6).unwrap_or_default();
+    model.append(&embedded::placed(round, at(0.8, 0.3, 0.4) * Mat4::from_scale(Vec3::splat(1.1)), yellow));
+    model
+}
+
+/// Two crossed cards of leaves that alpha cuts out, and a ball behind them.
+fn cut_out() -> Model {
+    const SIDE: u32 = 128;
+    let mut model = Model::default();
+    model.append(&embedded::placed(embedded::sphere(48), at(0.6, 0.0, -1.2), material(0.7, 0.5, 0.1)));
+    for (x, turn) in [(-0.9, 0.35f32), (1.1, -0.5)] {
+        let corners = [Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y];
+        let place = at(x, 0.0, 0.4) * Mat4::from_rotation_y(turn);
+        let card = Model {
+            positions: corners
+                .iter()
+                .map(|c| place.transform_point3(Vec3::new(c.x * 2.0 - 1.0, c.y * 2.0 - 1.0, 0.0)))
+                .collect(),
+            normals: vec![place.transform_vector3(Vec3::Z); 4],
+            uvs: corners.to_vec(),
+            faces: vec![[0, 1, 2], [0, 2, 3]],
+            face_material: vec![0; 2],
+            face_polygon: vec![0; 2],
+            materials: vec![Material {
+                texture: Some(0),
+                alpha_mode: AlphaMode::Mask { cutoff: 0.5 },
+                double_sided: true,
+                ..Material::default()
+            }],
+            textures: vec![leaves(SIDE)],
+            ..Model::default()
+        };
+        model.append(&card);
+    }
+    model
+}
+
+/// Five petals: opaque inside, transparent outside.
+fn leaves(side: u32) -> Texture {
+    let texel = |x: u32, y: u32| {
+        let at = (Vec2::new(x as f32, y as f32) + 0.5) / side as f32 * 2.0 - 1.0;
+        let petal = 0.62 + 0.3 * (5.0 * at.y.atan2(at.x)).cos();
+        let alpha = ((petal - at.length()) * 12.0 + 0.5).clamp(0.0, 1.0);
+        [96, 150, 84, (alpha * 255.0) as u8]
+    };
+    let rgba8 = (0..side).flat_map(|y| (0..side).flat_map(move |x| texel(x, y))).collect();
+    Texture { name: "petals".into(), width: side, height: side, rgba8, wrap: [Wrap::Clamp; 2], smooth: true }
 }

@@ -8,13 +8,17 @@ use npr_harness::error::HarnessError;
 use npr_harness::executor::{Backend, Executor};
 use npr_harness::figures::{self, Stage};
 use npr_harness::suggest::nearest;
+use npr_harness::systems;
 use std::path::PathBuf;
 
 #[derive(Args)]
 pub struct Options {
     /// The folder, which is made if need be. Files of the same names are overwritten.
-    #[arg(short, long, value_name = "DIR")]
-    output: PathBuf,
+    #[arg(short, long, value_name = "DIR", required_unless_present = "systems")]
+    output: Option<PathBuf>,
+    /// Print a table of all systems of the documents instead: code, style key, figure and test of each.
+    #[arg(long, conflicts_with_all = ["output", "names"])]
+    systems: bool,
     /// Only these figures, by name.
     #[arg(value_name = "NAME")]
     names: Vec<String>,
@@ -25,7 +29,11 @@ pub struct Options {
 
 /// Draws and writes the figures.
 pub fn run(options: &Options) -> Result<bool, HarnessError> {
-    paths::check_output_folder(&options.output)?;
+    let Some(output) = options.output.as_ref().filter(|_| !options.systems) else {
+        say(format_args!("{}", systems::table()))?;
+        return Ok(true);
+    };
+    paths::check_output_folder(output)?;
     let mut wanted = figures::all();
     if let Some(unknown) = options.names.iter().find(|name| !wanted.iter().any(|figure| figure.name == **name)) {
         let known: Vec<_> = wanted.iter().map(|figure| figure.name).collect();
@@ -46,7 +54,7 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
         drawn.push(figures::draw(&mut executor, backend, &mut stage, figure)?);
     }
     bar.finish_and_clear();
-    for path in figures::write(&options.output, &drawn, &made_by)? {
+    for path in figures::write(output, &drawn, &made_by)? {
         say(format_args!("{}\n", path.display()))?;
     }
     Ok(true)

@@ -1,0 +1,156 @@
+//! Systems of the documents that have no figure of their own in print.
+
+use super::{Figure, Panel, Setting};
+
+/// Black lines of a G-buffer on white.
+fn lines(keys: &str, gbuffer: &str) -> String {
+    format!("shade = \"paper\"\n[lines.image]\n{keys}\n[lines.image.gbuffer]\n{gbuffer}\n")
+}
+
+const BANDS: &str =
+    "[shade.toon]\nthresholds = [0.05, 0.6]\ntones = [[0.35, 0.33, 0.42], [0.7, 0.69, 0.74], [1, 1, 1]]\n";
+
+/// The figures.
+pub fn variants() -> Vec<Figure> {
+    let (still_life, objects) = (Setting::StillLife, Setting::Objects);
+    let depth = |format: &str| {
+        let keys = "normals = false\nregions = \"none\"\ndepth-step = 0.002";
+        lines(keys, &format!("target = \"separate\"\ndepth-test = \"each\"\nfar = 20.0\ndepth-format = \"{format}\""))
+    };
+    let ramp = |blend: &str| {
+        format!(
+            "[shade.ramp.stops]\nat = [-1.0, 0.05, 0.6]\ncolors = [[0.35, 0.33, 0.42], [0.7, 0.69, 0.74], [1, 1, 1]]\nblend = \
+             \"{blend}\"\n"
+        )
+    };
+    let half_lambert = "[shade.ramp.stops]\nat = [0.0, 0.5, 1.0]\ncolors = [[0.3, 0.28, 0.4], [0.7, 0.69, 0.74], [1, 1, 1]]\n\
+                        blend = \"smooth\"\n[shade.ramp.half-lambert]\n";
+    let kinds = |kinds: &str| format!("shade = \"paper\"\n[lines.edges]\n{kinds}\n");
+    let taps = |step: i32| {
+        lines(&format!("depth = false\ntaps = [[{step}, {step}], [-{step}, {step}]]"), "target = \"separate\"")
+    };
+    let stepped = |step: &str| lines("", &format!("target = \"separate\"\nstep = [{step}]"));
+    vec![
+        Figure {
+            name: "variants-bands",
+            shows: "Bands with hard and with antialiased borders, a smooth ramp, and half-Lambert light",
+            caption: "A ramp of colours by N·L: steps as a texture without filtering gives them, steps with the width of \
+                      a pixel, and linear interpolation; half-Lambert scales and biases N·L first, so that no side is \
+                      wholly dark.",
+            columns: 2,
+            panels: vec![
+                Panel::style("hard", still_life, format!("{BANDS}antialias = false\n")),
+                Panel::style("antialiased", still_life, BANDS),
+                Panel::style("smooth", still_life, ramp("smooth")),
+                Panel::style("half-Lambert", still_life, half_lambert),
+            ],
+        },
+        Figure {
+            name: "variants-lines",
+            shows: "Lines along edges by kind: silhouettes, creases, all",
+            caption: "Each kind has a width of its own, constant on the screen; what is hidden is left out.",
+            columns: 3,
+            panels: vec![
+                Panel::style("silhouettes", objects, kinds("crease-px = 0\nboundary-px = 0")),
+                Panel::style("creases", objects, kinds("silhouette-px = 0\nboundary-px = 0")),
+                Panel::style("all", objects, kinds("silhouette-px = 3\ncrease-px = 1")),
+            ],
+        },
+        Figure {
+            name: "variants-hull",
+            shows: "The inverted hull, beside lines along edges and printed fins",
+            caption: "Back faces of the model, grown by the width, as most games draw outlines: no creases, and gaps at \
+                      hard edges with the normals of vertices, which welded normals close.",
+            columns: 2,
+            panels: vec![
+                Panel::style("welded normals", objects, format!("{BANDS}[lines.hull]\nwidth-px = 5\n")),
+                Panel::style(
+                    "normals of vertices",
+                    objects,
+                    format!("{BANDS}[lines.hull]\nwidth-px = 5\nnormals = \"vertices\"\n"),
+                ),
+                Panel::style("fins of listing 1", objects, format!("{BANDS}[lines.printed]\nwidth-px = 5\n")),
+                Panel::style("lines along edges", objects, format!("{BANDS}[lines.edges]\nsilhouette-px = 5\n")),
+            ],
+        },
+        Figure {
+            name: "variants-depth",
+            shows: "Depth of 8, 16 and 32 bits, and floats, feeding the filter of depth",
+            caption: "The far plane is twenty times as far as the farthest point, and the threshold 0.002 of the range. A \
+                      step of 8 bits is 0.0039 of it, so that slanted surfaces are ink wherever a code ends.",
+            columns: 2,
+            panels: vec![
+                Panel::style("8 bits", objects, depth("8-bit")),
+                Panel::style("16 bits", objects, depth("16-bit")),
+                Panel::style("four channels of 8 bits", objects, depth("packed-4x8")),
+                Panel::style("float", objects, depth("float")),
+            ],
+        },
+        Figure {
+            name: "variants-taps",
+            shows: "Taps of a filter at 1, 2 and 4 px",
+            caption: "The offsets of the texture coordinates in the inker's vertex program decide how wide a line is, and \
+                      how small a detail may be.",
+            columns: 3,
+            panels: vec![
+                Panel::style("1 px", objects, taps(1)),
+                Panel::style("2 px", objects, taps(2)),
+                Panel::style("4 px", objects, taps(4)),
+            ],
+        },
+        Figure {
+            name: "variants-morphology",
+            shows: "Erosion, opening, closing, and steps of dilation with three kernels",
+            caption: "Lines of two pixels vanish in one erosion by a square; closing fills what is narrower than its \
+                      kernel. The diagonal kernel leaves a hole around single pixels.",
+            columns: 3,
+            panels: vec![
+                Panel::style("eroded by a +", objects, stepped("{ kind = \"erode\", kernel = \"cross\" }")),
+                Panel::style("opened by a +", objects, stepped("{ kind = \"open\", kernel = \"cross\" }")),
+                Panel::style(
+                    "closed by a square, 4",
+                    objects,
+                    stepped("{ kind = \"close\", kernel = \"square\", times = 4 }"),
+                ),
+                Panel::style(
+                    "dilated by a +, 3",
+                    objects,
+                    stepped("{ kind = \"dilate\", kernel = \"cross\", times = 3 }"),
+                ),
+                Panel::style(
+                    "by diagonals, 3",
+                    objects,
+                    stepped("{ kind = \"dilate\", kernel = \"diagonal\", times = 3 }"),
+                ),
+                Panel::style(
+                    "by a square, 3",
+                    objects,
+                    stepped("{ kind = \"dilate\", kernel = \"square\", times = 3 }"),
+                ),
+            ],
+        },
+        Figure {
+            name: "variants-primitives",
+            shows: "Independence from primitives: rounded patches, surfaces that pass through each other, a clip plane",
+            caption: "Lines in the image need no edges: where a ball made of PN triangles passes through a cube, and where \
+                      a plane cuts both, there is a line.",
+            columns: 2,
+            panels: vec![
+                Panel::style("lines along edges", Setting::Crossing, format!("{BANDS}[lines.edges]\n")),
+                Panel::style("lines in the image", Setting::Crossing, format!("{BANDS}[lines.image]\n")),
+                Panel::style("cut by a plane", Setting::Clipped, format!("{BANDS}[lines.image]\n")),
+            ],
+        },
+        Figure {
+            name: "variants-cut-out",
+            shows: "Alpha-tested materials: lines around what remains",
+            caption: "A pixel below the reference is discarded from every target of the geometry pass, so that all filters \
+                      see what lies behind it.",
+            columns: 2,
+            panels: vec![
+                Panel::style("ink alone", Setting::CutOut, lines("", "target = \"separate\"")),
+                Panel::style("over the surfaces", Setting::CutOut, format!("{BANDS}[lines.image]\n")),
+            ],
+        },
+    ]
+}
