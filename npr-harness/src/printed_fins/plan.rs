@@ -81,7 +81,6 @@ impl PrintedFinPlan {
             thickness: view.thickness / object.scale(),
             reversed: self.style.reversed,
             depth: if self.style.eye_depth { FinDepth::Eye } else { view.depth },
-            ..view
         })
     }
 }
