@@ -22,12 +22,15 @@ const SHADOW_VOLUME: &str = include_str!("../../npr-outline/src/shadow_volume.wg
 const SHADOW_PASS: &str = include_str!("../../npr-outline/src/shadow_pass.wgsl");
 const SHADOW_MASK: &str = include_str!("../../npr-outline/src/shadow_mask.wgsl");
 const FULLSCREEN: &str = include_str!("../../npr-imagespace/src/pass/fullscreen.wgsl");
+const TAPS: &str = include_str!("../../npr-imagespace/src/pass/taps.wgsl");
 const DISC: &str = include_str!("../../npr-imagespace/src/pass/disc.wgsl");
 const COMPOSITE: &str = include_str!("../../npr-imagespace/src/pass/composite.wgsl");
 const PRINTED: &str = include_str!("../../npr-imagespace/src/pass/printed.wgsl");
 const SEPARATE: &str = include_str!("../../npr-imagespace/src/pass/separate.wgsl");
 const STEP: &str = include_str!("../../npr-imagespace/src/pass/step.wgsl");
 const FUSED: &str = include_str!("../../npr-imagespace/src/pass/fused.wgsl");
+const GBUFFER_TEXEL: &str = include_str!("../src/image_lines/gbuffer/texel.wgsl");
+const GBUFFER_ENCODE: &str = include_str!("../src/image_lines/gbuffer/encode.wgsl");
 const RESOLVE: &str = include_str!("../src/gpu/resolve.wgsl");
 const SHADOW_MAP: &str = include_str!("../src/shadow/shadow_map.wgsl");
 
@@ -101,10 +104,11 @@ fn every_shader_translates() {
         ("shadow mask", SHADOW_MASK.into()),
         ("disc", ink(DISC)),
         ("composite", ink(COMPOSITE)),
-        ("printed filters", ink(PRINTED)),
-        ("separate filter", ink(SEPARATE)),
+        ("printed filters", ink(&[TAPS, PRINTED].concat())),
+        ("separate filter", ink(&[TAPS, SEPARATE].concat())),
         ("step", ink(STEP)),
-        ("fused filter", ink(FUSED)),
+        ("fused filter", ink(&[TAPS, FUSED].concat())),
+        ("G-buffer", [npr_imagespace::WGSL, GBUFFER_TEXEL, GBUFFER_ENCODE].concat()),
     ];
     let surface = |style: Style| (style.name, surface_wgsl(&style.shade).expect("good numbers"));
     let named = shaders.iter().map(|(name, source): &(&str, String)| (name.to_string(), source.clone()));
