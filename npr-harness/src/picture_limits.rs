@@ -22,6 +22,8 @@ const FILE_BYTES: u64 = 12;
 const DEVICE_BYTES: u64 = 48;
 /// Per pixel of ink in image-space lines: texels 8, depth 4, ink and dilation.
 const INK_BYTES: u64 = 20;
+/// The same where the style has a G-buffer of its own: texels of 16 instead of 8, three encoded targets, a second ink.
+const GBUFFER_BYTES: u64 = 34;
 
 /// GPU, per pixel of the picture, and of the ink if it has another size: depth, the stencil for shadows, and the shadow
 /// mask.
@@ -31,15 +33,20 @@ const STENCIL_BYTES: u64 = 9;
 /// software adapter uses main memory too.
 pub(crate) fn picture_bytes(style: &Style, (width, height): (u32, u32), samples: u32, on_device: bool) -> u64 {
     let pixels = u64::from(width) * u64::from(height);
-    let ink = match style.lines.image.map(|ink| ink.scale) {
-        Some(InkScale::Half) => INK_BYTES / 4,
-        Some(InkScale::One) => INK_BYTES,
-        Some(InkScale::Double) => 4 * INK_BYTES,
+    let image = style.lines.image.as_ref();
+    let each = INK_BYTES + if image.is_some_and(|ink| ink.gbuffer.is_some()) { GBUFFER_BYTES } else { 0 };
+    let ink = match image.map(|ink| ink.scale) {
+        Some(InkScale::Half) => each / 4,
+        Some(InkScale::One) => each,
+        Some(InkScale::Double) => 4 * each,
         None => 0,
     };
     let (mut stencil, mut map) = (0, 0);
     match style.shadow.map(|shadow| shadow.method) {
-        Some(ShadowMethod::Volumes) => stencil = STENCIL_BYTES + if ink > INK_BYTES { 4 * STENCIL_BYTES } else { 0 },
+        Some(ShadowMethod::Volumes) => {
+            stencil = STENCIL_BYTES
+                + if image.is_some_and(|ink| ink.scale == InkScale::Double) { 4 * STENCIL_BYTES } else { 0 }
+        }
         Some(ShadowMethod::Map { side }) => map = 4 * u64::from(side) * u64::from(side),
         None => {}
     }

@@ -351,6 +351,19 @@ impl Plan {
             why_own,
             if image.is_some() { "they are drawn beside the picture" } else { no_lines },
         );
+        let gbuffer = image.and_then(|image| image.gbuffer.as_ref()).map(|plan| &plan.gbuffer);
+        add(
+            gbuffer.is_some(),
+            "G-buffer in the style's formats",
+            "the style names them",
+            if image.is_some() { "the filter reads packed texels" } else { no_lines },
+        );
+        add(
+            gbuffer.is_some_and(|gbuffer| gbuffer.steps.iter().any(Option::is_some)),
+            "steps of morphology",
+            "the style asks for them",
+            if gbuffer.is_some() { "the style has none" } else { "lines come from packed texels, or there are none" },
+        );
         let stored = image.is_some_and(|image| image.passes().any(|lines| image.is_stored(lines)));
         let not_stored = if image.is_some() { "the ink is needed by itself" } else { no_lines };
         add(image.is_some() && !stored, "filter and composite in one", "nothing needs the ink in between", not_stored);
