@@ -1,6 +1,7 @@
 //! Styles: the appearance of a picture, independent of the scene.
 
 mod file;
+mod normals_key;
 mod presets;
 mod schema;
 
@@ -29,7 +30,7 @@ pub struct Style {
     pub paper: Vec3,
     /// How surfaces are painted.
     pub shade: Shade,
-    /// How the three normals of a triangle are used.
+    /// How the normals of a face are used.
     pub normals: NormalUse,
     /// One or two lights. A shade that supports one replaces two by an approximation, see
     /// [`crate::lights::lights_in_world`]. A light's brightness multiplies its N·L, and its colour the surface's
@@ -88,6 +89,7 @@ impl Style {
         if self.lights.is_empty() {
             return Err(HarnessError::NoLight);
         }
+        self.normals.validate()?;
         // The shade that supports the most lights.
         Painter::new(self.lights.iter().map(|light| light.light).collect())?;
         let Lines { printed, edges, image } = &self.lines;

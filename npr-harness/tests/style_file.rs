@@ -17,6 +17,7 @@ use npr_hatch::{TamParameters, Thresholds, draw, store};
 use npr_imagespace::composite::Composite;
 use npr_imagespace::morphology::disc::Disc;
 use npr_outline::LineKind;
+use npr_toon::normal::NormalUse;
 use npr_toon::row::{RampRow, TexelFilter};
 use npr_toon::source::Light;
 use npr_toon::table::RampTable;
@@ -62,6 +63,9 @@ fn every_style_survives_being_written_and_read() {
         lines: Lines::image(ImageInk { shadows: apart, ..ImageInk::default() }),
         ..named("normals")
     });
+    for normals in [NormalUse::Interpolated, NormalUse::PerFace, NormalUse::PerSubdividedFace(7)] {
+        all.push(Style { normals, ..named("toon") });
+    }
     for style in all {
         let text = style.to_toml().expect("every style has a form");
         assert_eq!(parse(&text).unwrap_or_else(|e| panic!("{e}\n{text}")), style, "{text}");
@@ -73,6 +77,10 @@ fn what_is_left_out_has_its_default() {
     let style = parse("").expect("an empty file is a style");
     assert_eq!((style.name.as_str(), style.lights.len(), &style.shade), ("mine", 1, &named("toon").shade));
     assert_eq!(style.lines, Lines::NONE);
+    for text in ["\"per-subdivided-face\"", "{ per-subdivided-face = 4 }"] {
+        let style = parse(&format!("normals = {text}")).expect("a style");
+        assert_eq!(style.normals, NormalUse::PerSubdividedFace(4));
+    }
     let style = parse("shade = \"paper\"\n[lines.image]\n").expect("a style");
     assert_eq!(style.shade, Shade::Paper);
     let style = parse("paper = \"#ff8000\"\n").expect("a style");
@@ -147,6 +155,13 @@ fn a_misspelt_key_gets_a_proposal() {
             "unknown variant `volume` (did you mean `volumes`?), expected `volumes` or `map`",
         ),
         ("normals = \"per-pixl\"", "`per-pixel`?"),
+        (
+            "normals = { per-subdivide-face = 3 }",
+            "unknown field `per-subdivide-face` (did you mean `per-subdivided-face`?)",
+        ),
+        ("normals = 3", "invalid type: integer `3`, expected a use of normals, "),
+        ("normals = { per-subdivided-face = 0 }", "0 divisions of each side of a face: it must be 1..=64"),
+        ("normals = {}", "an empty table: it needs per-subdivided-face"),
         ("[shadow]\nwatercolour = 1", "unknown field `watercolour`, expected "),
     ] {
         assert!(message(text).starts_with("some/mine.toml:"), "{text}: {}", message(text));

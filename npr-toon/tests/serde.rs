@@ -50,6 +50,10 @@ fn styles_survive_a_round_trip() {
         ]),
     );
     assert_round_trip((NormalUse::PerPixel, TexelFilter::Linear), json!(["per-pixel", "linear"]));
+    assert_round_trip(
+        [NormalUse::PerFace, NormalUse::PerSubdividedFace(6)],
+        json!(["per-face", { "per-subdivided-face": 6 }]),
+    );
 }
 
 #[test]

@@ -88,7 +88,8 @@ const EXCEPTIONS: Exceptions = Exceptions {
 
 /// The differences between the WGSL files, with one text replaced, and the Rust files.
 fn differences_with(old: &str, new: &str) -> Vec<String> {
-    let pairs = pairs!["light", "border", "half_lambert", "source", "ramp", "row", "table", "painter", "x_toon"];
+    let pairs =
+        pairs!["light", "border", "half_lambert", "source", "ramp", "row", "table", "painter", "normal", "x_toon"];
     let changed = WGSL.replace(old, new);
     assert!(old == new || changed != WGSL, "{old} is not there");
     differences(&validated(&changed), &pairs, &EXCEPTIONS)

@@ -8,7 +8,7 @@ use crate::rays::Hit;
 use crate::shade::{LitPoint, ShadeModel, Shading};
 use glam::{DVec2, DVec3, Vec3};
 use npr_toon::border::toon_border_width;
-use npr_toon::normal::NormalUse;
+use npr_toon::normal::{NormalUse, toon_piece_centroid};
 use npr_toon::source::toon_to_light;
 use npr_toon::{toon_n_dot_l, toon_n_dot_l_interpolated};
 
@@ -23,6 +23,10 @@ impl FrameContext<'_> {
             return self.hatched(paint, model, hit, base, light.x, shadow.dark, x, y, strokes);
         }
         let widths = |of: &dyn Fn(DVec2) -> DVec2| {
+            if paint.lights_faces() {
+                // Light is constant around the pixel, or else ends at the border of a face or piece, not of a band.
+                return DVec2::splat(toon_border_width(0.0, 0.0));
+            }
             let Footprint { along_x, along_y, .. } = self.footprint(hit, x, y);
             // Every pixel of the 2×2 block uses this hit's shadow state, so a shadow border is not a border between
             // bands.
@@ -50,6 +54,12 @@ impl FrameContext<'_> {
                 let corners = self.corners(hit);
                 corners.iter().zip(weights).map(|(corner, weight)| self.light_at(paint, model, corner) * weight).sum()
             }
+            NormalUse::PerFace => self.light_at(paint, model, &self.lit_facet(paint, hit)),
+            NormalUse::PerSubdividedFace(divisions) => {
+                let centroid = toon_piece_centroid(weights.into(), divisions);
+                let surface = self.interpolate(hit, centroid.to_array());
+                self.light_at(paint, model, &self.lit_point(surface.normal, surface.at))
+            }
         };
         if in_shadow { DVec2::new(-found.x.abs(), model.second_in_shadow(found.y)) } else { found }
     }
@@ -58,6 +68,16 @@ impl FrameContext<'_> {
         let camera = &self.plan.view.camera;
         let eye = camera.homogeneous_eye();
         LitPoint { normal, at, to_eye: eye.truncate() - at * eye.w }
+    }
+
+    /// The centroid of the hit's face, with the face's own normal.
+    fn lit_facet(&self, paint: &PaintPlan, hit: &Hit) -> LitPoint {
+        let (object, _) = self.scene.placed(hit.object);
+        // There are none for a shade that does not depend on light.
+        let facet = paint.facets.get(object.mesh()).map(|facets| facets[hit.face as usize]);
+        let (normal, at) =
+            facet.map_or_else(Default::default, |facet| (object.normal(facet.normal), object.point(facet.centroid)));
+        self.lit_point(if hit.front { normal } else { -normal }, at)
     }
 
     fn corners(&self, hit: &Hit) -> [LitPoint; 3] {

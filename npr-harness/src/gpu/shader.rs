@@ -3,7 +3,7 @@
 use super::context::GpuContext;
 use super::uniform::uniform_buffer;
 use crate::error::HarnessError;
-use crate::hatch::gpu::{HATCH_ENTRY_WGSL, HATCH_WGSL, HatchVariant};
+use crate::hatch::gpu::{HATCH_ENTRY_WGSL, HATCH_FACETS_WGSL, HATCH_WGSL, HatchVariant};
 use crate::plan::{PaintPlan, Plan};
 use crate::shade::{Shade, ShadeOnDevice, ShadeView, flag};
 use crate::shadow::gpu::SHADOW_WGSL;
@@ -15,8 +15,9 @@ use wgpu::util::DeviceExt;
 /// The parts of a shader, each with its name.
 pub(super) type Parts = Vec<(&'static str, &'static str)>;
 
-/// The parts of the shader for a shade: libraries, lights, the shade's own functions, shadows, the geometry pass.
-fn parts(shade: &ShadeOnDevice, hatched: bool) -> Parts {
+/// The parts of the shader for a shade: libraries, lights, the shade's own functions, shadows, the geometry pass, and that
+/// of faces that are lit as wholes or in pieces.
+fn parts(shade: &ShadeOnDevice, hatched: bool, lights_faces: bool) -> Parts {
     let mut parts = shade.wgsl.to_vec();
     let own = parts.split_off(parts.iter().position(|(name, _)| name.ends_with(".wgsl")).unwrap_or(parts.len()));
     parts.push(("npr-imagespace, format", npr_imagespace::format::FORMAT_WGSL));
@@ -31,6 +32,12 @@ fn parts(shade: &ShadeOnDevice, hatched: bool) -> Parts {
     parts.push(("surface.wgsl", include_str!("surface.wgsl")));
     if hatched {
         parts.push(HATCH_ENTRY_WGSL);
+    }
+    if lights_faces {
+        parts.push(("facets.wgsl", include_str!("facets.wgsl")));
+        if hatched {
+            parts.push(HATCH_FACETS_WGSL);
+        }
     }
     parts
 }
@@ -54,7 +61,7 @@ pub(super) fn assemble(parts: &Parts) -> String {
 /// An error if a number of the shade is out of range.
 pub fn surface_wgsl(shade: &Shade) -> Result<String, HarnessError> {
     let hatched = matches!(shade, Shade::Hatch(_));
-    Ok(assemble(&parts(&shade.model().on_device(&ShadeView::default())?, hatched)))
+    Ok(assemble(&parts(&shade.model().on_device(&ShadeView::default())?, hatched, true)))
 }
 
 /// The properties of light and shade that are fixed when a pipeline is created.
@@ -66,6 +73,8 @@ pub(super) struct ShaderKey {
     pub(super) constants: Vec<(&'static str, f64)>,
     /// Whether light is computed only at the vertices.
     pub(super) at_vertices: bool,
+    /// Whether light is constant over faces or pieces of faces.
+    pub(super) lights_faces: bool,
 }
 
 /// The GPU resources for the light and the shade of a picture, limited to those that the shade uses.
@@ -87,6 +96,14 @@ impl LightOnDevice {
         if let Some(hatch) = plan.hatch() {
             constants.extend(HatchVariant::new(hatch).constants());
         }
+        let lights_faces = paint.is_some_and(PaintPlan::lights_faces);
+        if lights_faces {
+            let divisions = match paint.map(|paint| paint.normals) {
+                Some(NormalUse::PerSubdividedFace(divisions)) => f64::from(divisions),
+                _ => 0.0,
+            };
+            constants.push(("surface_divisions", divisions));
+        }
         let image = match &shade.image {
             Some((width, height, texels)) => Some(upload_image(context, *width, *height, texels)?),
             None => None,
@@ -96,7 +113,12 @@ impl LightOnDevice {
         let placed = PainterUniform::unchecked(lights, shade.light_scale);
         let uniform = |contents: &[u8]| uniform_buffer(&context.device, contents);
         Ok(Self {
-            key: ShaderKey { parts: parts(&shade, plan.hatch().is_some()), constants, at_vertices },
+            key: ShaderKey {
+                parts: parts(&shade, plan.hatch().is_some(), lights_faces),
+                constants,
+                at_vertices,
+                lights_faces,
+            },
             lights: uniform(bytemuck::bytes_of(&placed)),
             shade: (!shade.uniform.is_empty()).then(|| uniform(&shade.uniform)),
             image,
@@ -116,6 +138,7 @@ fn light_constants(paint: Option<&PaintPlan>, lights: &[Light]) -> [(&'static st
                 None | Some(NormalUse::PerPixel) => 0.0,
                 Some(NormalUse::Interpolated) => 1.0,
                 Some(NormalUse::PerVertex) => 2.0,
+                Some(NormalUse::PerFace | NormalUse::PerSubdividedFace(_)) => 3.0,
             },
         ),
         ("surface_first_positional", positional(0)),

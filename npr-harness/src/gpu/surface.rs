@@ -226,6 +226,7 @@ impl SurfacePass {
             view_dimension: wgpu::TextureViewDimension::D2,
             multisampled: false,
         };
+        let numbers = depth;
         let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
         let nearest = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::NonFiltering);
         let layout = |label, entries: &[_]| {
@@ -248,6 +249,7 @@ impl SurfacePass {
                 fragment(11, words),
                 fragment(12, depth),
                 fragment(13, nearest),
+                wgpu::BindGroupLayoutEntry { visibility: wgpu::ShaderStages::VERTEX, ..fragment(14, numbers) },
             ],
         );
         let material_layout =
@@ -332,6 +334,7 @@ impl SurfacePass {
                 shadow.and_then(|shadow| shadow.map.as_ref()).unwrap_or(&self.no_shadow.map),
             ),
             wgpu::BindingResource::Sampler(&self.no_shadow.nearest),
+            wgpu::BindingResource::TextureView(uploaded.facets.as_ref().unwrap_or(&self.blank.image)),
         ];
         let entry = |(binding, resource)| wgpu::BindGroupEntry { binding, resource };
         let entries: Vec<_> = (0..).zip(bound).map(entry).collect();
@@ -364,11 +367,7 @@ impl SurfacePass {
             return Err(HarnessError::TooManyDraws { draws, limit });
         }
         let blended_indices = (!blended.is_empty()).then(|| {
-            let corners = |&[object, face]: &[u32; 2]| {
-                let (object, mesh) = scene.placed(object);
-                mesh.model().faces[face as usize].map(|vertex| uploaded.first_vertices[object.mesh()] + vertex)
-            };
-            let faces: Vec<_> = blended.iter().map(corners).collect();
+            let faces: Vec<_> = blended.iter().map(|&face| uploaded.face_vertices(scene, face)).collect();
             filled_buffer(device, "blended faces", bytemuck::cast_slice(&faces), wgpu::BufferUsages::INDEX)
         });
         let paper = plan.paper.as_dvec3();
@@ -486,6 +485,10 @@ impl SurfacePass {
             (Paint::Nothing, true, false) => ("vs_textured", "fs_cut_out"),
             (Paint::Painted, false, false) => ("vs_plain", "fs_painted"),
             (Paint::Painted, true, false) => ("vs_textured", "fs_painted_textured"),
+            (Paint::Lit, _, false) if key.lights_faces => ("vs_facet", "fs_facet"),
+            (Paint::Lit, _, true) if key.lights_faces => ("vs_facet", "fs_facet_inked"),
+            (Paint::Hatched, _, false) if key.lights_faces => ("vs_hatched_facet", "fs_hatched_facet"),
+            (Paint::Hatched, _, true) if key.lights_faces => ("vs_hatched_facet", "fs_hatched_facet_inked"),
             // Shadows need the normal at the pixel.
             (Paint::Lit, false, false) if key.at_vertices && variant.shadow.source == 0 => {
                 ("vs_lit_vertex", "fs_lit_vertex")
@@ -521,7 +524,7 @@ impl SurfacePass {
             attributes: &wgpu::vertex_attr_array![5 => Float32x3, 6 => Float32x3, 7 => Float32],
         };
         let hatched = paint == Paint::Hatched;
-        let everything = hatched || vertex == "vs_lit";
+        let everything = hatched || vertex == "vs_lit" || vertex == "vs_facet";
         let (looks_up, has_regions) = (everything || looked_up, everything || inked);
         let buffers = [
             Some(geometry),

@@ -41,7 +41,7 @@ fn shade_color(base: vec3<f32>, light_there: vec2<f32>, n: vec3<f32>, at: Shadow
     if shade.antialias != 0u {
         widths.x = shadow_border_width(light_there.x, -abs(light_there.x), at);
         if shade_highlight {
-            widths.y = toon_pixel_border_width(light_there.y);
+            widths.y = shade_border_width(light_there.y);
         }
     }
     let color = by_light_color(base) * toon_band(shade, light.x, widths.x);
