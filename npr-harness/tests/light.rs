@@ -149,6 +149,7 @@ fn cases() -> Vec<(&'static str, Shade, Vec<StyleLight>)> {
         ("bands, dim", Shade::Toon(Bands { highlight: None, ..Bands::default() }), vec![dim]),
         ("bands, a lamp", Shade::Toon(Bands::default()), vec![there]),
         ("bands, two lights as one", Shade::Toon(Bands::default()), vec![dim, lamp]),
+        ("bands, absolute", Shade::Toon(Bands { absolute: true, ..Bands::default() }), vec![dim]),
         ("bands, aliased", Shade::Toon(aliased), vec![key]),
         ("hard ramp", ramp(RampSource::Stops(stops(RampBlend::Hard)), None), vec![key]),
         ("smooth ramp, half-Lambert", ramp(RampSource::Stops(smooth), half), vec![lamp]),

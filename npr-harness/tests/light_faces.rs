@@ -161,6 +161,7 @@ fn bands_of_a_face_have_one_tone_and_no_border_within() {
         tones: vec![Vec3::splat(0.2), Vec3::splat(0.4), Vec3::splat(0.6)],
         highlight: Some(highlight),
         antialias: true,
+        absolute: false,
     };
     let banded = |normals| Style { shade: Shade::Toon(bands.clone()), ..gray(normals) };
     let of_bands: HashSet<u8> = [51, 102, 153, 255].into();

@@ -17,6 +17,7 @@ use npr_hatch::{TamParameters, Thresholds, draw, store};
 use npr_imagespace::composite::Composite;
 use npr_imagespace::morphology::disc::Disc;
 use npr_outline::LineKind;
+use npr_toon::Bands;
 use npr_toon::normal::NormalUse;
 use npr_toon::row::{RampRow, TexelFilter};
 use npr_toon::source::Light;
@@ -63,6 +64,7 @@ fn every_style_survives_being_written_and_read() {
         lines: Lines::image(ImageInk { shadows: apart, ..ImageInk::default() }),
         ..named("normals")
     });
+    all.push(Style { shade: Shade::Toon(Bands { absolute: true, ..Bands::default() }), ..named("toon") });
     for normals in [NormalUse::Interpolated, NormalUse::PerFace, NormalUse::PerSubdividedFace(7)] {
         all.push(Style { normals, ..named("toon") });
     }
@@ -70,6 +72,23 @@ fn every_style_survives_being_written_and_read() {
         let text = style.to_toml().expect("every style has a form");
         assert_eq!(parse(&text).unwrap_or_else(|e| panic!("{e}\n{text}")), style, "{text}");
     }
+}
+
+/// The form of the text on listing 3, as docs/errata.md has it.
+const DIFFUSE_AND_SPECULAR: &str = "\
+[shade.toon]
+absolute = true
+antialias = false
+thresholds = [0.1]
+tones = [[0.2, 0.2, 0.2], [0.6, 0.6, 0.6]]
+highlight = { threshold = 0.8, color = [0.9, 0.9, 1.0] }
+";
+
+#[test]
+fn the_page_of_errata_has_this_style() {
+    let page = include_str!("../../docs/errata.md");
+    let block: String = DIFFUSE_AND_SPECULAR.lines().map(|line| format!("  {line}\n")).collect();
+    assert!(page.contains(&block), "{block}");
 }
 
 #[test]
@@ -81,6 +100,8 @@ fn what_is_left_out_has_its_default() {
         let style = parse(&format!("normals = {text}")).expect("a style");
         assert_eq!(style.normals, NormalUse::PerSubdividedFace(4));
     }
+    let style = parse(DIFFUSE_AND_SPECULAR).expect("a style");
+    assert_eq!(style.shade, Shade::Toon(Bands { absolute: true, ..Bands::diffuse_and_specular() }));
     let style = parse("shade = \"paper\"\n[lines.image]\n").expect("a style");
     assert_eq!(style.shade, Shade::Paper);
     let style = parse("paper = \"#ff8000\"\n").expect("a style");

@@ -42,7 +42,7 @@
 //! # Colours
 //!
 //! All colours are display-referred (sRGB-encoded, 0..=1), as in the listings. A band's tone *multiplies* the surface's
-//! colour.
+//! colour, unless [`Bands::absolute`] makes it the colour itself, as listing 3 does.
 //!
 //! # Borders
 //!

@@ -48,6 +48,7 @@ fn any_bands(random: &Random, tones: u32) -> Bands {
         tones: (0..tones).map(|_| random.color()).collect(),
         highlight: if random.one_in(4) { None } else { Some(highlight) },
         antialias: !random.one_in(4),
+        absolute: random.one_in(4),
     }
 }
 
@@ -221,7 +222,7 @@ const FUNCTIONS: &[Check<Bands>] = &[
         // Bands with one border.
         rust: |_, g| {
             let tones = vec![g[1].truncate(), g[2].truncate()];
-            let bands = Bands { thresholds: vec![g[0].z], tones, highlight: None, antialias: true };
+            let bands = Bands { thresholds: vec![g[0].z], tones, highlight: None, antialias: true, absolute: false };
             color(toon_band(&bands, f64::from(g[0].x), f64::from(g[0].y)))
         },
         allowed: small,
