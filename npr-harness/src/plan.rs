@@ -14,7 +14,7 @@ use crate::error::HarnessError;
 use crate::facets::{Facet, facets};
 use crate::hatch::{HatchMapping, HatchPlan};
 use crate::image_lines::{ImagePlan, InkScale};
-use crate::lights::{casting_light, lights_in_world};
+use crate::lights::{LightPair, casting_light, light_pairs, lights_in_world};
 use crate::picture_limits::check_picture;
 use crate::printed_fins::PrintedFinPlan;
 use crate::scene::Scene;
@@ -53,6 +53,10 @@ pub struct PaintPlan {
     pub lights: Vec<Light>,
     /// The combined colour of the lights.
     pub light_color: DVec3,
+    /// If each object has two of the lights, the distinct pairs; else empty.
+    pub light_pairs: Vec<LightPair>,
+    /// Per object: the index of its pair; empty if there are no pairs.
+    pub object_pairs: Vec<u32>,
     /// The data of scene and view that the shade uses.
     pub view: ShadeView,
     /// Whether lighting needs more than per-pixel normals and constant light directions: positions, or lighting
@@ -104,7 +108,7 @@ impl Plan {
     ///
     /// # Errors
     /// Errors of the style ([`Style::validate`]), of its lines and of its tonal art map;
-    /// [`HarnessError::ClippedEdges`], [`HarnessError::ShadowMapLight`]; [`HarnessError::Size`] and
+    /// [`HarnessError::ClippedEdges`], [`HarnessError::ShadowMapLight`], [`HarnessError::ObjectLights`]; [`HarnessError::Size`] and
     /// [`HarnessError::PictureMemory`]; and if the adapter lacks a capability: [`HarnessError::TextureTooLarge`],
     /// [`HarnessError::ParallelVolumes`].
     pub fn new(scene: &Scene, style: &Style, view: &View, capabilities: &Capabilities) -> Result<Self, HarnessError> {
@@ -252,6 +256,12 @@ impl Plan {
         self.edge_lines.as_ref().is_some_and(|lines| lines.method == EdgeLineMethod::OnDevice)
     }
 
+    /// Per object: the index of its pair of lights; empty if there are no pairs.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn object_pairs(&self) -> &[u32] {
+        self.paint.as_ref().map_or(&[], |paint| &paint.object_pairs)
+    }
+
     /// The data for strokes, if surfaces are hatched.
     pub fn hatch(&self) -> Option<&HatchPlan> {
         self.paint.as_ref().and_then(|paint| paint.hatch.as_ref())
@@ -373,7 +383,13 @@ impl Plan {
             paint.is_some_and(|paint| paint.lights.len() > 1),
             "second light",
             "the ramp has an axis for it",
-            if painted && two { "the shade knows one: the two are taken together" } else { "there is one light" },
+            if painted && two { "the shade knows one: all are taken together" } else { "there is one light" },
+        );
+        add(
+            paint.is_some_and(|paint| !paint.light_pairs.is_empty()),
+            "two lights for each object",
+            "the style has more than two, or objects name theirs",
+            "all objects have the same lights",
         );
         add(
             paint.is_some_and(|paint| paint.interpolates_light),
@@ -422,6 +438,12 @@ impl PaintPlan {
             _ => None,
         };
         let lights = lights_in_world(&style.lights, model.lights(), scene, camera);
+        let has_own = || scene.objects().iter().any(|object| object.lights().is_some());
+        let (light_pairs, object_pairs) = if model.pairs_lights() && (lights.len() > 2 || has_own()) {
+            light_pairs(&lights, scene, style.shadow.is_some())?
+        } else {
+            (Vec::new(), Vec::new())
+        };
         let is_near = |light: &Light| matches!(light.place, LightKind::Positional { .. });
         let interpolates_light = !model.is_normals()
             && (hatch.is_some()
@@ -436,6 +458,8 @@ impl PaintPlan {
             light_color: combined_color(&lights),
             view: ShadeView { eye_depth: eye_depth_plane(camera), depth_range: scene.depth_range(camera) },
             lights,
+            light_pairs,
+            object_pairs,
             interpolates_light,
             hatch,
         })
@@ -443,6 +467,14 @@ impl PaintPlan {
 }
 
 impl PaintPlan {
+    /// The lights of an object, and their combined colour.
+    pub fn lights_of(&self, object: u32) -> (&[Light], DVec3) {
+        match self.object_pairs.get(object as usize) {
+            Some(&pair) => (&self.light_pairs[pair as usize].lights, self.light_pairs[pair as usize].color),
+            None => (&self.lights, self.light_color),
+        }
+    }
+
     /// Whether light is constant over faces or pieces of faces.
     pub fn lights_faces(&self) -> bool {
         self.interpolates_light && self.normals.is_constant()

@@ -11,13 +11,13 @@ use crate::error::HarnessError;
 use crate::image_lines::ImageInk;
 use crate::lights::StyleLight;
 use crate::printed_fins::PrintedLines;
+use crate::scene::MAX_LIGHTS;
 use crate::schema::{within, within_colors};
 use crate::shade::Shade;
 use crate::shadow::{ShadowLines, ShadowStyle};
 use glam::Vec3;
 use npr_outline::line_style::LineStyle;
 use npr_toon::normal::NormalUse;
-use npr_toon::painter::Painter;
 
 /// A style.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,8 +32,9 @@ pub struct Style {
     pub shade: Shade,
     /// How the normals of a face are used.
     pub normals: NormalUse,
-    /// One or two lights. A shade that supports one replaces two by an approximation, see
-    /// [`crate::lights::lights_in_world`]. A light's brightness multiplies its N·L, and its colour the surface's
+    /// One to [`MAX_LIGHTS`] lights. A shade that supports one replaces several by an approximation, see
+    /// [`crate::lights::lights_in_world`]; of more than two, the painter takes two for each object, see
+    /// [`crate::lights::LightPair`]. A light's brightness multiplies its N·L, and its colour the surface's
     /// colour; Gooch shading ignores both.
     pub lights: Vec<StyleLight>,
     /// Whether the first light casts shadows, and how.
@@ -82,7 +83,8 @@ impl Style {
     /// # Errors
     /// The first broken rule: [`HarnessError::Toon`], [`HarnessError::Gooch`], [`HarnessError::Hatch`],
     /// [`HarnessError::SixTones`], [`HarnessError::NoThresholds`], [`HarnessError::MapEffort`],
-    /// [`HarnessError::ImageSpace`], [`HarnessError::Range`], [`HarnessError::NoLight`], [`HarnessError::NoShadow`].
+    /// [`HarnessError::ImageSpace`], [`HarnessError::Range`], [`HarnessError::NoLight`],
+    /// [`HarnessError::TooManyLights`], [`HarnessError::NoShadow`].
     pub fn validate(&self) -> Result<(), HarnessError> {
         within_colors("a component of the paper", &self.paper.to_array())?;
         within("a crease's angle", self.crease_angle_rad.to_degrees(), 0.0, 180.0, "0..=180 degrees")?;
@@ -90,8 +92,11 @@ impl Style {
             return Err(HarnessError::NoLight);
         }
         self.normals.validate()?;
-        // The shade that supports the most lights.
-        Painter::new(self.lights.iter().map(|light| light.light).collect())?;
+        if self.lights.len() > MAX_LIGHTS {
+            return Err(HarnessError::TooManyLights { lights: self.lights.len(), max: MAX_LIGHTS });
+        }
+        let lights: Vec<_> = self.lights.iter().map(|light| light.light).collect();
+        npr_toon::source::validate(&lights)?;
         let Lines { printed, edges, image } = &self.lines;
         printed.as_ref().map_or(Ok(()), PrintedLines::validate)?;
         edges.as_ref().map_or(Ok(()), crate::edge_lines::plan::validate)?;

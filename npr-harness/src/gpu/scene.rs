@@ -161,7 +161,7 @@ impl GpuScene {
             solid,
             first_vertices,
             blended_faces,
-            instances: RefCell::new(Instances::new(context, scene, regions_of)?),
+            instances: RefCell::new(Instances::new(context, scene, regions_of, plan.object_pairs())?),
             materials,
             most_draws: if context.is_software() { SOFTWARE_DRAWS } else { usize::MAX },
             edges: None,

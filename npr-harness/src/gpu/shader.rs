@@ -80,7 +80,9 @@ pub(super) struct ShaderKey {
 /// The GPU resources for the light and the shade of a picture, limited to those that the shade uses.
 pub(super) struct LightOnDevice {
     pub(super) key: ShaderKey,
+    /// `ToonPainter` of all objects, or one for each pair of lights, [`LightOnDevice::stride`] bytes apart.
     pub(super) lights: wgpu::Buffer,
+    pub(super) stride: u32,
     pub(super) shade: Option<wgpu::Buffer>,
     pub(super) image: Option<wgpu::TextureView>,
 }
@@ -110,7 +112,16 @@ impl LightOnDevice {
         };
         let at_vertices = paint.is_some_and(|paint| paint.normals == NormalUse::PerVertex);
         // Unchecked, because two lights that cancel out have no direction, which is not an error here.
-        let placed = PainterUniform::unchecked(lights, shade.light_scale);
+        let placed = |lights: &[Light]| PainterUniform::unchecked(lights, shade.light_scale);
+        let stride = (size_of::<PainterUniform>() as u32)
+            .next_multiple_of(context.device.limits().min_uniform_buffer_offset_alignment);
+        let pairs = paint.map_or(&[][..], |paint| &paint.light_pairs);
+        let mut placed_lights = bytemuck::bytes_of(&placed(lights)).to_vec();
+        for (number, pair) in pairs.iter().enumerate() {
+            placed_lights.truncate(number * stride as usize);
+            placed_lights.extend_from_slice(bytemuck::bytes_of(&placed(&pair.lights)));
+            placed_lights.resize((number + 1) * stride as usize, 0);
+        }
         let uniform = |contents: &[u8]| uniform_buffer(&context.device, contents);
         Ok(Self {
             key: ShaderKey {
@@ -119,7 +130,8 @@ impl LightOnDevice {
                 at_vertices,
                 lights_faces,
             },
-            lights: uniform(bytemuck::bytes_of(&placed)),
+            lights: uniform(&placed_lights),
+            stride,
             shade: (!shade.uniform.is_empty()).then(|| uniform(&shade.uniform)),
             image,
         })
@@ -130,7 +142,10 @@ impl LightOnDevice {
 fn light_constants(paint: Option<&PaintPlan>, lights: &[Light]) -> [(&'static str, f64); 4] {
     let positional =
         |number: usize| flag(matches!(lights.get(number).map(|light| light.place), Some(LightKind::Positional { .. })));
-    let tinted = lights.first().is_none_or(|light| light.brightness != 1.0 || light.color != glam::Vec3::ONE);
+    // Pairs of lights share a pipeline. A direction is a position at infinity.
+    let paired = paint.is_some_and(|paint| !paint.light_pairs.is_empty());
+    let any_positional = flag((0..lights.len()).any(|number| positional(number) != 0.0));
+    let tinted = paired || lights.first().is_none_or(|light| light.brightness != 1.0 || light.color != glam::Vec3::ONE);
     [
         (
             "surface_normals",
@@ -141,8 +156,8 @@ fn light_constants(paint: Option<&PaintPlan>, lights: &[Light]) -> [(&'static st
                 Some(NormalUse::PerFace | NormalUse::PerSubdividedFace(_)) => 3.0,
             },
         ),
-        ("surface_first_positional", positional(0)),
-        ("surface_second_positional", positional(1)),
+        ("surface_first_positional", if paired { any_positional } else { positional(0) }),
+        ("surface_second_positional", if paired { any_positional } else { positional(1) }),
         ("surface_tinted", flag(tinted)),
     ]
 }

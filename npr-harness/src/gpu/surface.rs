@@ -20,8 +20,10 @@ use npr_imagespace::artist::LineKind;
 use npr_imagespace::format::texel::{DepthCode, TexelLayout};
 use npr_imagespace::pass::fused::texel_format;
 use npr_outline::filled_buffer::filled_buffer;
+use npr_toon::painter::PainterUniform;
 use std::cell::RefCell;
 use std::collections::HashMap;
+use std::num::NonZeroU64;
 use std::ops::Range;
 
 /// `SurfaceView` of `surface.wgsl`.
@@ -113,6 +115,8 @@ struct Drawn<'a> {
     instances: wgpu::BufferSlice<'a>,
     count: u32,
     mirrored: bool,
+    /// The index of the pair of lights.
+    lights: u32,
 }
 
 /// The render targets of the pass: depth, and optionally colour and G-buffer texels.
@@ -238,7 +242,7 @@ impl SurfacePass {
                 uniform(0),
                 uniform(1),
                 uniform(2),
-                uniform(3),
+                one_of(3, true),
                 fragment(4, texture),
                 uniform(5),
                 fragment(6, texture),
@@ -319,7 +323,11 @@ impl SurfacePass {
             view.as_entire_binding(),
             light.shade.as_ref().unwrap_or(&self.blank.uniform).as_entire_binding(),
             ink.as_entire_binding(),
-            light.lights.as_entire_binding(),
+            wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+                buffer: &light.lights,
+                offset: 0,
+                size: NonZeroU64::new(size_of::<PainterUniform>() as u64),
+            }),
             wgpu::BindingResource::TextureView(shade_image),
             hatch_uniform.as_ref().unwrap_or(&strokes.blank).as_entire_binding(),
             wgpu::BindingResource::TextureView(&strokes.light),
@@ -379,6 +387,7 @@ impl SurfacePass {
             ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
         };
         let bound = (&view_group, uploaded, targets.depth);
+        let paired = !plan.object_pairs().is_empty();
         let mut set = None;
         let mut draw = |pass: &mut wgpu::RenderPass<'_>, drawn: Drawn<'_>, colored: bool, blended: bool| {
             let material = &scene.materials()[drawn.material];
@@ -419,6 +428,9 @@ impl SurfacePass {
                 pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
                 set = Some(variant);
             }
+            if paired {
+                pass.set_bind_group(0, &view_group, &[drawn.lights * light.stride]);
+            }
             uploaded.materials.bind(pass, drawn.material);
             pass.set_vertex_buffer(4, drawn.instances);
             pass.draw_indexed(drawn.indices, 0, 0..drawn.count);
@@ -449,6 +461,7 @@ impl SurfacePass {
                     instances: instances.slice(run),
                     count: run.objects.len() as u32,
                     mirrored: run.mirrored,
+                    lights: run.lights,
                 };
                 draw(&mut pass, drawn, colored, false);
             }
@@ -467,6 +480,7 @@ impl SurfacePass {
                 instances: instances.slice_of(object),
                 count: 1,
                 mirrored: scene.objects()[object as usize].is_mirrored(),
+                lights: plan.object_pairs().get(object as usize).copied().unwrap_or(0),
             };
             draw(&mut pass, drawn, true, true);
             start = end;
@@ -621,7 +635,7 @@ fn begin<'a>(
         }),
         ..Default::default()
     });
-    pass.set_bind_group(0, view_group, &[]);
+    pass.set_bind_group(0, view_group, &[0]);
     pass.set_vertex_buffer(0, uploaded.vertices.slice(..));
     if let Some(lookups) = &uploaded.lookups {
         pass.set_vertex_buffer(1, lookups.slice(..));
