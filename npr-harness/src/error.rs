@@ -127,7 +127,7 @@ pub enum HarnessError {
         style: String,
     },
     /// A style without a light.
-    #[error("a style needs one light or two")]
+    #[error("a style needs one to eight lights")]
     NoLight,
     /// A style file that is not TOML, or has unknown keys or invalid values.
     #[error("{}:{line}:{column}: {message}", path.display())]
@@ -323,6 +323,24 @@ pub enum HarnessError {
         object: usize,
         /// The name of the material.
         material: String,
+    },
+    /// An object names two lights that it cannot have.
+    #[error("object {object} cannot have the lights {} and {}: {fault}", lights[0], lights[1])]
+    ObjectLights {
+        /// The index of the object.
+        object: usize,
+        /// The indices of the lights.
+        lights: [usize; 2],
+        /// What is wrong with them.
+        fault: &'static str,
+    },
+    /// A style has more lights than [`crate::scene::MAX_LIGHTS`].
+    #[error("{lights} lights are too many: a style has at most {max}")]
+    TooManyLights {
+        /// The number of lights.
+        lights: usize,
+        /// The maximum.
+        max: usize,
     },
     /// A scene with a clipping plane, and a style with lines that do not support it.
     #[error(

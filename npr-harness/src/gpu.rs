@@ -151,7 +151,7 @@ impl<'a> GpuRenderer<'a> {
         }
         let light = LightOnDevice::new(self.context, plan)?;
         let regions = plan.image.as_ref().map(|image| &image.regions);
-        uploaded.instances.borrow_mut().update(self.context, scene, regions);
+        uploaded.instances.borrow_mut().update(self.context, scene, regions, plan.object_pairs());
         let frame = SurfaceFrame { device, scene, uploaded, plan, light: &light };
         targets.begin();
         let mut encoder = device.create_command_encoder(&Default::default());

@@ -17,7 +17,7 @@
 //!
 //! | for | modules |
 //! | --- | --- |
-//! | what is shown | [`scene`], [`camera`], [`view`], [`lights`], [`texture`], [`color`] |
+//! | what is shown | [`scene`], [`camera`], [`view`], [`lights`], [`facets`], [`texture`], [`color`] |
 //! | how it looks | [`style`], and a module for each technique: [`shade`], [`hatch`], [`edge_lines`], [`printed_fins`], [`hull_lines`], [`image_lines`], [`shadow`] |
 //! | rendering | [`plan`], [`capabilities`], [`picture_limits`], [`executor`], [`gpu`], [`cpu`], [`rays`], [`picture`] |
 //! | measuring | [`truth`], what is exactly right; [`compare`]; [`check`] |
@@ -51,6 +51,7 @@ mod derived;
 pub mod edge_lines;
 pub mod error;
 pub mod executor;
+pub mod facets;
 pub mod figures;
 pub mod gallery;
 #[cfg(feature = "gpu")]

@@ -11,10 +11,11 @@ use crate::edge_lines::EdgeLineMethod;
 use crate::edge_lines::EdgeLinePlan;
 use crate::edge_lines::plan::device_bytes;
 use crate::error::HarnessError;
+use crate::facets::{Facet, facets};
 use crate::hatch::{HatchMapping, HatchPlan};
 use crate::hull_lines::HullPlan;
 use crate::image_lines::{ImagePlan, InkScale};
-use crate::lights::{casting_light, lights_in_world};
+use crate::lights::{LightPair, casting_light, light_pairs, lights_in_world};
 use crate::picture_limits::check_picture;
 use crate::printed_fins::PrintedFinPlan;
 use crate::scene::Scene;
@@ -29,6 +30,7 @@ use npr_outline::LineKind;
 use npr_toon::normal::NormalUse;
 use npr_toon::source::{Light, LightKind, combined_color};
 use std::fmt;
+use std::sync::Arc;
 
 /// A pass or a method, and why it is used or left out.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -44,16 +46,22 @@ pub struct Reason {
 pub struct PaintPlan {
     /// The shade, never [`Shade::Paper`].
     pub shade: Shade,
-    /// How the three normals of a triangle are used.
+    /// How the normals of a face are used.
     pub normals: NormalUse,
+    /// Per mesh: where and with which normal each face is lit, for [`NormalUse::PerFace`]; else empty.
+    pub facets: Vec<Arc<Vec<Facet>>>,
     /// The lights that the shade supports, in scene space.
     pub lights: Vec<Light>,
     /// The combined colour of the lights.
     pub light_color: DVec3,
+    /// If each object has two of the lights, the distinct pairs; else empty.
+    pub light_pairs: Vec<LightPair>,
+    /// Per object: the index of its pair; empty if there are no pairs.
+    pub object_pairs: Vec<u32>,
     /// The data of scene and view that the shade uses.
     pub view: ShadeView,
     /// Whether lighting needs more than per-pixel normals and constant light directions: positions, or lighting
-    /// computed at vertices.
+    /// computed at vertices or for whole faces.
     pub interpolates_light: bool,
     /// The data for strokes, if surfaces are hatched.
     pub hatch: Option<HatchPlan>,
@@ -105,7 +113,7 @@ impl Plan {
     ///
     /// # Errors
     /// Errors of the style ([`Style::validate`]), of its lines and of its tonal art map;
-    /// [`HarnessError::ClippedEdges`], [`HarnessError::ShadowMapLight`]; [`HarnessError::Size`] and
+    /// [`HarnessError::ClippedEdges`], [`HarnessError::ShadowMapLight`], [`HarnessError::ObjectLights`]; [`HarnessError::Size`] and
     /// [`HarnessError::PictureMemory`]; and if the adapter lacks a capability: [`HarnessError::TextureTooLarge`],
     /// [`HarnessError::ParallelVolumes`].
     pub fn new(scene: &Scene, style: &Style, view: &View, capabilities: &Capabilities) -> Result<Self, HarnessError> {
@@ -226,6 +234,11 @@ impl Plan {
             capabilities.check_size("the tonal art map", (side, side))?;
             add("tonal art map", capabilities.half_float_maps().1);
         }
+        if let Some(paint) = self.paint.as_ref().filter(|paint| paint.lights_faces()) {
+            let texels = paint.corner_texels(scene);
+            capabilities.check_size("the faces' corners", corner_texture_size(texels, capabilities.texture_px))?;
+            add("light of faces", "corners of faces in a texture, which vertex shaders read");
+        }
         if self.looks_up {
             for texture in scene.textures() {
                 capabilities.check_size("a texture of the model", (texture.width, texture.height))?;
@@ -254,6 +267,12 @@ impl Plan {
     #[cfg(feature = "gpu")]
     pub(crate) fn computes(&self) -> bool {
         self.edge_lines.as_ref().is_some_and(|lines| lines.method == EdgeLineMethod::OnDevice)
+    }
+
+    /// Per object: the index of its pair of lights; empty if there are no pairs.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn object_pairs(&self) -> &[u32] {
+        self.paint.as_ref().map_or(&[], |paint| &paint.object_pairs)
     }
 
     /// The data for strokes, if surfaces are hatched.
@@ -396,13 +415,25 @@ impl Plan {
             paint.is_some_and(|paint| paint.lights.len() > 1),
             "second light",
             "the ramp has an axis for it",
-            if painted && two { "the shade knows one: the two are taken together" } else { "there is one light" },
+            if painted && two { "the shade knows one: all are taken together" } else { "there is one light" },
+        );
+        add(
+            paint.is_some_and(|paint| !paint.light_pairs.is_empty()),
+            "two lights for each object",
+            "the style has more than two, or objects name theirs",
+            "all objects have the same lights",
         );
         add(
             paint.is_some_and(|paint| paint.interpolates_light),
             "positions or light between vertices",
-            "a light is near, strokes lie on surfaces, or the style asks for vertices' light",
+            "a light is near, strokes lie on surfaces, or the style asks for vertices' or faces' light",
             "the light comes from far away, and meets normals at pixels",
+        );
+        add(
+            paint.is_some_and(PaintPlan::lights_faces),
+            "one light for a face or a piece of one",
+            "the style asks for it",
+            "light varies over a face",
         );
         let mapping = self.hatch().map(|hatch| hatch.shade.mapping);
         add(
@@ -439,22 +470,60 @@ impl PaintPlan {
             _ => None,
         };
         let lights = lights_in_world(&style.lights, model.lights(), scene, camera);
+        let has_own = || scene.objects().iter().any(|object| object.lights().is_some());
+        let (light_pairs, object_pairs) = if model.pairs_lights() && (lights.len() > 2 || has_own()) {
+            light_pairs(&lights, scene, style.shadow.is_some())?
+        } else {
+            (Vec::new(), Vec::new())
+        };
         let is_near = |light: &Light| matches!(light.place, LightKind::Positional { .. });
         let interpolates_light = !model.is_normals()
             && (hatch.is_some()
                 || style.normals != NormalUse::PerPixel
                 || model.needs_position()
                 || lights.iter().any(is_near));
+        let lights_faces = interpolates_light && style.normals == NormalUse::PerFace;
         Ok(Self {
             shade: style.shade.clone(),
             normals: style.normals,
+            facets: if lights_faces { scene.meshes().iter().map(|mesh| facets(mesh)).collect() } else { Vec::new() },
             light_color: combined_color(&lights),
             view: ShadeView { eye_depth: eye_depth_plane(camera), depth_range: scene.depth_range(camera) },
             lights,
+            light_pairs,
+            object_pairs,
             interpolates_light,
             hatch,
         })
     }
+}
+
+impl PaintPlan {
+    /// The lights of an object, and their combined colour.
+    pub fn lights_of(&self, object: u32) -> (&[Light], DVec3) {
+        match self.object_pairs.get(object as usize) {
+            Some(&pair) => (&self.light_pairs[pair as usize].lights, self.light_pairs[pair as usize].color),
+            None => (&self.lights, self.light_color),
+        }
+    }
+
+    /// Whether light is constant over faces or pieces of faces.
+    pub fn lights_faces(&self) -> bool {
+        self.interpolates_light && self.normals.is_constant()
+    }
+
+    /// The number of texels from which a device reads where faces are lit: two, a position and a normal, per face or per
+    /// corner.
+    pub(crate) fn corner_texels(&self, scene: &Scene) -> usize {
+        let per_face = if self.normals == NormalUse::PerFace { 2 } else { 6 };
+        scene.meshes().iter().map(|mesh| per_face * mesh.model().faces.len()).sum()
+    }
+}
+
+/// The size of a texture for these texels, in rows of up to 4096.
+pub(crate) fn corner_texture_size(texels: usize, texture_px: u32) -> (u32, u32) {
+    let width = texture_px.clamp(1, 4096);
+    (width, u32::try_from(texels.div_ceil(width as usize).max(1)).unwrap_or(u32::MAX))
 }
 
 /// The plane (n, d) such that n · p + d is the eye depth of a point p.

@@ -8,7 +8,7 @@ mod mesh;
 mod object;
 
 pub use mesh::Mesh;
-pub use object::{Object, ObjectLines};
+pub use object::{MAX_LIGHTS, Object, ObjectLines};
 
 use crate::camera::Camera;
 use crate::color::encode_rgb;
@@ -259,6 +259,29 @@ impl Scene {
         (object.first_material, object.one_material) = (self.materials.len(), true);
         self.add_material(material);
         self.sort_objects();
+        Ok(())
+    }
+
+    /// Names the two lights of a style, by their indices, that a shade with two lights takes for an object; `None` lets the
+    /// shade choose. A plan refuses those that its style does not have.
+    ///
+    /// # Errors
+    /// [`HarnessError::ObjectLights`] if they are the same, or if an index is not below [`MAX_LIGHTS`].
+    ///
+    /// # Panics
+    /// If there is no such object.
+    pub fn set_lights(&mut self, object: usize, lights: Option<[usize; 2]>) -> Result<(), HarnessError> {
+        if let Some(named) = lights {
+            let fault = match named {
+                [first, second] if first == second => Some("they are the same"),
+                [first, second] if first.max(second) >= MAX_LIGHTS => Some("a style has at most 8 lights"),
+                _ => None,
+            };
+            if let Some(fault) = fault {
+                return Err(HarnessError::ObjectLights { object, lights: named, fault });
+            }
+        }
+        self.objects[object].lights = lights;
         Ok(())
     }
 

@@ -1,6 +1,7 @@
 //! Styles: the appearance of a picture, independent of the scene.
 
 mod file;
+mod normals_key;
 mod presets;
 mod schema;
 
@@ -11,13 +12,13 @@ use crate::hull_lines::HullLines;
 use crate::image_lines::ImageInk;
 use crate::lights::StyleLight;
 use crate::printed_fins::PrintedLines;
+use crate::scene::MAX_LIGHTS;
 use crate::schema::{within, within_colors};
 use crate::shade::Shade;
 use crate::shadow::{ShadowLines, ShadowStyle};
 use glam::Vec3;
 use npr_outline::line_style::LineStyle;
 use npr_toon::normal::NormalUse;
-use npr_toon::painter::Painter;
 
 /// A style.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,13 +31,14 @@ pub struct Style {
     pub paper: Vec3,
     /// How surfaces are painted.
     pub shade: Shade,
-    /// How the three normals of a triangle are used.
+    /// How the normals of a face are used.
     pub normals: NormalUse,
     /// Whether normals are used as they are in the vertex buffer, untransformed, as the listings of Card & Mitchell 2002
     /// have them. They are world space only where an object's transform is the identity.
     pub mesh_normals: bool,
-    /// One or two lights. A shade that supports one replaces two by an approximation, see
-    /// [`crate::lights::lights_in_world`]. A light's brightness multiplies its N·L, and its colour the surface's
+    /// One to [`MAX_LIGHTS`] lights. A shade that supports one replaces several by an approximation, see
+    /// [`crate::lights::lights_in_world`]; of more than two, the painter takes two for each object, see
+    /// [`crate::lights::LightPair`]. A light's brightness multiplies its N·L, and its colour the surface's
     /// colour; Gooch shading ignores both.
     pub lights: Vec<StyleLight>,
     /// Whether the first light casts shadows, and how.
@@ -92,15 +94,20 @@ impl Style {
     /// # Errors
     /// The first broken rule: [`HarnessError::Toon`], [`HarnessError::Gooch`], [`HarnessError::Hatch`],
     /// [`HarnessError::SixTones`], [`HarnessError::NoThresholds`], [`HarnessError::MapEffort`],
-    /// [`HarnessError::ImageSpace`], [`HarnessError::Range`], [`HarnessError::NoLight`], [`HarnessError::NoShadow`].
+    /// [`HarnessError::ImageSpace`], [`HarnessError::Range`], [`HarnessError::NoLight`],
+    /// [`HarnessError::TooManyLights`], [`HarnessError::NoShadow`].
     pub fn validate(&self) -> Result<(), HarnessError> {
         within_colors("a component of the paper", &self.paper.to_array())?;
         within("a crease's angle", self.crease_angle_rad.to_degrees(), 0.0, 180.0, "0..=180 degrees")?;
         if self.lights.is_empty() {
             return Err(HarnessError::NoLight);
         }
-        // The shade that supports the most lights.
-        Painter::new(self.lights.iter().map(|light| light.light).collect())?;
+        self.normals.validate()?;
+        if self.lights.len() > MAX_LIGHTS {
+            return Err(HarnessError::TooManyLights { lights: self.lights.len(), max: MAX_LIGHTS });
+        }
+        let lights: Vec<_> = self.lights.iter().map(|light| light.light).collect();
+        npr_toon::source::validate(&lights)?;
         let Lines { hull, printed, edges, image } = &self.lines;
         hull.as_ref().map_or(Ok(()), HullLines::validate)?;
         printed.as_ref().map_or(Ok(()), PrintedLines::validate)?;

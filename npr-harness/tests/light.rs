@@ -149,6 +149,7 @@ fn cases() -> Vec<(&'static str, Shade, Vec<StyleLight>)> {
         ("bands, dim", Shade::Toon(Bands { highlight: None, ..Bands::default() }), vec![dim]),
         ("bands, a lamp", Shade::Toon(Bands::default()), vec![there]),
         ("bands, two lights as one", Shade::Toon(Bands::default()), vec![dim, lamp]),
+        ("bands, absolute", Shade::Toon(Bands { absolute: true, ..Bands::default() }), vec![dim]),
         ("bands, aliased", Shade::Toon(aliased), vec![key]),
         ("hard ramp", ramp(RampSource::Stops(stops(RampBlend::Hard)), None), vec![key]),
         ("smooth ramp, half-Lambert", ramp(RampSource::Stops(smooth), half), vec![lamp]),
@@ -204,9 +205,16 @@ fn the_same_on_both(cases: Vec<(&'static str, Shade, Vec<StyleLight>)>, shadow: 
         let hits = PrimaryHits::kept(&scene, View::new(camera, SIZE), PLACES);
         let mut before = None;
         for (number, (name, shade, lights)) in cases.clone().into_iter().enumerate() {
-            // In a parallel view, one use of normals and half of the cases.
-            let all = [NormalUse::PerPixel, NormalUse::Interpolated, NormalUse::PerVertex];
-            for normals in all.into_iter().filter(|&n| fov_y_rad.is_some() || n as usize + 3 == number % 6) {
+            // In a parallel view, at most one use of normals for each case.
+            let all = [
+                NormalUse::PerPixel,
+                NormalUse::Interpolated,
+                NormalUse::PerVertex,
+                NormalUse::PerFace,
+                NormalUse::PerSubdividedFace(3),
+            ];
+            let used = |which: &usize| fov_y_rad.is_some() || (which + 3) % 6 == number % 6;
+            for normals in (0..all.len()).filter(used).map(|which| all[which]) {
                 let red = Composite::Over { color: Vec3::X, opacity: 0.5 };
                 let shadows = match number % 4 {
                     0 => ShadowLines::Lines,

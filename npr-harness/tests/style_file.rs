@@ -19,6 +19,8 @@ use npr_imagespace::composite::Composite;
 use npr_imagespace::morphology::disc::Disc;
 use npr_outline::LineKind;
 use npr_outline::hull::HullNormals;
+use npr_toon::Bands;
+use npr_toon::normal::NormalUse;
 use npr_toon::row::{RampRow, TexelFilter};
 use npr_toon::source::Light;
 use npr_toon::table::RampTable;
@@ -82,10 +84,31 @@ fn every_style_survives_being_written_and_read() {
         let style = parse(text).unwrap_or_else(|error| panic!("{error}\n{text}"));
         all.push(Style { name: "one".into(), ..style });
     }
+    all.push(Style { shade: Shade::Toon(Bands { absolute: true, ..Bands::default() }), ..named("toon") });
+    for normals in [NormalUse::Interpolated, NormalUse::PerFace, NormalUse::PerSubdividedFace(7)] {
+        all.push(Style { normals, ..named("toon") });
+    }
     for style in all {
         let text = style.to_toml().expect("every style has a form");
         assert_eq!(parse(&text).unwrap_or_else(|e| panic!("{e}\n{text}")), style, "{text}");
     }
+}
+
+/// The form of the text on listing 3, as docs/errata.md has it.
+const DIFFUSE_AND_SPECULAR: &str = "\
+[shade.toon]
+absolute = true
+antialias = false
+thresholds = [0.1]
+tones = [[0.2, 0.2, 0.2], [0.6, 0.6, 0.6]]
+highlight = { threshold = 0.8, color = [0.9, 0.9, 1.0] }
+";
+
+#[test]
+fn the_page_of_errata_has_this_style() {
+    let page = include_str!("../../docs/errata.md");
+    let block: String = DIFFUSE_AND_SPECULAR.lines().map(|line| format!("  {line}\n")).collect();
+    assert!(page.contains(&block), "{block}");
 }
 
 #[test]
@@ -93,6 +116,12 @@ fn what_is_left_out_has_its_default() {
     let style = parse("").expect("an empty file is a style");
     assert_eq!((style.name.as_str(), style.lights.len(), &style.shade), ("mine", 1, &named("toon").shade));
     assert_eq!(style.lines, Lines::NONE);
+    for text in ["\"per-subdivided-face\"", "{ per-subdivided-face = 4 }"] {
+        let style = parse(&format!("normals = {text}")).expect("a style");
+        assert_eq!(style.normals, NormalUse::PerSubdividedFace(4));
+    }
+    let style = parse(DIFFUSE_AND_SPECULAR).expect("a style");
+    assert_eq!(style.shade, Shade::Toon(Bands { absolute: true, ..Bands::diffuse_and_specular() }));
     let style = parse("shade = \"paper\"\n[lines.image]\n").expect("a style");
     assert_eq!(style.shade, Shade::Paper);
     let style = parse("paper = \"#ff8000\"\n").expect("a style");
@@ -168,6 +197,13 @@ fn a_misspelt_key_gets_a_proposal() {
             "unknown variant `volume` (did you mean `volumes`?), expected `volumes` or `map`",
         ),
         ("normals = \"per-pixl\"", "`per-pixel`?"),
+        (
+            "normals = { per-subdivide-face = 3 }",
+            "unknown field `per-subdivide-face` (did you mean `per-subdivided-face`?)",
+        ),
+        ("normals = 3", "invalid type: integer `3`, expected a use of normals, "),
+        ("normals = { per-subdivided-face = 0 }", "0 divisions of each side of a face: it must be 1..=64"),
+        ("normals = {}", "an empty table: it needs per-subdivided-face"),
         ("[shadow]\nwatercolour = 1", "unknown field `watercolour`, expected "),
     ] {
         assert!(message(text).starts_with("some/mine.toml:"), "{text}: {}", message(text));
@@ -240,11 +276,11 @@ fn what_is_wrong_is_said() {
         ("paper = \"#12345g\"", "no colour"),
         ("paper = [2, 0, 0]", "a component of the paper of 2"),
         ("crease-angle-deg = nan", "crease"),
-        ("light = []", "one light or two"),
+        ("light = []", "one to eight lights"),
         ("[[light]]\n", "light 0 needs either a direction or a position"),
         ("[[light]]\ndirection = [0, 0, 0]\n", "light 0 comes from"),
         ("[[light]]\ndirection = [0, 0, 1]\nbrightness = -1\n", "brightness of light 0"),
-        (&"[[light]]\ndirection = [0, 0, 1]\n".repeat(3), "3 lights are too many"),
+        (&"[[light]]\ndirection = [0, 0, 1]\n".repeat(9), "9 lights are too many: a style has at most 8"),
         ("[shade.toon]\nthresholds = [0.5, 0.1]\ntones = [[0,0,0],[0,0,0],[0,0,0]]", "threshold 1 is 0.1"),
         ("[shade.toon]\nthresholds = []\ntones = []", "at least one tone"),
         ("[shade.toon]\nthresholds = [nan]\ntones = [[0,0,0],[0,0,0]]", "not finite"),

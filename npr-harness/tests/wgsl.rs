@@ -29,7 +29,7 @@ fn the_surface_shaders_validate() {
             ["vs_plain_inked", "fs_painted_inked", "fs_painted_textured_inked", "fs_texels", "fs_texels_textured"];
         let plain = ["vs_depth", "vs_plain", "vs_textured", "fs_painted", "fs_painted_textured", "fs_nothing"];
         let lit = ["vs_lit", "fs_lit", "fs_lit_inked", "fs_lit_plain", "fs_lit_vertex"];
-        let others = ["fs_cut_out", "fs_clipped"];
+        let others = ["fs_cut_out", "fs_clipped", "vs_facet", "fs_facet", "fs_facet_inked"];
         for name in plain.into_iter().chain(inked).chain(lit).chain(others) {
             assert!(entries.contains(&name), "{name} is not there");
         }

@@ -16,12 +16,16 @@ pub struct Bands {
     /// The values of N·L at which the next brighter band begins: strictly ascending, one fewer than tones. A value equal to
     /// a threshold belongs to the brighter band.
     pub thresholds: Vec<f32>,
-    /// The tones of the bands from dark to light: display-referred RGB factors on the surface's colour. At least one.
+    /// The tones of the bands from dark to light: display-referred RGB factors on the surface's colour, or, with
+    /// [`Bands::absolute`], the colours themselves. At least one.
     pub tones: Vec<Vec3>,
     /// The highlight, which covers the bands where N·H is large.
     pub highlight: Option<Highlight>,
     /// Whether borders are antialiased. If not, [`crate::toon_shade`] ignores its width arguments.
     pub antialias: bool,
+    /// Whether the tones are the colours of the picture, whatever colour the surface has, as in Card & Mitchell 2002,
+    /// listing 3, which reads no colour of a surface.
+    pub absolute: bool,
 }
 
 /// A highlight of one flat colour.
@@ -43,23 +47,32 @@ pub struct Highlight {
 impl Bands {
     /// Two tones with an antialiased border at N·L = 0 (Lake et al. 2000, section 3).
     pub fn hard_shading() -> Self {
-        Self { thresholds: vec![0.0], tones: vec![Vec3::splat(0.5), Vec3::ONE], highlight: None, antialias: true }
+        Self {
+            thresholds: vec![0.0],
+            tones: vec![Vec3::splat(0.5), Vec3::ONE],
+            highlight: None,
+            antialias: true,
+            absolute: false,
+        }
     }
 
-    /// Three diffuse bands with the constants and the aliased borders of Card & Mitchell 2002, listing 3.
+    /// Three diffuse bands with the constants and the aliased borders of Card & Mitchell 2002, listing 3. As factors, which
+    /// give the listing's colours on white; on every surface with [`Bands::absolute`].
     pub fn three_diffuse_bands() -> Self {
         Self {
             thresholds: vec![0.1, 0.8],
             tones: vec![Vec3::splat(0.2), Vec3::splat(0.6), Vec3::new(0.9, 0.9, 1.0)],
             highlight: None,
             antialias: false,
+            absolute: false,
         }
     }
 
     /// An ambient and a diffuse tone separated by a threshold on N·L, and a specular colour above a threshold on N·H, as the
     /// text of Card & Mitchell 2002 describes cartoon shading.
     ///
-    /// The text states no numbers, so thresholds and tones are those of listing 3.
+    /// The text states no numbers, so thresholds and tones are those of listing 3, as factors like those of
+    /// [`Bands::three_diffuse_bands`].
     pub fn diffuse_and_specular() -> Self {
         Self {
             thresholds: vec![0.1],
@@ -71,6 +84,7 @@ impl Bands {
                 lit_only: false,
             }),
             antialias: false,
+            absolute: false,
         }
     }
 
@@ -123,6 +137,7 @@ impl Default for Bands {
                 lit_only: true,
             }),
             antialias: true,
+            absolute: false,
         }
     }
 }

@@ -211,6 +211,14 @@ pub enum ToonError {
         /// The rejected value.
         value: f32,
     },
+    /// The number of divisions of [`crate::normal::NormalUse::PerSubdividedFace`] is outside its range.
+    #[error("{divisions} divisions of each side of a face: it must be 1..={max}")]
+    Divisions {
+        /// The rejected value.
+        divisions: u32,
+        /// The maximum, [`crate::normal::MAX_DIVISIONS`].
+        max: u32,
+    },
     /// The scale or bias of half-Lambert lighting is not finite, or the scale is not above 0.
     #[error("half-Lambert scale {scale} and bias {bias}: both must be finite, and the scale above 0")]
     HalfLambert {

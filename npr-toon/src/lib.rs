@@ -22,7 +22,8 @@
 //! - [`table`], [`painter`]: two lights, one per axis of a 2D ramp, with one common light colour.
 //! - [`x_toon`]: bands that fade with depth or near the silhouette.
 //! - [`half_lambert`]: half-Lambert lighting; [`source`]: lights, and the aggregate of several lights.
-//! - [`border`]: limits on the width of antialiased borders; [`normal`]: errors of interpolated normals.
+//! - [`border`]: limits on the width of antialiased borders; [`normal`]: light per pixel, from interpolated normals, per
+//!   vertex, per face and per piece of a face.
 //!
 //! # Sources
 //!
@@ -41,7 +42,7 @@
 //! # Colours
 //!
 //! All colours are display-referred (sRGB-encoded, 0..=1), as in the listings. A band's tone *multiplies* the surface's
-//! colour.
+//! colour, unless [`Bands::absolute`] makes it the colour itself, as listing 3 does.
 //!
 //! # Borders
 //!
@@ -100,6 +101,7 @@ pub const WGSL: &str = concat!(
     include_str!("row.wgsl"),
     include_str!("table.wgsl"),
     include_str!("painter.wgsl"),
+    include_str!("normal.wgsl"),
     include_str!("x_toon.wgsl"),
 );
 

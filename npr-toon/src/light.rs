@@ -99,13 +99,15 @@ pub fn toon_highlight(bands: &Bands, n_dot_l: f64, nl_width: f64, n_dot_h: f64, 
     f64::from(highlight.strength) * lit * toon_coverage(n_dot_h, f64::from(highlight.threshold), nh_width)
 }
 
-/// The display-referred colour of a pixel: the surface's colour times the tone of its band, covered by the highlight.
+/// The display-referred colour of a pixel: the surface's colour times the tone of its band, or the tone alone
+/// ([`Bands::absolute`]), covered by the highlight.
 ///
 /// `nl_width` and `nh_width` are the changes of N·L and N·H across the pixel ([`toon_width`]). They are ignored unless
 /// [`Bands::antialias`] is set.
 pub fn toon_shade(bands: &Bands, base_color: DVec3, n_dot_l: f64, nl_width: f64, n_dot_h: f64, nh_width: f64) -> DVec3 {
     let (nl_width, nh_width) = if bands.antialias { (nl_width, nh_width) } else { (0.0, 0.0) };
-    let color = base_color * toon_band(bands, n_dot_l, nl_width);
+    let factor = if bands.absolute { DVec3::ONE } else { base_color };
+    let color = factor * toon_band(bands, n_dot_l, nl_width);
     let Some(highlight) = bands.highlight else { return color };
     let opacity = toon_highlight(bands, n_dot_l, nl_width, n_dot_h, nh_width);
     color * (1.0 - opacity) + highlight.color.as_dvec3() * opacity

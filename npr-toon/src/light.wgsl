@@ -23,6 +23,11 @@ struct ToonBands {
     highlight_lit_only: u32,
     // 1: borders are antialiased.
     antialias: u32,
+    // 1: tones replace the surface's colour; 0: they are factors on it.
+    absolute: u32,
+    padding0: u32,
+    padding1: u32,
+    padding2: u32,
 }
 
 // A unit vector; a zero vector stays zero. The squared length must be a normal f32: vectors shorter than 1e-15 do not
@@ -108,7 +113,7 @@ fn toon_highlight(
     return strength * lit * toon_coverage(n_dot_h, threshold, nh_width);
 }
 
-// The surface's colour times the tone of its band, covered by the highlight.
+// The surface's colour times the tone of its band, or the tone alone, covered by the highlight.
 fn toon_shade(
     bands: ToonBands,
     base_color: vec3<f32>,
@@ -119,7 +124,8 @@ fn toon_shade(
 ) -> vec3<f32> {
     let nl_ramp = select(0.0, nl_width, bands.antialias != 0u);
     let nh_ramp = select(0.0, nh_width, bands.antialias != 0u);
-    let color = base_color * toon_band(bands, n_dot_l, nl_ramp);
+    let factor = select(base_color, vec3<f32>(1.0), bands.absolute != 0u);
+    let color = factor * toon_band(bands, n_dot_l, nl_ramp);
     let opacity = toon_highlight(
         bands.highlight.w,
         bands.highlight_strength,

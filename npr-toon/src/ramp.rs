@@ -61,7 +61,7 @@ pub struct Ramp {
 }
 
 impl Ramp {
-    /// The bands as a hard ramp over N·L, without the highlight. The first stop is at -1, or at 1 below the first threshold
+    /// The bands as a hard ramp over N·L, without the highlight, of factors on the surface's colour. The first stop is at -1, or at 1 below the first threshold
     /// if the first threshold is negative.
     pub fn from_bands(bands: &Bands) -> Result<Self, ToonError> {
         bands.validate()?;

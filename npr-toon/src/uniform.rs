@@ -10,7 +10,7 @@ pub const MAX_BANDS: usize = 8;
 /// The threshold after the last band: finite, and above any N·L plus half the maximum border width.
 const UNUSED_THRESHOLD: f32 = 1e4;
 
-/// `ToonBands` of the WGSL, 160 bytes.
+/// `ToonBands` of the WGSL, 176 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct ToonUniform {
@@ -27,6 +27,10 @@ pub struct ToonUniform {
     pub highlight_lit_only: u32,
     /// 1 if borders are antialiased, else 0.
     pub antialias: u32,
+    /// 1 if tones replace the surface's colour, 0 if they are factors on it.
+    pub absolute: u32,
+    /// Unused, 0.
+    pub padding: [u32; 3],
 }
 
 impl ToonUniform {
@@ -41,6 +45,7 @@ impl ToonUniform {
             bands: [last.extend(UNUSED_THRESHOLD).to_array(); MAX_BANDS],
             count: bands.tones.len() as u32,
             antialias: u32::from(bands.antialias),
+            absolute: u32::from(bands.absolute),
             ..Self::zeroed()
         };
         for (band, tone) in uniform.bands.iter_mut().zip(&bands.tones) {

@@ -144,7 +144,7 @@ fn interpolated_normals_are_too_short() {
     // Two normals at an angle of 60 degrees, and a light in the direction of their mean.
     let (sin, cos) = (0.5, 3.0_f64.sqrt() / 2.0);
     let normals = [DVec3::new(-sin, 0.0, cos), DVec3::new(sin, 0.0, cos) * 7.0, DVec3::Z];
-    let across = |normal_use, weights| toon_n_dot_l_across(normal_use, normals, [DVec3::Z * 3.0; 3], weights);
+    let across = |normal_use, weights| toon_n_dot_l_across(normal_use, DVec3::Z, normals, [DVec3::Z * 3.0; 3], weights);
     let middle = [0.5, 0.5, 0.0];
     assert_abs_diff_eq!(across(NormalUse::PerPixel, middle), 1.0, epsilon = 1e-15);
     assert_abs_diff_eq!(across(NormalUse::Interpolated, middle), cos, epsilon = 1e-15);
@@ -163,9 +163,9 @@ fn lighting_per_vertex_misses_a_light_close_to_a_face() {
     let corners = [DVec3::new(-1.0, 0.0, 0.0), DVec3::new(1.0, 0.0, 0.0), DVec3::new(0.0, 2.0, 0.0)];
     let centre = corners.iter().sum::<DVec3>() / 3.0;
     let to_lights = corners.map(|corner| centre + DVec3::Z * 0.1 - corner);
-    let across = |normal_use| toon_n_dot_l_across(normal_use, [DVec3::Z; 3], to_lights, [1.0 / 3.0; 3]);
+    let across = |normal_use| toon_n_dot_l_across(normal_use, DVec3::Z, [DVec3::Z; 3], to_lights, [1.0 / 3.0; 3]);
     assert!(across(NormalUse::PerVertex) < 0.1);
     assert!(across(NormalUse::Interpolated) < 0.1);
     assert!(across(NormalUse::PerPixel) > 0.8);
-    assert_eq!(toon_n_dot_l_across(NormalUse::PerPixel, [DVec3::ZERO; 3], to_lights, [1.0 / 3.0; 3]), 0.0);
+    assert_eq!(toon_n_dot_l_across(NormalUse::PerPixel, DVec3::Z, [DVec3::ZERO; 3], to_lights, [1.0 / 3.0; 3]), 0.0);
 }

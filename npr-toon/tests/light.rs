@@ -59,6 +59,22 @@ fn highlight_replaces_the_band() {
 }
 
 #[test]
+fn absolute_tones_are_the_colours_of_listing_3() {
+    let bands = Bands { absolute: true, ..Bands::three_diffuse_bands() };
+    let base = DVec3::new(1.0, 0.5, 0.25);
+    let colors = [gray(0.2), gray(0.6), Vec3::new(0.9, 0.9, 1.0).as_dvec3()];
+    for (n_dot_l, color) in [-0.5, 0.5, 0.9].into_iter().zip(colors) {
+        assert_eq!(toon_shade(&bands, base, n_dot_l, 0.0, 0.0, 0.0), color);
+    }
+    // A highlight covers them as it covers others.
+    let bands = Bands { absolute: true, ..Bands::diffuse_and_specular() };
+    let colors = [(0.0, 0.0, colors[0]), (0.5, 0.0, colors[1]), (0.5, 0.9, colors[2])];
+    for (n_dot_l, n_dot_h, color) in colors {
+        assert_eq!(toon_shade(&bands, base, n_dot_l, 0.0, n_dot_h, 0.0), color);
+    }
+}
+
+#[test]
 fn vectors() {
     let (n, l, e) = (DVec3::new(0.0, 0.0, 2.0), DVec3::new(0.0, 3.0, 4.0), DVec3::new(0.0, -3.0, 4.0));
     assert_abs_diff_eq!(toon_n_dot_l(n, l), 0.8, epsilon = 1e-15);

@@ -62,7 +62,7 @@ fn the_first_stop_of_bands_is_at_minus_1_or_1_below_a_negative_threshold() {
         (vec![2.0, 3.0], vec![-1.0, 2.0, 3.0]),
     ] {
         let tones = grays[..at.len()].iter().map(|&gray| Vec3::splat(gray)).collect();
-        let bands = Bands { thresholds, tones, highlight: None, antialias: false };
+        let bands = Bands { thresholds, tones, highlight: None, antialias: false, absolute: false };
         let expected: Vec<_> = at.into_iter().zip(grays).collect();
         assert_eq!(Ramp::from_bands(&bands).unwrap(), ramp(RampBlend::Hard, &expected));
     }

@@ -27,10 +27,16 @@ fn styles_survive_a_round_trip() {
     let highlight = Highlight { threshold: 0.5, color, strength: 1.0, lit_only: true };
     let highlight_json = json!({ "threshold": 0.5, "color": [0.5, 0.25, 1.0], "strength": 1.0, "lit-only": true });
     assert_round_trip(
-        Bands { thresholds: vec![0.5], tones: vec![Vec3::ZERO, color], highlight: Some(highlight), antialias: true },
+        Bands {
+            thresholds: vec![0.5],
+            tones: vec![Vec3::ZERO, color],
+            highlight: Some(highlight),
+            antialias: true,
+            absolute: true,
+        },
         json!({
             "thresholds": [0.5], "tones": [[0.0, 0.0, 0.0], [0.5, 0.25, 1.0]], "highlight": highlight_json,
-            "antialias": true,
+            "antialias": true, "absolute": true,
         }),
     );
     let ramp = Ramp { stops: vec![RampStop { at: 0.5, color }], blend: RampBlend::Smooth };
@@ -50,6 +56,10 @@ fn styles_survive_a_round_trip() {
         ]),
     );
     assert_round_trip((NormalUse::PerPixel, TexelFilter::Linear), json!(["per-pixel", "linear"]));
+    assert_round_trip(
+        [NormalUse::PerFace, NormalUse::PerSubdividedFace(6)],
+        json!(["per-face", { "per-subdivided-face": 6 }]),
+    );
 }
 
 #[test]

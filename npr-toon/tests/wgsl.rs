@@ -88,7 +88,8 @@ const EXCEPTIONS: Exceptions = Exceptions {
 
 /// The differences between the WGSL files, with one text replaced, and the Rust files.
 fn differences_with(old: &str, new: &str) -> Vec<String> {
-    let pairs = pairs!["light", "border", "half_lambert", "source", "ramp", "row", "table", "painter", "x_toon"];
+    let pairs =
+        pairs!["light", "border", "half_lambert", "source", "ramp", "row", "table", "painter", "normal", "x_toon"];
     let changed = WGSL.replace(old, new);
     assert!(old == new || changed != WGSL, "{old} is not there");
     differences(&validated(&changed), &pairs, &EXCEPTIONS)
@@ -130,13 +131,13 @@ fn uniforms_have_the_layout_of_the_shader() {
     assert_layout!(
         "ToonBands",
         ToonUniform,
-        [bands, highlight, count, highlight_strength, highlight_lit_only, antialias]
+        [bands, highlight, count, highlight_strength, highlight_lit_only, antialias, absolute]
     );
     assert_layout!("ToonRamp", RampUniform, [stops, is_smooth]);
     assert_layout!("ToonRamp2d", Ramp2dUniform, [a, b, corner]);
     assert_layout!("ToonPainter", PainterUniform, [light_a, light_b, light_color, brightness]);
     let sizes = [size_of::<ToonUniform>(), size_of::<RampUniform>(), size_of::<Ramp2dUniform>()];
-    assert_eq!((sizes, size_of::<PainterUniform>()), ([160, 144, 304], 64));
+    assert_eq!((sizes, size_of::<PainterUniform>()), ([176, 144, 304], 64));
 }
 
 /// The constants of the WGSL are equal to those of the Rust files.
@@ -240,7 +241,9 @@ fn packs_bands() {
     assert_eq!((uniform.bands[1], uniform.bands[7]), ([0.6, 0.6, 0.6, 1e4], [0.6, 0.6, 0.6, 1e4]));
     assert_eq!(uniform.highlight, [0.9, 0.9, 1.0, 0.8]);
     assert_eq!((uniform.count, uniform.highlight_strength), (2, 1.0));
-    assert_eq!((uniform.highlight_lit_only, uniform.antialias), (0, 0));
+    assert_eq!((uniform.highlight_lit_only, uniform.antialias, uniform.absolute), (0, 0, 0));
+    let absolute = Bands { absolute: true, ..Bands::diffuse_and_specular() };
+    assert_eq!(ToonUniform::new(&absolute).unwrap().absolute, 1);
     assert_eq!(ToonUniform::new(&Bands::hard_shading()).unwrap().highlight_strength, 0.0);
 }
 

@@ -42,9 +42,11 @@ impl Checker<'_> {
     pub(super) fn normals(&mut self) -> Result<(), HarnessError> {
         for error in normal_use_errors(NORMALS_SIZE)? {
             let technique = match error.normals {
-                NormalUse::PerVertex => "light per vertex",
-                NormalUse::Interpolated => "as interpolated",
-                NormalUse::PerPixel => "unit normals",
+                NormalUse::PerVertex => "light per vertex".to_owned(),
+                NormalUse::Interpolated => "as interpolated".to_owned(),
+                NormalUse::PerPixel => "unit normals".to_owned(),
+                NormalUse::PerFace => "light per face".to_owned(),
+                NormalUse::PerSubdividedFace(divisions) => format!("light per face of {divisions} divisions"),
             };
             let view = format!("{} a patch", error.segments);
             for (metric, value) in [
@@ -53,7 +55,7 @@ impl Checker<'_> {
                 ("Gooch: RMSE of 255", error.rmse[1]),
                 ("Gooch: largest error of 255", error.worst[1]),
             ] {
-                self.add("teapot", &view, technique, metric, value * 255.0, None);
+                self.add("teapot", &view, &technique, metric, value * 255.0, None);
             }
         }
         Ok(())

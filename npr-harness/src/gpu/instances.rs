@@ -26,13 +26,15 @@ pub(crate) const INSTANCE_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::Vert
     ],
 };
 
-/// Objects drawn by one call: same mesh, same material and same handedness.
+/// Objects drawn by one call: same mesh, same material, same handedness and same lights.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Run {
     pub(crate) mesh: usize,
     /// The index of their first material, and whether all faces use it.
     pub(crate) material: (usize, bool),
     pub(crate) mirrored: bool,
+    /// The index of their pair of lights, 0 if there are no pairs.
+    pub(crate) lights: u32,
     /// Their range in the instance buffer.
     pub(crate) objects: std::ops::Range<usize>,
 }
@@ -44,10 +46,17 @@ pub(crate) struct Instances {
     runs: Vec<Run>,
     /// Per object: its index in the instance buffer.
     places: Vec<u32>,
+    /// Per object: its pair of lights, or empty.
+    pairs: Vec<u32>,
 }
 
 impl Instances {
-    pub(crate) fn new(context: &GpuContext, scene: &Scene, regions: Option<&RegionPlan>) -> Result<Self, HarnessError> {
+    pub(crate) fn new(
+        context: &GpuContext,
+        scene: &Scene,
+        regions: Option<&RegionPlan>,
+        pairs: &[u32],
+    ) -> Result<Self, HarnessError> {
         let size = (scene.objects().len().max(1) * size_of::<Instance>()) as u64;
         let limit = context.device.limits().max_buffer_size;
         if size > limit {
@@ -59,17 +68,19 @@ impl Instances {
             usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        let mut instances = Self { instances: Vec::new(), buffer, runs: Vec::new(), places: Vec::new() };
-        instances.update(context, scene, regions);
+        let mut instances =
+            Self { instances: Vec::new(), buffer, runs: Vec::new(), places: Vec::new(), pairs: Vec::new() };
+        instances.update(context, scene, regions, pairs);
         Ok(instances)
     }
 
-    /// Uploads the transforms if any object has moved.
-    pub(crate) fn update(&mut self, context: &GpuContext, scene: &Scene, regions: Option<&RegionPlan>) {
+    /// Uploads the transforms if any object has moved or has other lights. `pairs` is as in the plan.
+    pub(crate) fn update(&mut self, context: &GpuContext, scene: &Scene, regions: Option<&RegionPlan>, pairs: &[u32]) {
         let objects = scene.objects();
         let key = |number: &u32| {
             let object = &objects[*number as usize];
-            (object.mesh(), object.first_material(), object.is_mirrored())
+            let lights = pairs.get(*number as usize).copied().unwrap_or(0);
+            (object.mesh(), object.first_material(), object.is_mirrored(), lights)
         };
         let instance = |&number: &u32| {
             let object = &objects[number as usize];
@@ -82,21 +93,24 @@ impl Instances {
             }
         };
         let now: Vec<Instance> = scene.drawing_order().iter().map(instance).collect();
-        if now == self.instances {
+        if now == self.instances && pairs == self.pairs {
             return;
         }
         context.queue.write_buffer(&self.buffer, 0, bytemuck::cast_slice(&now));
         self.instances = now;
+        self.pairs = pairs.to_vec();
         self.places = vec![0; objects.len()];
         self.runs.clear();
         for (place, number) in scene.drawing_order().iter().enumerate() {
             self.places[*number as usize] = place as u32;
-            let (mesh, material, mirrored) = key(number);
+            let (mesh, material, mirrored, lights) = key(number);
             match self.runs.last_mut() {
-                Some(run) if (run.mesh, run.material, run.mirrored) == (mesh, material, mirrored) => {
+                Some(run)
+                    if (run.mesh, run.material, run.mirrored, run.lights) == (mesh, material, mirrored, lights) =>
+                {
                     run.objects.end += 1;
                 }
-                _ => self.runs.push(Run { mesh, material, mirrored, objects: place..place + 1 }),
+                _ => self.runs.push(Run { mesh, material, mirrored, lights, objects: place..place + 1 }),
             }
         }
     }

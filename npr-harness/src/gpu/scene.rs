@@ -6,11 +6,11 @@ use super::materials::{Materials, buffer};
 use crate::error::HarnessError;
 use crate::hatch::HatchVertex;
 use crate::hatch::gpu::HatchTextures;
-use crate::plan::Plan;
+use crate::plan::{PaintPlan, Plan, corner_texture_size};
 use crate::scene::{Mesh, Object, Scene};
 use crate::shadow::gpu::ShadowCasting;
 use bytemuck::Zeroable;
-use glam::Vec4;
+use glam::{Vec3, Vec4};
 use npr_hatch::upload::TamChannels;
 use npr_mesh::{AlphaMode, Model};
 use npr_outline::ContourEdges;
@@ -21,6 +21,7 @@ use std::cell::RefCell;
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 use std::sync::Arc;
+use wgpu::util::DeviceExt;
 
 /// The maximum number of draws per pass on a software adapter; see [`HarnessError::TooManyDraws`].
 const SOFTWARE_DRAWS: usize = 2048;
@@ -68,6 +69,9 @@ pub struct GpuScene {
     pub(super) fins: Option<Vec<FinsOnDevice>>,
     /// The shadow casters, if shadow volumes are drawn.
     pub(super) casting: Option<ShadowCasting>,
+    /// The corners of all faces, if light is constant over faces or pieces of faces. Each face then has vertices of its own,
+    /// in the order of the faces.
+    pub(super) facets: Option<wgpu::TextureView>,
     /// The per-vertex data that position strokes, and the tonal art map, if surfaces are hatched.
     pub(super) hatch: Option<(wgpu::Buffer, HatchTextures)>,
 }
@@ -82,17 +86,17 @@ impl GpuScene {
         let interpolates_light = plan.paint.as_ref().is_some_and(|paint| paint.interpolates_light);
         let buffer = |what, contents: &[u8], usage| buffer(context, what, contents, usage);
         let regions_of = plan.image.as_ref().map(|image| &image.regions);
+        let lights_faces = plan.paint.as_ref().is_some_and(PaintPlan::lights_faces);
         let split = |(number, mesh): (usize, &Arc<Mesh>)| {
             let model = mesh.model();
-            regions_of.map(|of| split_by_region(&model.faces, &of.of_meshes[number], model.positions.len()))
+            let regions = regions_of.map(|of| of.of_meshes[number].as_slice());
+            if lights_faces {
+                return Some(split_all(&model.faces, regions));
+            }
+            regions.map(|regions| split_by_region(&model.faces, regions, model.positions.len()))
         };
         let splits: Vec<Option<Split>> = scene.meshes().iter().enumerate().map(split).collect();
         let meshes = || scene.meshes().iter().map(|mesh| mesh.model()).zip(&splits);
-        // All vertices of each mesh, followed by copies of those that belong to several regions.
-        let sources = |model: &Model, split: &Option<Split>| {
-            let more = split.as_ref().map_or(Vec::new(), |split| split.more.clone());
-            (0..model.positions.len()).chain(more.into_iter().map(|vertex| vertex as usize))
-        };
         let (mut vertices, mut first_vertices) = (Vec::<[f32; 6]>::new(), Vec::new());
         for (model, split) in meshes() {
             first_vertices.push(vertices.len() as u32);
@@ -160,7 +164,7 @@ impl GpuScene {
             solid,
             first_vertices,
             blended_faces,
-            instances: RefCell::new(Instances::new(context, scene, regions_of)?),
+            instances: RefCell::new(Instances::new(context, scene, regions_of, plan.object_pairs())?),
             materials,
             most_draws: if context.is_software() { SOFTWARE_DRAWS } else { usize::MAX },
             edges: None,
@@ -168,23 +172,97 @@ impl GpuScene {
             hulls: None,
             fins: None,
             casting: None,
+            facets: match &plan.paint {
+                Some(paint) if lights_faces => Some(upload_facets(context, scene, paint)?),
+                _ => None,
+            },
             hatch,
         })
     }
+
+    /// The vertices of a face, given as (object, face).
+    pub(super) fn face_vertices(&self, scene: &Scene, [object, face]: [u32; 2]) -> [u32; 3] {
+        let (object, mesh) = scene.placed(object);
+        let own = if self.facets.is_some() {
+            [0, 1, 2].map(|corner| 3 * face + corner)
+        } else {
+            mesh.model().faces[face as usize]
+        };
+        own.map(|vertex| self.first_vertices[object.mesh()] + vertex)
+    }
 }
 
-/// A vertex list in which each vertex belongs to one region.
+/// The vertices of a mesh that its vertices on the device are copies of.
+fn sources<'a>(model: &Model, split: &'a Option<Split>) -> impl Iterator<Item = usize> + use<'a> {
+    let copied = split.as_ref().map(|split| split.sources.as_slice());
+    (0..copied.map_or(model.positions.len(), <[u32]>::len)).map(move |i| copied.map_or(i, |of| of[i] as usize))
+}
+
+/// Uploads what `facets.wgsl` reads: a position and a normal per face, or per corner.
+fn upload_facets(context: &GpuContext, scene: &Scene, paint: &PaintPlan) -> Result<wgpu::TextureView, HarnessError> {
+    let limit = context.device.limits().max_texture_dimension_2d;
+    let (width, height) = corner_texture_size(paint.corner_texels(scene), limit);
+    if height > limit {
+        return Err(HarnessError::TextureTooLarge { what: "the faces' corners", width, height, limit });
+    }
+    let texel = |vector: Vec3| vector.extend(0.0).to_array();
+    let mut texels: Vec<[f32; 4]> = Vec::with_capacity(width as usize * height as usize);
+    for (number, mesh) in scene.meshes().iter().enumerate() {
+        let model = mesh.model();
+        match paint.facets.get(number) {
+            Some(facets) => texels.extend(facets.iter().flat_map(|facet| [texel(facet.centroid), texel(facet.normal)])),
+            None => {
+                texels.extend(model.faces.iter().flatten().flat_map(|&vertex| {
+                    [texel(model.positions[vertex as usize]), texel(model.normals[vertex as usize])]
+                }))
+            }
+        }
+    }
+    texels.resize(width as usize * height as usize, [0.0; 4]);
+    let texture = context.device.create_texture_with_data(
+        &context.queue,
+        &wgpu::TextureDescriptor {
+            label: Some("corners of faces"),
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Rgba32Float,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        },
+        wgpu::util::TextureDataOrder::LayerMajor,
+        bytemuck::cast_slice(&texels),
+    );
+    Ok(texture.create_view(&Default::default()))
+}
+
+/// A vertex list in which each vertex belongs to one region, or to one face.
 struct Split {
-    /// The regions of all vertices, including the added ones.
+    /// Per vertex: the vertex of the model that it is a copy of.
+    sources: Vec<u32>,
+    /// Per vertex: its region; empty if there are no regions.
     regions: Vec<u32>,
-    /// For each added vertex, the vertex that it duplicates.
-    more: Vec<u32>,
     faces: Vec<[u32; 3]>,
+}
+
+/// Gives each face vertices of its own, in the order of the faces.
+fn split_all(faces: &[[u32; 3]], face_region: Option<&[u32]>) -> Split {
+    let of_corners = |regions: &[u32]| regions.iter().flat_map(|&region| [region; 3]).collect();
+    Split {
+        sources: faces.as_flattened().to_vec(),
+        regions: face_region.map_or_else(Vec::new, of_corners),
+        faces: (0..faces.len() as u32).map(|face| [0, 1, 2].map(|corner| 3 * face + corner)).collect(),
+    }
 }
 
 /// Assigns each vertex the region of its first face, and duplicates it for faces of other regions.
 fn split_by_region(faces: &[[u32; 3]], face_region: &[u32], vertices: usize) -> Split {
-    let mut split = Split { regions: vec![0; vertices], more: Vec::new(), faces: Vec::with_capacity(faces.len()) };
+    let mut split = Split {
+        sources: (0..vertices as u32).collect(),
+        regions: vec![0; vertices],
+        faces: Vec::with_capacity(faces.len()),
+    };
     let mut added = HashMap::new();
     for (face, &region) in faces.iter().zip(face_region) {
         split.faces.push(face.map(|vertex| {
@@ -196,12 +274,12 @@ fn split_by_region(faces: &[[u32; 3]], face_region: &[u32], vertices: usize) -> 
                 return vertex;
             }
             *added.entry((vertex, region)).or_insert_with(|| {
-                split.more.push(vertex);
-                (vertices + split.more.len() - 1) as u32
+                split.sources.push(vertex);
+                split.sources.len() as u32 - 1
             })
         }));
     }
-    split.regions.resize(vertices + split.more.len(), 0);
+    split.regions.resize(split.sources.len(), 0);
     for ((_, region), vertex) in added {
         split.regions[vertex as usize] = region;
     }

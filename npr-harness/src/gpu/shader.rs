@@ -3,7 +3,7 @@
 use super::context::GpuContext;
 use super::uniform::uniform_buffer;
 use crate::error::HarnessError;
-use crate::hatch::gpu::{HATCH_ENTRY_WGSL, HATCH_WGSL, HatchVariant};
+use crate::hatch::gpu::{HATCH_ENTRY_WGSL, HATCH_FACETS_WGSL, HATCH_WGSL, HatchVariant};
 use crate::plan::{PaintPlan, Plan};
 use crate::shade::{Shade, ShadeOnDevice, ShadeView, flag};
 use crate::shadow::gpu::SHADOW_WGSL;
@@ -15,8 +15,9 @@ use wgpu::util::DeviceExt;
 /// The parts of a shader, each with its name.
 pub(super) type Parts = Vec<(&'static str, &'static str)>;
 
-/// The parts of the shader for a shade: libraries, lights, the shade's own functions, shadows, the geometry pass.
-fn parts(shade: &ShadeOnDevice, hatched: bool) -> Parts {
+/// The parts of the shader for a shade: libraries, lights, the shade's own functions, shadows, the geometry pass, and that
+/// of faces that are lit as wholes or in pieces.
+fn parts(shade: &ShadeOnDevice, hatched: bool, lights_faces: bool) -> Parts {
     let mut parts = shade.wgsl.to_vec();
     let own = parts.split_off(parts.iter().position(|(name, _)| name.ends_with(".wgsl")).unwrap_or(parts.len()));
     parts.push(("npr-imagespace, format", npr_imagespace::format::FORMAT_WGSL));
@@ -32,6 +33,12 @@ fn parts(shade: &ShadeOnDevice, hatched: bool) -> Parts {
     parts.push(("surface.wgsl", include_str!("surface.wgsl")));
     if hatched {
         parts.push(HATCH_ENTRY_WGSL);
+    }
+    if lights_faces {
+        parts.push(("facets.wgsl", include_str!("facets.wgsl")));
+        if hatched {
+            parts.push(HATCH_FACETS_WGSL);
+        }
     }
     parts
 }
@@ -55,7 +62,7 @@ pub(super) fn assemble(parts: &Parts) -> String {
 /// An error if a number of the shade is out of range.
 pub fn surface_wgsl(shade: &Shade) -> Result<String, HarnessError> {
     let hatched = matches!(shade, Shade::Hatch(_));
-    Ok(assemble(&parts(&shade.model().on_device(&ShadeView::default())?, hatched)))
+    Ok(assemble(&parts(&shade.model().on_device(&ShadeView::default())?, hatched, true)))
 }
 
 /// The properties of light and shade that are fixed when a pipeline is created.
@@ -67,12 +74,16 @@ pub(super) struct ShaderKey {
     pub(super) constants: Vec<(&'static str, f64)>,
     /// Whether light is computed only at the vertices.
     pub(super) at_vertices: bool,
+    /// Whether light is constant over faces or pieces of faces.
+    pub(super) lights_faces: bool,
 }
 
 /// The GPU resources for the light and the shade of a picture, limited to those that the shade uses.
 pub(super) struct LightOnDevice {
     pub(super) key: ShaderKey,
+    /// `ToonPainter` of all objects, or one for each pair of lights, [`LightOnDevice::stride`] bytes apart.
     pub(super) lights: wgpu::Buffer,
+    pub(super) stride: u32,
     pub(super) shade: Option<wgpu::Buffer>,
     pub(super) image: Option<wgpu::TextureView>,
 }
@@ -88,17 +99,40 @@ impl LightOnDevice {
         if let Some(hatch) = plan.hatch() {
             constants.extend(HatchVariant::new(hatch).constants());
         }
+        let lights_faces = paint.is_some_and(PaintPlan::lights_faces);
+        if lights_faces {
+            let divisions = match paint.map(|paint| paint.normals) {
+                Some(NormalUse::PerSubdividedFace(divisions)) => f64::from(divisions),
+                _ => 0.0,
+            };
+            constants.push(("surface_divisions", divisions));
+        }
         let image = match &shade.image {
             Some((width, height, texels)) => Some(upload_image(context, *width, *height, texels)?),
             None => None,
         };
         let at_vertices = paint.is_some_and(|paint| paint.normals == NormalUse::PerVertex);
         // Unchecked, because two lights that cancel out have no direction, which is not an error here.
-        let placed = PainterUniform::unchecked(lights, shade.light_scale);
+        let placed = |lights: &[Light]| PainterUniform::unchecked(lights, shade.light_scale);
+        let stride = (size_of::<PainterUniform>() as u32)
+            .next_multiple_of(context.device.limits().min_uniform_buffer_offset_alignment);
+        let pairs = paint.map_or(&[][..], |paint| &paint.light_pairs);
+        let mut placed_lights = bytemuck::bytes_of(&placed(lights)).to_vec();
+        for (number, pair) in pairs.iter().enumerate() {
+            placed_lights.truncate(number * stride as usize);
+            placed_lights.extend_from_slice(bytemuck::bytes_of(&placed(&pair.lights)));
+            placed_lights.resize((number + 1) * stride as usize, 0);
+        }
         let uniform = |contents: &[u8]| uniform_buffer(&context.device, contents);
         Ok(Self {
-            key: ShaderKey { parts: parts(&shade, plan.hatch().is_some()), constants, at_vertices },
-            lights: uniform(bytemuck::bytes_of(&placed)),
+            key: ShaderKey {
+                parts: parts(&shade, plan.hatch().is_some(), lights_faces),
+                constants,
+                at_vertices,
+                lights_faces,
+            },
+            lights: uniform(&placed_lights),
+            stride,
             shade: (!shade.uniform.is_empty()).then(|| uniform(&shade.uniform)),
             image,
         })
@@ -109,7 +143,10 @@ impl LightOnDevice {
 fn light_constants(paint: Option<&PaintPlan>, lights: &[Light]) -> [(&'static str, f64); 4] {
     let positional =
         |number: usize| flag(matches!(lights.get(number).map(|light| light.place), Some(LightKind::Positional { .. })));
-    let tinted = lights.first().is_none_or(|light| light.brightness != 1.0 || light.color != glam::Vec3::ONE);
+    // Pairs of lights share a pipeline. A direction is a position at infinity.
+    let paired = paint.is_some_and(|paint| !paint.light_pairs.is_empty());
+    let any_positional = flag((0..lights.len()).any(|number| positional(number) != 0.0));
+    let tinted = paired || lights.first().is_none_or(|light| light.brightness != 1.0 || light.color != glam::Vec3::ONE);
     [
         (
             "surface_normals",
@@ -117,10 +154,11 @@ fn light_constants(paint: Option<&PaintPlan>, lights: &[Light]) -> [(&'static st
                 None | Some(NormalUse::PerPixel) => 0.0,
                 Some(NormalUse::Interpolated) => 1.0,
                 Some(NormalUse::PerVertex) => 2.0,
+                Some(NormalUse::PerFace | NormalUse::PerSubdividedFace(_)) => 3.0,
             },
         ),
-        ("surface_first_positional", positional(0)),
-        ("surface_second_positional", positional(1)),
+        ("surface_first_positional", if paired { any_positional } else { positional(0) }),
+        ("surface_second_positional", if paired { any_positional } else { positional(1) }),
         ("surface_tinted", flag(tinted)),
     ]
 }

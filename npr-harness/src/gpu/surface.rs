@@ -21,8 +21,10 @@ use npr_imagespace::artist::LineKind;
 use npr_imagespace::format::texel::{DepthCode, TexelLayout};
 use npr_imagespace::pass::fused::texel_format;
 use npr_outline::filled_buffer::filled_buffer;
+use npr_toon::painter::PainterUniform;
 use std::cell::RefCell;
 use std::collections::HashMap;
+use std::num::NonZeroU64;
 use std::ops::Range;
 
 /// `SurfaceView` of `surface.wgsl`.
@@ -116,6 +118,8 @@ struct Drawn<'a> {
     instances: wgpu::BufferSlice<'a>,
     count: u32,
     mirrored: bool,
+    /// The index of the pair of lights.
+    lights: u32,
 }
 
 /// The render targets of the pass: depth, and optionally colour and G-buffer texels.
@@ -230,6 +234,7 @@ impl SurfacePass {
             view_dimension: wgpu::TextureViewDimension::D2,
             multisampled: false,
         };
+        let numbers = depth;
         let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
         let nearest = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::NonFiltering);
         let layout = |label, entries: &[_]| {
@@ -241,7 +246,7 @@ impl SurfacePass {
                 uniform(0),
                 uniform(1),
                 uniform(2),
-                uniform(3),
+                one_of(3, true),
                 fragment(4, texture),
                 uniform(5),
                 fragment(6, texture),
@@ -252,6 +257,7 @@ impl SurfacePass {
                 fragment(11, words),
                 fragment(12, depth),
                 fragment(13, nearest),
+                wgpu::BindGroupLayoutEntry { visibility: wgpu::ShaderStages::VERTEX, ..fragment(14, numbers) },
             ],
         );
         let material_layout =
@@ -321,7 +327,11 @@ impl SurfacePass {
             view.as_entire_binding(),
             light.shade.as_ref().unwrap_or(&self.blank.uniform).as_entire_binding(),
             ink.as_entire_binding(),
-            light.lights.as_entire_binding(),
+            wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+                buffer: &light.lights,
+                offset: 0,
+                size: NonZeroU64::new(size_of::<PainterUniform>() as u64),
+            }),
             wgpu::BindingResource::TextureView(shade_image),
             hatch_uniform.as_ref().unwrap_or(&strokes.blank).as_entire_binding(),
             wgpu::BindingResource::TextureView(&strokes.light),
@@ -336,6 +346,7 @@ impl SurfacePass {
                 shadow.and_then(|shadow| shadow.map.as_ref()).unwrap_or(&self.no_shadow.map),
             ),
             wgpu::BindingResource::Sampler(&self.no_shadow.nearest),
+            wgpu::BindingResource::TextureView(uploaded.facets.as_ref().unwrap_or(&self.blank.image)),
         ];
         let entry = |(binding, resource)| wgpu::BindGroupEntry { binding, resource };
         let entries: Vec<_> = (0..).zip(bound).map(entry).collect();
@@ -368,11 +379,7 @@ impl SurfacePass {
             return Err(HarnessError::TooManyDraws { draws, limit });
         }
         let blended_indices = (!blended.is_empty()).then(|| {
-            let corners = |&[object, face]: &[u32; 2]| {
-                let (object, mesh) = scene.placed(object);
-                mesh.model().faces[face as usize].map(|vertex| uploaded.first_vertices[object.mesh()] + vertex)
-            };
-            let faces: Vec<_> = blended.iter().map(corners).collect();
+            let faces: Vec<_> = blended.iter().map(|&face| uploaded.face_vertices(scene, face)).collect();
             filled_buffer(device, "blended faces", bytemuck::cast_slice(&faces), wgpu::BufferUsages::INDEX)
         });
         let paper = plan.paper.as_dvec3();
@@ -384,6 +391,7 @@ impl SurfacePass {
             ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
         };
         let bound = (&view_group, uploaded, targets.depth);
+        let paired = !plan.object_pairs().is_empty();
         let mut set = None;
         let mut draw = |pass: &mut wgpu::RenderPass<'_>, drawn: Drawn<'_>, colored: bool, blended: bool| {
             let material = &scene.materials()[drawn.material];
@@ -426,6 +434,9 @@ impl SurfacePass {
                 pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
                 set = Some(variant);
             }
+            if paired {
+                pass.set_bind_group(0, &view_group, &[drawn.lights * light.stride]);
+            }
             uploaded.materials.bind(pass, drawn.material);
             pass.set_vertex_buffer(4, drawn.instances);
             pass.draw_indexed(drawn.indices, 0, 0..drawn.count);
@@ -456,6 +467,7 @@ impl SurfacePass {
                     instances: instances.slice(run),
                     count: run.objects.len() as u32,
                     mirrored: run.mirrored,
+                    lights: run.lights,
                 };
                 draw(&mut pass, drawn, colored, false);
             }
@@ -474,6 +486,7 @@ impl SurfacePass {
                 instances: instances.slice_of(object),
                 count: 1,
                 mirrored: scene.objects()[object as usize].is_mirrored(),
+                lights: plan.object_pairs().get(object as usize).copied().unwrap_or(0),
             };
             draw(&mut pass, drawn, true, true);
             start = end;
@@ -492,6 +505,10 @@ impl SurfacePass {
             (Paint::Nothing, true, false) => ("vs_textured", "fs_cut_out"),
             (Paint::Painted, false, false) => ("vs_plain", "fs_painted"),
             (Paint::Painted, true, false) => ("vs_textured", "fs_painted_textured"),
+            (Paint::Lit, _, false) if key.lights_faces => ("vs_facet", "fs_facet"),
+            (Paint::Lit, _, true) if key.lights_faces => ("vs_facet", "fs_facet_inked"),
+            (Paint::Hatched, _, false) if key.lights_faces => ("vs_hatched_facet", "fs_hatched_facet"),
+            (Paint::Hatched, _, true) if key.lights_faces => ("vs_hatched_facet", "fs_hatched_facet_inked"),
             // Shadows need the normal at the pixel.
             (Paint::Lit, false, false) if key.at_vertices && variant.shadow.source == 0 => {
                 ("vs_lit_vertex", "fs_lit_vertex")
@@ -527,7 +544,7 @@ impl SurfacePass {
             attributes: &wgpu::vertex_attr_array![5 => Float32x3, 6 => Float32x3, 7 => Float32],
         };
         let hatched = paint == Paint::Hatched;
-        let everything = hatched || vertex == "vs_lit";
+        let everything = hatched || vertex == "vs_lit" || vertex == "vs_facet";
         let (looks_up, has_regions) = (everything || looked_up, everything || inked);
         let buffers = [
             Some(geometry),
@@ -626,7 +643,7 @@ fn begin<'a>(
         }),
         ..Default::default()
     });
-    pass.set_bind_group(0, view_group, &[]);
+    pass.set_bind_group(0, view_group, &[0]);
     pass.set_vertex_buffer(0, uploaded.vertices.slice(..));
     if let Some(lookups) = &uploaded.lookups {
         pass.set_vertex_buffer(1, lookups.slice(..));

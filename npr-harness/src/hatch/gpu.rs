@@ -16,6 +16,9 @@ pub(crate) const HATCH_WGSL: &[(&str, &str)] =
 /// The entry points of hatched surfaces.
 pub(crate) const HATCH_ENTRY_WGSL: (&str, &str) = ("hatch.wgsl", include_str!("hatch.wgsl"));
 
+/// The entry points of hatched surfaces whose light is constant over faces or pieces of faces.
+pub(crate) const HATCH_FACETS_WGSL: (&str, &str) = ("hatch/facets.wgsl", include_str!("facets.wgsl"));
+
 /// `SurfaceHatch` of `hatch.wgsl`.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]

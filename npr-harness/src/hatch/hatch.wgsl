@@ -86,6 +86,15 @@ fn hatched_weights(tone: f32) -> HatchWeights {
     return hatch_weights(hatch_level_of_tone(hatch.light_tones, hatch.dark_tones, tone));
 }
 
+// The stroke coordinates of a vertex: its position in mesh space, so that strokes move with the mesh, or its texture
+// coordinates.
+fn hatched_place(position: vec3<f32>, uv: vec2<f32>, instance: Instance) -> vec3<f32> {
+    if surface_hatch_mapping == HATCH_BY_COORDINATES {
+        return vec3<f32>(uv, 0.0);
+    }
+    return position * instance.scale.x * hatch.tiles;
+}
+
 @vertex
 fn vs_hatched(
     @location(0) position: vec3<f32>, @location(1) normal: vec3<f32>, @location(2) uv: vec2<f32>,
@@ -93,11 +102,7 @@ fn vs_hatched(
     @location(6) others: vec3<f32>, @location(7) octave: f32, instance: Instance,
 ) -> HatchedSurface {
     let plain = lit_vertex(position, normal, instance);
-    // In mesh space, so that strokes move with the mesh.
-    var at = position * instance.scale.x * hatch.tiles;
-    if surface_hatch_mapping == HATCH_BY_COORDINATES {
-        at = vec3<f32>(uv, 0.0);
-    }
+    let at = hatched_place(position, uv, instance);
     var out = HatchedSurface(
         plain.position, plain.normal, uv, color, placed_region(region, instance), plain.first, plain.second, at,
         diagonal, others, octave + instance.scale.y, vec3<f32>(0.0), vec3<f32>(0.0), normal,
@@ -199,10 +204,9 @@ fn hatched(asked: Hatching) -> f32 {
 }
 
 // Requires uniform control flow.
-fn hatched_color(in: HatchedSurface, base: vec3<f32>, front: bool, at: ShadowAt) -> vec3<f32> {
+fn hatched_color(in: HatchedSurface, base: vec3<f32>, light: vec2<f32>, front: bool, at: ShadowAt) -> vec3<f32> {
     let at_dx = dpdxFine(in.at);
     let at_dy = dpdyFine(in.at);
-    let light = light_of(PlainLitSurface(in.position, in.normal, in.first, in.second), front);
     var tone = hatched_tone(light.x);
     var in_shadow = false;
     if surface_shadow != 0u {
@@ -232,7 +236,7 @@ fn fs_hatched(in: HatchedSurface, @builtin(front_facing) front: bool) -> @locati
     let lit = hatched_lit(in);
     let base = lit_base(lit, lit_texel(lit));
     let at = shadow_at(in.position, facing(in.normal, front));
-    let color = hatched_color(in, base.rgb, front, at);
+    let color = hatched_color(in, base.rgb, light_of(without_lookups(lit), front), front, at);
     if surface_looked_up && base.a < material.cutoff {
         discard;
     }
@@ -246,7 +250,7 @@ fn fs_hatched_inked(in: HatchedSurface, @builtin(front_facing) front: bool) -> I
     let texel = lit_texel(lit);
     let base = lit_base(lit, texel);
     let at = shadow_at(in.position, facing(in.normal, front));
-    let color = hatched_color(in, base.rgb, front, at);
+    let color = hatched_color(in, base.rgb, light_of(without_lookups(lit), front), front, at);
     if surface_looked_up && base.a < material.cutoff {
         discard;
     }

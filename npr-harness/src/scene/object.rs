@@ -18,6 +18,9 @@ pub enum ObjectLines {
     Own(LineStyle),
 }
 
+/// The largest number of lights of a style.
+pub const MAX_LIGHTS: usize = 8;
+
 /// A mesh placed in a scene.
 #[derive(Clone)]
 pub struct Object {
@@ -29,6 +32,7 @@ pub struct Object {
     /// The index of its first material in the scene, and whether all of its faces use that material.
     pub(super) first_material: usize,
     pub(super) one_material: bool,
+    pub(super) lights: Option<[usize; 2]>,
     placement: Placement,
     /// Data that techniques derive from the mesh if the transform does not preserve angles; cleared when the metric
     /// changes.
@@ -96,6 +100,7 @@ impl Object {
             mesh,
             first_material,
             one_material: false,
+            lights: None,
             shape: placement.metric,
             placement,
             of_shape: Arc::default(),
@@ -122,6 +127,12 @@ impl Object {
     /// The index of its first material in the scene, and whether all of its faces use that material.
     pub(crate) fn first_material(&self) -> (usize, bool) {
         (self.first_material, self.one_material)
+    }
+
+    /// The two lights of the picture's style that a shade with two lights takes for it, if they were set
+    /// ([`Scene::set_lights`](super::Scene::set_lights)).
+    pub fn lights(&self) -> Option<[usize; 2]> {
+        self.lights
     }
 
     /// The index of its mesh in the scene.

@@ -1,6 +1,7 @@
 // The lights, and the lookup coordinates of a shade: the diffuse term and the shade's second coordinate.
 
-// 0: normals are normalized at the pixel; 1: normals are used as interpolated; 2: light is computed at the vertices.
+// 0: normals are normalized at the pixel; 1: normals are used as interpolated; 2: light is computed at the vertices; 3: light
+// is constant over faces or pieces of faces.
 override surface_normals: u32 = 0u;
 // Whether the lights are positional instead of directional.
 override surface_first_positional: bool = false;
@@ -53,6 +54,15 @@ fn light_at(n: vec3<f32>, at: vec3<f32>, eye: vec3<f32>) -> vec2<f32> {
 fn light_interpolated(n: vec3<f32>, l: vec3<f32>, second: vec3<f32>) -> vec2<f32> {
     let n_dot_l = toon_n_dot_l_interpolated(n, l);
     return vec2<f32>(shade_diffuse(n_dot_l), shade_second_interpolated(n, l, n_dot_l, second));
+}
+
+// The width of a band border for a lookup coordinate. Where light is constant over a face or a piece, what derivatives find
+// at its edges is no change of light within it. Requires uniform control flow.
+fn shade_border_width(x: f32) -> f32 {
+    if surface_normals == 3u {
+        return TOON_MIN_BORDER;
+    }
+    return toon_pixel_border_width(x);
 }
 
 // Converts light computed with the normal of the front to the back of the face.

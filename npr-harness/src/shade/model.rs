@@ -71,6 +71,11 @@ pub(crate) trait ShadeModel {
         1
     }
 
+    /// Whether the shade takes two of its lights for each object.
+    fn pairs_lights(&self) -> bool {
+        false
+    }
+
     /// Whether the alpha of a material's colour selects either the colour or the texture.
     fn material_by_alpha(&self) -> bool {
         false

@@ -3,6 +3,7 @@
 use super::model::{LitPoint, ShadeModel, ShadeOnDevice, ShadeView, Shading};
 use super::ramp_table::{FilterName, StopsTable, image_filter, texels_of};
 use crate::error::HarnessError;
+use crate::scene::MAX_LIGHTS;
 use crate::schema::{Color, StyleFile, Texel};
 use glam::{DVec2, DVec3, UVec2};
 use npr_toon::painter::{Painter, toon_diffuse, toon_overbright};
@@ -153,7 +154,11 @@ impl ShadeModel for PainterShade {
     }
 
     fn lights(&self) -> usize {
-        2
+        MAX_LIGHTS
+    }
+
+    fn pairs_lights(&self) -> bool {
+        true
     }
 
     fn material_by_alpha(&self) -> bool {

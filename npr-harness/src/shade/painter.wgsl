@@ -47,6 +47,6 @@ fn shade_of_table(uv: vec2<f32>, widths: vec2<f32>) -> vec3<f32> {
 fn shade_color(base: vec3<f32>, light_there: vec2<f32>, n: vec3<f32>, at: ShadowAt) -> vec3<f32> {
     let light = shadow_light(light_there, at);
     let of_first = shadow_border_width(light_there.x, -abs(light_there.x), at);
-    let widths = vec2<f32>(of_first, toon_pixel_border_width(light_there.y));
+    let widths = vec2<f32>(of_first, shade_border_width(light_there.y));
     return toon_paint(lights, shade_of_table(light, widths), vec4<f32>(base, 1.0)).rgb;
 }

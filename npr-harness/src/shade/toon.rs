@@ -14,6 +14,8 @@ use serde::{Deserialize, Serialize};
 pub(crate) struct ToonTable {
     #[serde(default = "yes")]
     antialias: bool,
+    #[serde(default)]
+    absolute: bool,
     thresholds: Vec<f32>,
     tones: Vec<Color>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -36,6 +38,7 @@ impl ToonTable {
     pub(super) fn new(bands: &Bands) -> Self {
         Self {
             antialias: bands.antialias,
+            absolute: bands.absolute,
             thresholds: bands.thresholds.clone(),
             tones: bands.tones.iter().copied().map(Color).collect(),
             highlight: bands.highlight.map(|highlight| HighlightTable {
@@ -58,6 +61,7 @@ impl ToonTable {
                 lit_only: highlight.lit_only,
             }),
             antialias: self.antialias,
+            absolute: self.absolute,
         }
     }
 }
@@ -95,6 +99,7 @@ impl ShadeModel for Bands {
     fn color(&self, shading: &Shading<'_>) -> DVec3 {
         let width = if self.antialias { (shading.widths)(&|light| light) } else { DVec2::ZERO };
         let light = shading.light;
+        // Absolute tones ignore the colours of surface and light.
         toon_shade(self, shading.base * shading.light_color, light.x, width.x, light.y, width.y)
     }
 
@@ -104,6 +109,7 @@ impl ShadeModel for Bands {
             constants: vec![
                 (npr_toon::TOON_BANDS_OVERRIDE, self.tones.len() as f64),
                 ("shade_highlight", flag(has_highlight(self))),
+                ("shade_absolute", flag(self.absolute)),
             ],
             uniform: bytemuck::bytes_of(&ToonUniform::new(self)?).to_vec(),
             ..ShadeOnDevice::new(&[("npr-toon", npr_toon::WGSL), ("toon.wgsl", include_str!("toon.wgsl"))])

@@ -3,6 +3,9 @@
 // Whether there is a highlight.
 override shade_highlight: bool = true;
 
+// Whether tones replace the colours of surface and light.
+override shade_absolute: bool = false;
+
 @group(0) @binding(1) var<uniform> shade: ToonBands;
 
 fn shade_diffuse(n_dot_l: f32) -> f32 {
@@ -41,10 +44,13 @@ fn shade_color(base: vec3<f32>, light_there: vec2<f32>, n: vec3<f32>, at: Shadow
     if shade.antialias != 0u {
         widths.x = shadow_border_width(light_there.x, -abs(light_there.x), at);
         if shade_highlight {
-            widths.y = toon_pixel_border_width(light_there.y);
+            widths.y = shade_border_width(light_there.y);
         }
     }
-    let color = by_light_color(base) * toon_band(shade, light.x, widths.x);
+    var color = toon_band(shade, light.x, widths.x);
+    if !shade_absolute {
+        color *= by_light_color(base);
+    }
     if !shade_highlight {
         return color;
     }

@@ -96,11 +96,11 @@ fn shadow_light(light: vec2<f32>, at: ShadowAt) -> vec2<f32> {
 // The width of a band border for a shade's input x; `dark` is the value of x in a cast shadow. Both are continuous
 // where a shadow ends, so that the shadow border is not a band border. Requires uniform control flow.
 fn shadow_border_width(x: f32, dark: f32, at: ShadowAt) -> f32 {
-    let width = toon_pixel_border_width(x);
+    let width = shade_border_width(x);
     if surface_shadow == 0u {
         return width;
     }
-    return select(width, toon_pixel_border_width(dark), at.dark);
+    return select(width, shade_border_width(dark), at.dark);
 }
 
 // The folded region with the shadow state, for image-space lines.

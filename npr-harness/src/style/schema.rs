@@ -1,5 +1,6 @@
 //! The serde schema of a style file.
 
+use super::normals_key::NormalsKey;
 use super::{Lines, Style};
 use crate::edge_lines::schema::EdgesTable;
 use crate::error::HarnessError;
@@ -25,7 +26,7 @@ pub(super) struct StyleTable {
     about: String,
     paper: Color,
     crease_angle_deg: f32,
-    normals: NormalsName,
+    normals: NormalsKey,
     normal_space: SpaceName,
     light: Vec<LightTable>,
     shade: ShadeTable,
@@ -42,7 +43,7 @@ impl Default for StyleTable {
             about: String::new(),
             paper: Color(Vec3::ONE),
             crease_angle_deg: 45.0,
-            normals: NormalsName::PerPixel,
+            normals: NormalsKey(NormalUse::PerPixel),
             normal_space: SpaceName::World,
             light: vec![LightTable::new(&StyleLight::KEY)],
             shade: ShadeTable::new(&Shade::Toon(Bands::default())),
@@ -50,14 +51,6 @@ impl Default for StyleTable {
             lines: LinesTable::default(),
         }
     }
-}
-
-#[derive(Clone, Copy, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-enum NormalsName {
-    PerPixel,
-    Interpolated,
-    PerVertex,
 }
 
 #[derive(Clone, Copy, Serialize, Deserialize)]
@@ -97,11 +90,7 @@ impl StyleTable {
             about: style.about.clone(),
             paper: Color(style.paper),
             crease_angle_deg: style.crease_angle_rad.to_degrees(),
-            normals: match style.normals {
-                NormalUse::PerPixel => NormalsName::PerPixel,
-                NormalUse::Interpolated => NormalsName::Interpolated,
-                NormalUse::PerVertex => NormalsName::PerVertex,
-            },
+            normals: NormalsKey(style.normals),
             normal_space: if style.mesh_normals { SpaceName::Mesh } else { SpaceName::World },
             light: style.lights.iter().map(LightTable::new).collect(),
             shade: ShadeTable::new(&style.shade),
@@ -121,11 +110,7 @@ impl StyleTable {
             about: self.about,
             paper: self.paper.0,
             shade: self.shade.shade(&file)?,
-            normals: match self.normals {
-                NormalsName::PerPixel => NormalUse::PerPixel,
-                NormalsName::Interpolated => NormalUse::Interpolated,
-                NormalsName::PerVertex => NormalUse::PerVertex,
-            },
+            normals: self.normals.0,
             mesh_normals: matches!(self.normal_space, SpaceName::Mesh),
             lights: lights.collect::<Result<_, _>>()?,
             shadow: self.shadow.map(ShadowTable::shadow).transpose().map_err(|what| file.wrong(what))?,

@@ -1,4 +1,4 @@
-//! The errors of lighting computed at vertices or from interpolated normals, on the teapot from coarse to fine
+//! The errors of lighting computed for faces, at vertices or from interpolated normals, on the teapot from coarse to fine
 //! tessellations.
 
 use crate::camera::{Camera, Framing};
@@ -22,8 +22,16 @@ use npr_toon::source::Light;
 
 /// The segments per patch of the teapot, which has 32 patches.
 pub const SEGMENTS: [u32; 5] = [2, 4, 8, 16, 32];
-/// The ways to use normals, from the cheapest.
-pub const USES: [NormalUse; 3] = [NormalUse::PerVertex, NormalUse::Interpolated, NormalUse::PerPixel];
+/// The ways to use normals: those that light faces as wholes or in pieces, then those that light vertices and pixels, each
+/// from the least light values to the most.
+pub const USES: [NormalUse; 6] = [
+    NormalUse::PerFace,
+    NormalUse::PerSubdividedFace(2),
+    NormalUse::PerSubdividedFace(8),
+    NormalUse::PerVertex,
+    NormalUse::Interpolated,
+    NormalUse::PerPixel,
+];
 
 /// The segments of the reference; more do not change the printed numbers.
 const TRUE_SEGMENTS: u32 = 96;

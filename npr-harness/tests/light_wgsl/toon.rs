@@ -5,6 +5,7 @@ use crate::random::{Random, with};
 use glam::{DVec2, DVec3, DVec4, Vec3, Vec4};
 use npr_toon::border::toon_border_width;
 use npr_toon::half_lambert::{HalfLambert, toon_half_lambert};
+use npr_toon::normal::toon_piece_centroid;
 use npr_toon::painter::{
     Painter, PainterUniform, toon_diffuse, toon_material, toon_overbright, toon_paint, toon_painter_uv,
 };
@@ -48,6 +49,7 @@ fn any_bands(random: &Random, tones: u32) -> Bands {
         tones: (0..tones).map(|_| random.color()).collect(),
         highlight: if random.one_in(4) { None } else { Some(highlight) },
         antialias: !random.one_in(4),
+        absolute: random.one_in(4),
     }
 }
 
@@ -101,8 +103,30 @@ fn lit(random: &Random, bands: &Bands) -> Given {
     [Vec4::new(n_dot_l, nl_width, n_dot_h, nh_width), with(random.color(), 0.0), Vec4::ZERO, Vec4::ZERO]
 }
 
+/// Barycentric coordinates, also beside the face, and a number of divisions.
+fn within_a_face<M>(random: &Random, _: &M) -> Given {
+    let (second, third) = (random.range(-0.1, 1.1), random.range(-0.1, 1.1));
+    let divisions = (random.range(1.0, 65.0)).floor();
+    [Vec4::new(1.0 - second - third, second, third, divisions), Vec4::ZERO, Vec4::ZERO, Vec4::ZERO]
+}
+
+/// Next to a border between pieces, rounding decides which piece it is.
+fn piece_bound<M>(_: &M, g: &Given) -> Allowed {
+    let divisions = g[0].w as f64;
+    let is_near = |at: f64| (at - at.round()).abs() < 1e-4;
+    let borders = [g[0].y, g[0].z, g[0].y + g[0].z].map(|at| f64::from(at) * divisions);
+    if borders.into_iter().any(is_near) { Allowed::Anything } else { Allowed::Within(SMALL) }
+}
+
 /// Functions without a uniform; inputs lie at the thresholds of the bands.
 const FUNCTIONS: &[Check<Bands>] = &[
+    Check {
+        name: "toon_piece_centroid",
+        wgsl: "vec4(toon_piece_centroid(a.xyz, u32(a.w)), 0.0)",
+        given: within_a_face,
+        rust: |_, g| toon_piece_centroid(xyz(g[0]), g[0].w as u32).extend(0.0),
+        allowed: piece_bound,
+    },
     Check {
         name: "toon_unit",
         wgsl: "vec4(toon_unit(a.xyz), 0.0)",
@@ -221,7 +245,7 @@ const FUNCTIONS: &[Check<Bands>] = &[
         // Bands with one border.
         rust: |_, g| {
             let tones = vec![g[1].truncate(), g[2].truncate()];
-            let bands = Bands { thresholds: vec![g[0].z], tones, highlight: None, antialias: true };
+            let bands = Bands { thresholds: vec![g[0].z], tones, highlight: None, antialias: true, absolute: false };
             color(toon_band(&bands, f64::from(g[0].x), f64::from(g[0].y)))
         },
         allowed: small,
