@@ -337,3 +337,22 @@ fn a_g_buffer_shows_what_the_surface_has() {
     }
     assert_eq!(counted.values().filter(|&&count| count > 40).count(), 1 + 5, "{counted:?}");
 }
+
+/// Normals of the vertex buffer go with every use of normals, for faces and their pieces too.
+#[test]
+fn untransformed_normals_agree_in_every_use_of_them() {
+    let Some(executor) = device() else { return };
+    let setting = Setting::TwoTeapots;
+    let (scene, camera) = (setting.scene(), setting.camera());
+    let hits = PrimaryHits::kept(&scene, View::new(camera, SIZE), PLACES);
+    for normals in ["\"per-pixel\"", "\"interpolated\"", "\"per-vertex\"", "\"per-face\"", "\"per-subdivided-face\""] {
+        let text =
+            format!("normals = {normals}\nnormal-space = \"mesh\"\n[shade.lambert]\nambient = 0.1\n[lines.image]\n");
+        let style = Style::from_toml(&text, Path::new("mesh.toml")).expect("a style");
+        let plan = planned(&scene, &style, &camera, SIZE);
+        let reference = Reference::new(Shot { hits: &hits, style: &style, plan: &plan }).expect("pictures");
+        let actual = rendered(&executor, &scene, &style, &camera, SIZE);
+        let comparison = compare(&reference.image, &actual, &reference.exempt).expect("one size");
+        assert!(agrees(&comparison, magnitude(&plan)), "{normals}: {comparison:?}");
+    }
+}

@@ -205,7 +205,7 @@ fn uniforms_have_the_layout_of_the_shader() {
         ]
     );
     assert_layout!("InkInker", InkerUniform, [form, normal_cos, normal_fall, depth_delta, softness]);
-    assert_layout!("InkPrinted", PrintedUniform, [normal_threshold, depth_threshold, depth_form]);
+    assert_layout!("InkPrinted", PrintedUniform, [normal_threshold, depth_threshold, depth_form, depth_codes]);
     assert_layout!(
         "InkSeparate",
         SeparateUniform,

@@ -81,8 +81,8 @@ impl FrameContext<'_> {
         let (object, _) = self.scene.placed(hit.object);
         // There are none for a shade that does not depend on light.
         let facet = paint.facets.get(object.mesh()).map(|facets| facets[hit.face as usize]);
-        let (normal, at) =
-            facet.map_or_else(Default::default, |facet| (object.normal(facet.normal), object.point(facet.centroid)));
+        let (normal, at) = facet
+            .map_or_else(Default::default, |facet| (self.normal(object, facet.normal), object.point(facet.centroid)));
         self.lit_point(if hit.front { normal } else { -normal }, at)
     }
 

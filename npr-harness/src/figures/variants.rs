@@ -10,6 +10,14 @@ fn lines(keys: &str, gbuffer: &str) -> String {
 const BANDS: &str =
     "[shade.toon]\nthresholds = [0.05, 0.6]\ntones = [[0.35, 0.33, 0.42], [0.7, 0.69, 0.74], [1, 1, 1]]\n";
 
+const SHINY: &str = "[shade.toon]\nthresholds = [0.05, 0.6]\ntones = [[0.35, 0.33, 0.42], [0.7, 0.69, 0.74], [1, 1, 1]]\n\
+                     [shade.toon.highlight]\nthreshold = 0.97\n";
+const THREE_LAMPS: &str = "[[light]]\nposition = [-1.0, 0.5, 0.4]\ncolor = [1.0, 0.55, 0.4]\n\
+                           [[light]]\nposition = [0.0, 0.9, 0.5]\n\
+                           [[light]]\nposition = [1.0, 0.5, 0.4]\ncolor = [0.4, 0.6, 1.0]\n\
+                           [shade.painter.first]\nat = [0.1, 0.6]\ncolors = [[0.35, 0.33, 0.42], [0.8, 0.8, 0.8]]\n\
+                           [shade.painter.second]\nat = [0.1, 0.6]\ncolors = [[0.35, 0.33, 0.42], [0.8, 0.8, 0.8]]\n";
+
 /// The figures.
 pub fn variants() -> Vec<Figure> {
     let (still_life, objects) = (Setting::StillLife, Setting::Objects);
@@ -44,6 +52,31 @@ pub fn variants() -> Vec<Figure> {
                 Panel::style("smooth", still_life, ramp("smooth")),
                 Panel::style("half-Lambert", still_life, half_lambert),
             ],
+        },
+        Figure {
+            name: "variants-light",
+            shows: "Light for each polygon, each subdivided face, each vertex and each pixel",
+            caption: "A coarse ball and can. Of one value for a polygon its shape is seen; subdivided faces approach light \
+                      at pixels; light at vertices misses a highlight within a face.",
+            columns: 2,
+            panels: vec![
+                Panel::style("polygons", Setting::Coarse, format!("normals = \"per-face\"\n{SHINY}")),
+                Panel::style(
+                    "faces subdivided by 6",
+                    Setting::Coarse,
+                    format!("normals = {{ per-subdivided-face = 6 }}\n{SHINY}"),
+                ),
+                Panel::style("vertices", Setting::Coarse, format!("normals = \"per-vertex\"\n{SHINY}")),
+                Panel::style("pixels", Setting::Coarse, SHINY),
+            ],
+        },
+        Figure {
+            name: "variants-lights",
+            shows: "The painter's two lights chosen for each object",
+            caption: "Three lamps in a row. Each teapot takes the two that matter most to it: the left one is lit from the \
+                      left and the middle, the right one from the middle and the right.",
+            columns: 1,
+            panels: vec![Panel::style("three lamps, two teapots", Setting::TwoTeapots, THREE_LAMPS)],
         },
         Figure {
             name: "variants-lines",

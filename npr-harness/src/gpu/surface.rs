@@ -9,7 +9,7 @@ use super::uniform::uniform_buffer;
 use crate::camera::Camera;
 use crate::error::HarnessError;
 use crate::hatch::gpu::{HatchTextures, HatchUniform};
-use crate::image_lines::gbuffer::gpu::TEXEL_FORMAT;
+use crate::image_lines::gbuffer::targets::TEXEL_FORMAT;
 use crate::image_lines::plan::ImagePlan;
 use crate::plan::Plan;
 use crate::scene::Scene;

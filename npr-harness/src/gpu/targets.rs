@@ -2,8 +2,8 @@
 
 use super::context::GpuContext;
 use crate::error::HarnessError;
-use crate::image_lines::gbuffer::gpu::{GBufferTargets, TEXEL_FORMAT};
 use crate::image_lines::gbuffer::style::GBufferTarget;
+use crate::image_lines::gbuffer::targets::{GBufferTargets, TEXEL_FORMAT};
 use crate::image_lines::plan::ImagePlan;
 use crate::image_lines::style::InkScale;
 use crate::picture::Image;

@@ -10,4 +10,6 @@ pub(crate) mod gpu;
 pub mod plan;
 pub(crate) mod schema;
 pub mod style;
+#[cfg(feature = "gpu")]
+pub(crate) mod targets;
 pub mod texel;

@@ -37,8 +37,16 @@ fn share(depth: f32) -> f32 {
     return (depth - encode.near_far.x) / (encode.near_far.y - encode.near_far.x);
 }
 
+// The nearest half float, ties to even; WebGPU leaves the rounding of `pack2x16float` open.
 fn half(value: f32) -> f32 {
-    return unpack2x16float(pack2x16float(vec2<f32>(value, 0.0))).x;
+    let bits = bitcast<u32>(value);
+    let magnitude = bits & 0x7fffffffu;
+    // To a multiple of 2^13 in the last places of an f32; from 65520 on, infinity.
+    let rounded = (magnitude + 0x0fffu + ((magnitude >> 13u) & 1u)) & 0xffffe000u;
+    let large = select(rounded, 0x7f800000u, magnitude >= 0x477ff000u);
+    // Below 2^-14 half floats are multiples of 2^-24.
+    let small = bitcast<u32>(round(abs(value) * 16777216.0) * 5.9604644775390625e-8);
+    return bitcast<f32>((bits & 0x80000000u) | select(large, small, magnitude < 0x38800000u));
 }
 
 // Eye depth as the target stores it, without its sign.

@@ -1,7 +1,8 @@
 //! A G-buffer on the GPU: its texels' encoding, the filters over it, and the steps of morphology.
 
 use super::plan::GBufferPlan;
-use super::style::{Background, GBuffer, GBufferTarget, InkStep, Show, StepKind};
+use super::style::{Background, GBufferTarget, InkStep, Show, StepKind};
+use super::targets::{RGBA8, SEPARATE};
 use crate::error::HarnessError;
 use crate::gpu::targets::{COLOR_FORMAT, InkTargets};
 use crate::gpu::uniform::uniform_buffer;
@@ -11,32 +12,8 @@ use npr_imagespace::format::normal::NormalFormat;
 use npr_imagespace::pass::printed::PrintedPass;
 use npr_imagespace::pass::separate::{SeparatePass, SeparateTextures};
 use npr_imagespace::pass::step::{PingPong, Step, StepPass};
-use npr_imagespace::pass::{INK_FORMAT, InkTarget, PassTarget};
+use npr_imagespace::pass::{InkTarget, PassTarget};
 use std::cell::RefCell;
-
-/// The format of unquantised texels.
-pub(crate) const TEXEL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
-const RGBA8: [wgpu::TextureFormat; 1] = [wgpu::TextureFormat::Rgba8Unorm];
-/// Of normals, depths and regions as the filters read them.
-const SEPARATE: [wgpu::TextureFormat; 3] =
-    [wgpu::TextureFormat::Rgba32Float, wgpu::TextureFormat::R32Float, wgpu::TextureFormat::R32Uint];
-
-/// The encoded G-buffer, and a second ink picture for steps of morphology.
-pub(crate) struct GBufferTargets {
-    encoded: Vec<wgpu::TextureView>,
-    ink: wgpu::TextureView,
-}
-
-impl GBufferTargets {
-    /// `texture` makes a texture of a format for rendering and reading.
-    pub(crate) fn new(gbuffer: &GBuffer, texture: impl Fn(wgpu::TextureFormat) -> wgpu::TextureView) -> Self {
-        let formats: &[_] = match gbuffer.target {
-            GBufferTarget::Rgba8(_) => &RGBA8,
-            GBufferTarget::Separate(_) => &SEPARATE,
-        };
-        Self { encoded: formats.iter().map(|&format| texture(format)).collect(), ink: texture(INK_FORMAT) }
-    }
-}
 
 /// `GBufferEncode` of `encode.wgsl`.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
