@@ -75,7 +75,7 @@ pub fn render(
     let mut rows = Vec::new();
     for (number, style) in styles.iter().enumerate() {
         let start = Instant::now();
-        let asks_artists = style.lines.image.is_some_and(|ink| ink.artist);
+        let asks_artists = style.lines.image.is_some_and(|ink| ink.artist.is_some());
         let (scene, camera) = if asks_artists { &painted } else { &still_life };
         let share_of = |within: f64| progress((number as f64 + within) / pictures);
         let picture = Picture::new(scene, style, View::new(*camera, SIZE));

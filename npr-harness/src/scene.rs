@@ -328,6 +328,13 @@ impl Scene {
         (object, &self.meshes[object.mesh])
     }
 
+    /// The middle of an object's box in scene space; the mesh's own origin without faces.
+    pub(crate) fn middle_of(&self, object: u32) -> DVec3 {
+        let (object, mesh) = self.placed(object);
+        let (low, high) = object.box_around(mesh.bounds().unwrap_or_default());
+        0.5 * (low + high)
+    }
+
     /// The mesh of a scene that is [flattened](Scene::flattened).
     ///
     /// # Panics

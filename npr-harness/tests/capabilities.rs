@@ -15,13 +15,15 @@ use npr_harness::cpu::PrimaryHits;
 use npr_harness::edge_lines::EdgeLineMethod;
 use npr_harness::error::HarnessError;
 use npr_harness::executor::{Backend, CpuReason, Executor, GpuPolicy, Picture, Rendered};
-use npr_harness::gallery::still_life_camera;
+use npr_harness::gallery::{painted_camera, painted_scene, still_life_camera};
 use npr_harness::gpu::{self, DeviceLimits, GpuAdapter, GpuContext, GpuRenderer};
+use npr_harness::image_lines::ImageInk;
 use npr_harness::picture::Image;
 use npr_harness::plan::Plan;
 use npr_harness::scene::Scene;
-use npr_harness::style::{Style, style};
+use npr_harness::style::{Lines, Style, style};
 use npr_harness::view::View;
+use npr_imagespace::artist::ArtistRotation;
 use npr_mesh::{AlphaMode, Material, Texture, Wrap, embedded};
 
 const SIZE: (u32, u32) = (192, 108);
@@ -197,6 +199,15 @@ fn under_webgl2_limits_pictures_are_right_or_the_texture_is_named() {
     let shown = Shown::new(still_life_camera());
     for name in STYLES {
         shown.check(&context, &named(name), [("WebGL2", context.capabilities.clone())]);
+    }
+    // The most that a vertex hands to its pixels: strokes and lines in the image, with an artist's directions.
+    let painted = Shown { scene: painted_scene(), camera: painted_camera() };
+    for artist in [ArtistRotation::PerVertex, ArtistRotation::PerObject].map(Some) {
+        let lines = Lines::image(ImageInk { artist, ..ImageInk::default() });
+        for name in ["hatch", "toon"] {
+            let style = Style { lines, ..named(name) };
+            painted.check(&context, &style, [("WebGL2", context.capabilities.clone())]);
+        }
     }
     // The ink has twice the size of 1280 × 720.
     let style = named("ink-thick");

@@ -21,7 +21,7 @@ use npr_harness::truth::lines::{
     TrueLines, accuracy, are_near, distances_to_lines, true_intersections, true_lines, true_lines_of_steps,
 };
 use npr_harness::view::View;
-use npr_imagespace::artist::LineKind;
+use npr_imagespace::artist::{ArtistRotation, LineKind};
 use npr_imagespace::filter::fused::{DepthTest, FusedFilter};
 use npr_imagespace::morphology::disc::Disc;
 use npr_mesh::{AlphaMode, Material, Model, Texture, Wrap, embedded, pn_triangles};
@@ -266,11 +266,12 @@ fn artists_lines_are_where_they_are_painted_and_nowhere_else() {
     let camera = camera_at(DVec3::new(-0.5, 0.0, 5.0), DVec3::new(-0.5, 0.0, 0.0), 30.0, 0.1);
     let upright = |x: f64| (0..100u32).map(move |i| DVec3::new(x, f64::from(i) / 60.0 - 0.8, 0.0));
     let seen = |x: f64| upright(x).map(|point| project(&camera, point)).collect::<Vec<_>>();
-    let artist = ImageInk { artist: true, regions: Regions::Material, ..ImageInk::default() };
-    for executor in executors() {
+    let rotations = [ArtistRotation::PerPixel, ArtistRotation::PerVertex, ArtistRotation::PerObject];
+    for (executor, rotation) in executors().iter().flat_map(|executor| rotations.map(|rotation| (executor, rotation))) {
+        let artist = ImageInk { artist: Some(rotation), regions: Regions::Material, ..ImageInk::default() };
         let mut scene = Scene::new(two_colored());
         let has_line = |scene: &Scene, x: f64, ink: ImageInk| {
-            share(&are_near(&drawn(&executor, scene, &camera, ink), seen(x).into_iter(), WITHIN_PX))
+            share(&are_near(&drawn(executor, scene, &camera, ink), seen(x).into_iter(), WITHIN_PX))
         };
         // The red channel alone distinguishes green from red; alpha is 1 in both.
         for (kind, lines) in
@@ -280,7 +281,7 @@ fn artists_lines_are_where_they_are_painted_and_nowhere_else() {
             assert_eq!(has_line(&scene, -0.5, artist), lines, "{kind:?} on {}", executor.describe());
             assert_eq!(has_line(&scene, -0.2, artist), 0.0, "{kind:?} on {}", executor.describe());
             // Styles that do not use artist-controlled lines do not get them.
-            assert_eq!(has_line(&scene, -0.5, ImageInk { artist: false, ..artist }), 0.0, "{kind:?}");
+            assert_eq!(has_line(&scene, -0.5, ImageInk { artist: None, ..artist }), 0.0, "{kind:?}");
         }
     }
     assert!(matches!(
@@ -308,7 +309,8 @@ fn vertex_colour_lines_survive_a_full_turn() {
     let mut scene = Scene::new(model);
     scene.line_kinds = vec![LineKind::VertexColor];
     let executor = Executor::Cpu { why: None };
-    for step in 0..12u32 {
+    let rotations = [ArtistRotation::PerPixel, ArtistRotation::PerVertex];
+    for (step, rotation) in (0..12u32).flat_map(|step| rotations.map(|rotation| (step, rotation))) {
         let yaw = f64::from(step) * 30f64.to_radians() + 0.1;
         let eye = DVec3::new(yaw.sin() * 5.0, 1.2, yaw.cos() * 5.0);
         let camera = camera_at(eye, DVec3::ZERO, 28.0, 0.1);
@@ -316,17 +318,17 @@ fn vertex_colour_lines_survive_a_full_turn() {
             &executor,
             &scene,
             &camera,
-            ImageInk { artist: true, regions: Regions::Material, ..ImageInk::default() },
+            ImageInk { artist: Some(rotation), regions: Regions::Material, ..ImageInk::default() },
         );
         // At least a tenth of the radius away from the contour.
         let seam = circle(DVec3::ZERO, DVec3::X, 1.0).filter(|p| p.dot(eye) > 1.0 + 0.1 * eye.length());
         let seam: Vec<DVec2> = seam.map(|point| project(&camera, point)).collect();
         let found = share(&are_near(&ink, seam.iter().copied(), WITHIN_PX));
-        assert!(seam.is_empty() || found >= 0.99, "{step}: {found}");
+        assert!(seam.is_empty() || found >= 0.99, "{step}, {rotation:?}: {found}");
         // No other line than the seam and the contour.
         let inner = ink.iter().filter(|&&point| project(&camera, DVec3::ZERO).distance(point) < 110.0);
         let stray = inner.filter(|&&point| !are_near(&seam, [point].into_iter(), 2.5)[0]).count();
-        assert!(stray < 8, "{step}: {stray} px of line where there is none");
+        assert!(stray < 8, "{step}, {rotation:?}: {stray} px of line where there is none");
     }
 }
 
@@ -442,9 +444,18 @@ fn the_device_packs_what_the_reference_packs() {
     let cases = [(&scenes[0].0, scenes[0].1), (&scenes[1].0, scenes[1].1), (&scenes[0].0, parallel)];
     for (scene, camera) in cases {
         let [narrow, wide] = [TexelLayout::Bits32, TexelLayout::Bits64];
-        let cases = [(narrow, InkScale::One), (wide, InkScale::One), (wide, InkScale::Half), (wide, InkScale::Double)];
-        for (layout, scale) in cases {
-            let style = black_on_white(ImageInk { artist: true, layout, scale, ..ImageInk::default() });
+        let [pixel, vertex, object] =
+            [ArtistRotation::PerPixel, ArtistRotation::PerVertex, ArtistRotation::PerObject].map(Some);
+        let cases = [
+            (narrow, InkScale::One, pixel),
+            (wide, InkScale::One, pixel),
+            (wide, InkScale::One, vertex),
+            (wide, InkScale::One, object),
+            (wide, InkScale::Half, pixel),
+            (wide, InkScale::Double, pixel),
+        ];
+        for (layout, scale, artist) in cases {
+            let style = black_on_white(ImageInk { artist, layout, scale, ..ImageInk::default() });
             let plan = planned(scene, &style, &camera, SIZE);
             let expected = cpu::render(scene, &plan, &CpuOptions::default(), &|_| {}).texels;
             let targets = renderer.targets(&plan.view).expect("a size");
@@ -463,10 +474,10 @@ fn the_device_packs_what_the_reference_packs() {
                 a.region != b.region || steps > 2 || a.depth.abs_diff(b.depth) > codes.max(2)
             };
             let share = expected.iter().zip(&actual).filter(apart).count() as f64 / expected.len() as f64;
-            println!("{layout:?}, {scale:?}: {share:.5} of the texels differ");
+            println!("{layout:?}, {scale:?}, {artist:?}: {share:.5} of the texels differ");
             // Differences lie at contours, which are a larger fraction of a smaller picture.
             let limit = 1e-4 * f64::from(SIZE.0) / f64::from(scale.size(SIZE).0);
-            assert!(expected.len() == actual.len() && share < limit, "{layout:?}, {scale:?}: {share}");
+            assert!(expected.len() == actual.len() && share < limit, "{layout:?}, {scale:?}, {artist:?}: {share}");
         }
     }
 }

@@ -15,6 +15,7 @@ use npr_harness::shade::ramp::{RampShade, RampSource};
 use npr_harness::shadow::{ShadowLines, ShadowMethod, ShadowStyle};
 use npr_harness::style::{Lines, Style, style, styles};
 use npr_hatch::{TamParameters, Thresholds, draw, store};
+use npr_imagespace::artist::ArtistRotation;
 use npr_imagespace::composite::Composite;
 use npr_imagespace::morphology::disc::Disc;
 use npr_outline::LineKind;
@@ -88,6 +89,10 @@ fn every_style_survives_being_written_and_read() {
     for normals in [NormalUse::Interpolated, NormalUse::PerFace, NormalUse::PerSubdividedFace(7)] {
         all.push(Style { normals, ..named("toon") });
     }
+    let rotations = [ArtistRotation::PerPixel, ArtistRotation::PerVertex, ArtistRotation::PerObject];
+    for artist in rotations.map(Some).into_iter().chain([None]) {
+        all.push(Style { lines: Lines::image(ImageInk { artist, ..ImageInk::default() }), ..named("artist") });
+    }
     for style in all {
         let text = style.to_toml().expect("every style has a form");
         assert_eq!(parse(&text).unwrap_or_else(|e| panic!("{e}\n{text}")), style, "{text}");
@@ -126,6 +131,20 @@ fn what_is_left_out_has_its_default() {
     assert_eq!(style.shade, Shade::Paper);
     let style = parse("paper = \"#ff8000\"\n").expect("a style");
     assert_eq!(style.paper, Vec3::new(1.0, 128.0 / 255.0, 0.0));
+}
+
+/// `artist = true` is what it was before there were other rotations, and so it is written.
+#[test]
+fn artists_directions_are_rotated_as_a_style_says() {
+    let artist = |text: &str| {
+        let style = parse(&format!("[lines.image]\nartist = {text}\n")).expect("a style");
+        style.lines.image.expect("lines in the image").artist
+    };
+    assert_eq!([artist("false"), artist("true")], [None, Some(ArtistRotation::PerPixel)]);
+    assert_eq!(artist("\"per-pixel\""), Some(ArtistRotation::PerPixel));
+    assert_eq!(artist("\"per-vertex\""), Some(ArtistRotation::PerVertex));
+    assert_eq!(artist("\"per-object\""), Some(ArtistRotation::PerObject));
+    assert!(named("artist").to_toml().expect("a form").contains("\nartist = true\n"));
 }
 
 /// One unknown key in each table, so that every struct is checked.
@@ -434,6 +453,10 @@ fn numbers_that_no_picture_survives_are_refused() {
         (lines("crease-px = nan"), "width of NaN"),
         (thick("depth-step = nan"), "NaN"),
         (thick("radius-px = -1"), "-1"),
+        (thick("softness = 0.4"), "at most 0.39999998"),
+        (thick("softness = -1"), "softness of -1"),
+        ("[lines.image]\nnormals = false\nsoftness = 2.1".into(), "a test of depth"),
+        (thick("artist = \"per-face\""), "per-object"),
         ("paper = [2, 0, 0]".into(), "paper of 2"),
         ("crease-angle-deg = inf".into(), "inf"),
         ("[[light]]\ndirection = [nan, 0, 0]".into(), "light 0"),

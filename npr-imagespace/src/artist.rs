@@ -17,15 +17,17 @@
 //! the point. A world-space G-buffer takes the result through the
 //! view's rotation.
 //!
-//! - Vertex colours ([`LineKind::VertexColor`]): rotated with the vector from the eye to each vertex, or better to each
-//!   pixel. Every visible normal is 90° and more from that vector, so the four stay 45° and more from all of them,
-//!   from every side.
+//! - Vertex colours ([`LineKind::VertexColor`]): rotated with the vector from the eye to each vertex and interpolated
+//!   ([`ArtistRotation::PerVertex`]), or better with that to each pixel ([`ArtistRotation::PerPixel`]). Every visible
+//!   normal is 90° and more from that vector, so the four stay 45° and more from all of them, from every side. Where
+//!   the corners of a face have different colours, interpolated directions turn gradually from one to the other, and a
+//!   large face has no line; the pixel's own vector is applied to the interpolated colour, whose border is a line.
 //! - Texture ([`LineKind::Texture`]): red and alpha of the artist's texture pick one of the 2 × 2 palette
 //!   ([`ink_artist_texel`], as `texreg2ar` does), rotated once for an object with the vector from the eye to its
-//!   centre. At a point that is an angle α off that vector the distance to visible normals is 45° − α, and lines
-//!   vanish where that is below the filter's threshold: nearer than r / sin(45° − acos t) to the centre of an object
-//!   of radius r ([`artist_object_distance`]), 7.1 r for the threshold 0.80 and 4.4 r for 0.85. With the pixel's own
-//!   vector, which costs a few instructions today, the kind has no such limit.
+//!   centre ([`ArtistRotation::PerObject`]). At a point that is an angle α off that vector the distance to visible
+//!   normals is 45° − α, and lines vanish where that is below the filter's threshold: nearer than r / sin(45° − acos t)
+//!   to the centre of an object of radius r ([`artist_object_distance`]), 7.1 r for the threshold 0.80 and 4.4 r for
+//!   0.85. With the pixel's own vector, which costs a few instructions today, the kind has no such limit.
 //!
 //! # Alpha-tested materials
 //!
@@ -52,6 +54,18 @@ pub enum LineKind {
     Regions,
     /// No inner lines: no normal, and one region for the whole material.
     None,
+}
+
+/// The vector from the eye with which [`ink_artist_direction`] rotates the directions of an artist's lines.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum ArtistRotation {
+    /// That to the pixel's surface point: not printed, and the most accurate.
+    #[default]
+    PerPixel,
+    /// As printed for vertex colours: that to each vertex, and the rotated directions are interpolated.
+    PerVertex,
+    /// As printed for textures: that to the middle of the object.
+    PerObject,
 }
 
 /// Cosine of the angle between the view and each of the four directions: 45°.

@@ -68,6 +68,36 @@ pub enum ImageSpaceError {
         /// The value that was given.
         softness: f32,
     },
+    /// A softness with which the transition around the normal threshold reaches a cosine of 1, so that flat faces would
+    /// have ink.
+    #[error(
+        "a softness of {softness} around a normal threshold of {cos}: flat faces would have ink; at most {most} is possible"
+    )]
+    NormalSoftness {
+        /// The softness that was given.
+        softness: f32,
+        /// The normal threshold, a cosine.
+        cos: f32,
+        /// The largest softness: [`crate::filter::normal::normal_softness_max`].
+        most: f32,
+    },
+    /// A softness with which the transition around the depth threshold begins below a difference of 0, so that flat
+    /// faces would have ink.
+    #[error("a softness of {softness} with a test of depth: flat faces would have ink; at most {most} is possible")]
+    DepthSoftness {
+        /// The softness that was given.
+        softness: f32,
+        /// The largest softness: [`crate::filter::depth::DEPTH_SOFTNESS_MAX`].
+        most: f32,
+    },
+    /// A soft inker whose normal threshold is so large, at some depth, that flat faces would have ink.
+    #[error("a soft inker with a normal threshold of {cos}: flat faces would have ink; at most {most} is possible")]
+    InkerSoftness {
+        /// The largest normal threshold over the depths 0..=1, a cosine.
+        cos: f32,
+        /// The largest possible: [`crate::filter::inker::INKER_SOFT_COS_MAX`].
+        most: f32,
+    },
     /// A radius that is negative, not finite or larger than 32766 px.
     #[error("a radius of {radius_px} px: it must be within 0..=32766")]
     Radius {

@@ -352,9 +352,13 @@ fn uniform(filter: &FusedFilter, layout: TexelLayout) -> FilterUniform {
 
 fn tap(normal: Vec3, region: u32, depth: f32, layout: TexelLayout) -> Tap {
     let code = DepthCode::perspective(1.0, 50.0, layout).unwrap();
+    coded_tap(normal, region, depth, layout, &code)
+}
+
+fn coded_tap(normal: Vec3, region: u32, depth: f32, layout: TexelLayout, code: &DepthCode) -> Tap {
     match layout {
-        TexelLayout::Bits32 => ink_texel32_tap(ink_texel32_pack(normal, region, depth, &code)),
-        TexelLayout::Bits64 => ink_texel64_tap(ink_texel64_pack(normal, region, depth, &code)),
+        TexelLayout::Bits32 => ink_texel32_tap(ink_texel32_pack(normal, region, depth, code)),
+        TexelLayout::Bits64 => ink_texel64_tap(ink_texel64_pack(normal, region, depth, code)),
     }
 }
 
@@ -424,6 +428,117 @@ fn thresholds_out_of_range_are_refused() {
             assert!(ink_tap_depth_threshold(&uniform, layout.depth_max() as i32) >= layout.depth_slack() as i32);
         }
     }
+}
+
+/// The softness with which a flat face is white, and the next number, which is refused; and that the refused ones are
+/// refused for a reason.
+#[test]
+fn the_largest_softness_leaves_a_flat_face_white_and_the_next_one_is_refused() {
+    for layout in [TexelLayout::Bits32, TexelLayout::Bits64] {
+        let code = DepthCode::perspective(1.0, 50.0, layout).unwrap();
+        let flat = tap(Vec3::new(0.3, 0.5, 0.8), 1, 20.0, layout);
+        let ink = |uniform: &FilterUniform| ink_store(ink_fused(uniform, &flat, &[flat; 4]) as f32);
+        for cos in [0.0, 0.1, 0.3, 0.5, 0.8, 0.85, 0.95, 0.999] {
+            for taps in [Taps::Diagonal, Taps::Cross] {
+                let with = |softness| {
+                    let filter = FusedFilter { normal_cos: Some(cos), taps, softness, ..Default::default() };
+                    FilterUniform::new(&filter, layout, &code)
+                };
+                let most = normal_softness_max(cos);
+                assert!((most - 2.0 * (1.0 - cos)).abs() < 1e-6, "{cos}");
+                let allowed = with(most).unwrap();
+                assert_eq!(ink(&allowed), 0, "{cos} {layout:?}");
+                let softness = most.next_up();
+                assert_eq!(with(softness), Err(ImageSpaceError::NormalSoftness { softness, cos, most }));
+                // A tenth more is grey.
+                assert!(ink(&FilterUniform { softness: 1.1 * most, ..allowed }) > 20, "{cos} {layout:?}");
+            }
+        }
+        // Without a test of normals, the bound is that of depth; without either, there is none.
+        let without = |depth, softness| {
+            let filter = FusedFilter { normal_cos: None, depth, softness, ..Default::default() };
+            FilterUniform::new(&filter, layout, &code)
+        };
+        for plain in [false, true] {
+            let depth = Some(DepthTest { step: 0.05, plain });
+            let allowed = without(depth, DEPTH_SOFTNESS_MAX).unwrap();
+            assert_eq!(ink(&allowed), 0);
+            let softness = DEPTH_SOFTNESS_MAX.next_up();
+            let most = DEPTH_SOFTNESS_MAX;
+            assert_eq!(without(depth, softness), Err(ImageSpaceError::DepthSoftness { softness, most }));
+        }
+        without(None, 9.0).unwrap();
+    }
+    // The printed and the slides' thresholds, with the softness that ends at a cosine of 1, are refused as the f32 that
+    // they are.
+    let slides = FusedFilter { softness: 0.4, ..Default::default() };
+    let code = DepthCode::perspective(1.0, 50.0, TexelLayout::Bits64).unwrap();
+    let error = FilterUniform::new(&slides, TexelLayout::Bits64, &code).unwrap_err();
+    let said = "a softness of 0.4 around a normal threshold of 0.8: flat faces would have ink; at most 0.39999998 is \
+                possible";
+    assert_eq!(error.to_string(), said);
+}
+
+/// The codes of a plane bend by what they are rounded by; a soft test of depth gives that no ink at any distance.
+#[test]
+fn a_soft_test_of_depth_gives_a_slanted_plane_no_ink() {
+    for layout in [TexelLayout::Bits32, TexelLayout::Bits64] {
+        let code = DepthCode::perspective(1.0, 500.0, layout).unwrap();
+        for softness in [0.1, 0.5, 1.0, DEPTH_SOFTNESS_MAX] {
+            let filter = FusedFilter { normal_cos: None, softness, ..Default::default() };
+            let uniform = FilterUniform::new(&filter, layout, &code).unwrap();
+            let mut bent = 0;
+            // From 1.1 to 400 units, along a plane.
+            for pixel in 0..20_000u32 {
+                let inverse = |x: f64| 1.0 / 400.0 + (1.0 / 1.1 - 1.0 / 400.0) * (x / 20_000.0);
+                let seen = |x: f64| coded_tap(Vec3::Z, 1, (1.0 / inverse(x)) as f32, layout, &code);
+                let [before, centre, after] = [-1.0, 0.0, 1.0].map(|x| seen(f64::from(pixel) + x));
+                bent += u32::from(before.depth - 2 * centre.depth + after.depth != 0);
+                assert_eq!(ink_fused(&uniform, &centre, &[before, before, after, after]), 0.0, "{layout:?} {pixel}");
+            }
+            assert!(bent > 100, "{layout:?}: rounding bends nothing, and the test shows nothing");
+        }
+    }
+}
+
+#[test]
+fn a_soft_inker_needs_a_threshold_with_which_flat_faces_are_white() {
+    let soft = |cos: f32, fall: f32, softness: f32| Inker {
+        normal_cos: cos,
+        normal_fall: fall,
+        softness,
+        ..Default::default()
+    };
+    assert_eq!(soft(0.9, 0.25, 0.0).validate(), Ok(()));
+    let most = INKER_SOFT_COS_MAX;
+    assert_eq!(soft(0.9, 0.25, 0.5).validate(), Err(ImageSpaceError::InkerSoftness { cos: 0.9, most }));
+    // A fall below 0 raises the threshold with depth.
+    assert_eq!(soft(0.5, -0.375, 0.5).validate(), Err(ImageSpaceError::InkerSoftness { cos: 0.875, most }));
+    let softness = DEPTH_SOFTNESS_MAX.next_up();
+    assert!(matches!(soft(0.8, 0.25, softness).validate(), Err(ImageSpaceError::DepthSoftness { .. })));
+    assert!(matches!(soft(0.8, 0.25, f32::NAN).validate(), Err(ImageSpaceError::Softness { .. })));
+    // The printed forms are hard, whatever the softness.
+    for form in [InkerForm::Printed, InkerForm::Corrected] {
+        assert_eq!(Inker { form, ..soft(0.9, 0.25, 5.0) }.validate(), Ok(()));
+    }
+    // Flat faces of every direction and depth in bytes are white with the largest threshold, and with one a hundredth
+    // larger not all are.
+    let darkest = |inker: &Inker| {
+        let mut darkest = 0;
+        for i in 0..200_000u32 {
+            // Fibonacci's sphere.
+            let z = 1.0 - (f64::from(i) + 0.5) / 100_000.0;
+            let (sin, cos) = (f64::from(i) * 2.399_963_229_728_653).sin_cos();
+            let across = (1.0 - z * z).sqrt();
+            let texel = ink_printed_encode(DVec3::new(across * cos, across * sin, z).as_vec3(), 0.0);
+            darkest = darkest.max(ink_store(ink_printed_inker(inker, [texel; 4]) as f32));
+        }
+        darkest
+    };
+    let largest = soft(most, 0.25, DEPTH_SOFTNESS_MAX);
+    assert_eq!((largest.validate(), darkest(&largest)), (Ok(()), 0));
+    assert!(soft(most.next_up(), 0.25, 0.5).validate().is_err());
+    assert!(darkest(&soft(most + 0.01, 0.25, 0.5)) > 10);
 }
 
 fn any_tap(most: i32, depth_max: i32) -> impl Strategy<Value = Tap> {

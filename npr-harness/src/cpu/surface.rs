@@ -9,7 +9,7 @@ use crate::rays::Hit;
 use crate::scene::Object;
 use crate::shadow::cpu::{ShadowAt, shadow_at};
 use glam::{DVec2, DVec3, DVec4, Vec3};
-use npr_imagespace::artist::LineKind;
+use npr_imagespace::artist::{ArtistRotation, LineKind};
 use npr_mesh::{AlphaMode, Material};
 use npr_toon::painter::toon_material;
 
@@ -137,12 +137,18 @@ impl FrameContext<'_> {
 
     /// The linear vertex colour; white if there is none.
     pub(super) fn vertex_color(&self, hit: &Hit) -> DVec4 {
-        let model = self.scene.placed(hit.object).1.model();
-        if model.colors.is_empty() {
+        if self.scene.placed(hit.object).1.model().colors.is_empty() {
             return DVec4::ONE;
         }
-        let corners = model.faces[hit.face as usize];
-        (0..3).map(|i| model.colors[corners[i] as usize].as_dvec4() * hit.barycentric[i]).sum()
+        let colors = self.corner_colors(hit);
+        (0..3).map(|i| colors[i] * hit.barycentric[i]).sum()
+    }
+
+    /// The linear vertex colours of the hit's face; white if there are none.
+    fn corner_colors(&self, hit: &Hit) -> [DVec4; 3] {
+        let model = self.scene.placed(hit.object).1.model();
+        let color = |vertex: u32| model.colors.get(vertex as usize).map_or(DVec4::ONE, |color| color.as_dvec4());
+        model.faces[hit.face as usize].map(color)
     }
 
     /// The linear filtered texture colour; white if there is none.
@@ -214,6 +220,10 @@ impl FrameContext<'_> {
             let texture = self.material(hit).texture?;
             Some(self.textures[texture as usize].nearest_bytes(self.interpolate_uv(hit, hit.barycentric)))
         };
+        let camera = &self.plan.view.camera;
+        let eye = camera.homogeneous_eye();
+        let from_eye = |point: DVec3| point * eye.w - eye.truncate();
+        let rotation = image.artist_rotation(self.scene.material_number(hit.object, hit.face));
         let sample = InkSample {
             region: image.regions.of_face(self.scene, hit.object, hit.face),
             kind: self.line_kind(hit),
@@ -222,10 +232,17 @@ impl FrameContext<'_> {
             vertex_color: &|| self.vertex_color(hit),
             texture_color: &|| self.texture_color(hit, x, y),
             texture_bytes: &texture_bytes,
-            view: &|| {
-                let direction = self.rays.through(self.sample_point(f64::from(x), f64::from(y))).1;
-                (direction, self.plan.view.camera.axes())
+            rotation,
+            from_eye: &|| match rotation {
+                ArtistRotation::PerObject => from_eye(self.scene.middle_of(hit.object)),
+                _ => self.rays.through(self.sample_point(f64::from(x), f64::from(y))).1,
             },
+            corners: &|| {
+                let points = self.scene.face_corners(hit.object, hit.face);
+                let colors = self.corner_colors(hit);
+                [0, 1, 2].map(|i| (hit.barycentric[i], colors[i], from_eye(points[i])))
+            },
+            view_axes: camera.axes(),
             shadow: &|| self.shadow_at(hit),
         };
         texel(image, Some(&sample))

@@ -6,7 +6,7 @@ use crate::image_lines::plan::RegionPlan;
 use crate::scene::Scene;
 use npr_outline::shadow_pass::affine_rows;
 
-/// `Instance` of `surface.wgsl`: 64 bytes per object.
+/// `Instance` of `surface.wgsl`: 76 bytes per object.
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 struct Instance {
@@ -16,13 +16,15 @@ struct Instance {
     regions: [u32; 2],
     /// The scale of the object's transform, and its log2.
     scale: [f32; 2],
+    /// The middle of the object's box, in scene space.
+    middle: [f32; 3],
 }
 
 pub(crate) const INSTANCE_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
     array_stride: size_of::<Instance>() as u64,
     step_mode: wgpu::VertexStepMode::Instance,
     attributes: &wgpu::vertex_attr_array![
-        8 => Float32x4, 9 => Float32x4, 10 => Float32x4, 11 => Uint32x2, 12 => Float32x2
+        8 => Float32x4, 9 => Float32x4, 10 => Float32x4, 11 => Uint32x2, 12 => Float32x2, 13 => Float32x3
     ],
 };
 
@@ -90,6 +92,7 @@ impl Instances {
                 rows: affine_rows(object.scene_from_mesh()),
                 regions: [first, u32::from(!is_all)],
                 scale: [scale as f32, scale.log2() as f32],
+                middle: scene.middle_of(number).as_vec3().to_array(),
             }
         };
         let now: Vec<Instance> = scene.drawing_order().iter().map(instance).collect();

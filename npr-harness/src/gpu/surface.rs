@@ -17,7 +17,7 @@ use crate::shade::flag;
 use crate::shadow::ShadowLines;
 use crate::shadow::gpu::{BlankShadow, ShadowOnDevice};
 use glam::{DVec2, DVec3, DVec4};
-use npr_imagespace::artist::LineKind;
+use npr_imagespace::artist::{ArtistRotation, LineKind};
 use npr_imagespace::format::texel::{DepthCode, TexelLayout};
 use npr_imagespace::pass::fused::texel_format;
 use npr_outline::filled_buffer::filled_buffer;
@@ -108,6 +108,7 @@ struct Inking {
     /// Whether texels are unquantised.
     unquantised: bool,
     line_kind: LineKind,
+    rotation: ArtistRotation,
     region_of_texture: bool,
 }
 
@@ -403,6 +404,7 @@ impl SurfacePass {
                     layout: image.ink.layout,
                     unquantised: image.gbuffer.is_some(),
                     line_kind,
+                    rotation: image.artist_rotation(drawn.material),
                     region_of_texture: line_kind == LineKind::Regions && material.texture.is_some(),
                 }
             });
@@ -563,9 +565,10 @@ impl SurfacePass {
             blend: None,
             write_mask: wgpu::ColorWrites::ALL,
         });
-        let (narrow, line_kind, region_of_texture) = inking.map_or((false, LineKind::Normals, false), |inking| {
-            (inking.layout == TexelLayout::Bits32, inking.line_kind, inking.region_of_texture)
-        });
+        let narrow = inking.is_some_and(|inking| inking.layout == TexelLayout::Bits32);
+        let line_kind = inking.map_or(LineKind::Normals, |inking| inking.line_kind);
+        let rotation = inking.map_or(ArtistRotation::PerPixel, |inking| inking.rotation);
+        let region_of_texture = inking.is_some_and(|inking| inking.region_of_texture);
         let constants: Vec<_> = key
             .constants
             .iter()
@@ -578,6 +581,7 @@ impl SurfacePass {
                 ("surface_narrow", flag(narrow)),
                 ("surface_unquantised", flag(inking.is_some_and(|inking| inking.unquantised))),
                 ("surface_line_kind", f64::from(line_kind as u32)),
+                ("surface_artist", f64::from(rotation as u32)),
                 ("surface_region_of_texture", flag(region_of_texture)),
                 ("surface_by_alpha", flag(by_alpha)),
                 ("surface_looked_up", flag(looked_up)),

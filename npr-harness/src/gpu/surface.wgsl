@@ -50,6 +50,9 @@ override surface_mesh_normals: bool = false;
 override surface_unquantised: bool = false;
 // The source of the material's inner lines: 0 normals, 1 vertex colours, 2 texture, 3 regions, 4 none.
 override surface_line_kind: u32 = 0u;
+// How the directions of an artist's lines are rotated: by the vector from the eye to 0 the pixel, 1 each vertex, 2 the
+// object.
+override surface_artist: u32 = 0u;
 // Whether the colours of the texture are region numbers.
 override surface_region_of_texture: bool = false;
 // Whether the alpha of the material's colour selects either its texture or its colour; else they are multiplied.
@@ -82,6 +85,8 @@ struct InkedSurface {
     @invariant @builtin(position) position: vec4<f32>,
     @location(0) normal: vec3<f32>,
     @location(3) @interpolate(flat) region: u32,
+    // Of `artist_vertex`.
+    @location(13) artist: vec3<f32>,
 }
 
 struct InkedTexturedSurface {
@@ -90,6 +95,7 @@ struct InkedTexturedSurface {
     @location(1) uv: vec2<f32>,
     @location(2) color: vec4<f32>,
     @location(3) @interpolate(flat) region: u32,
+    @location(13) artist: vec3<f32>,
 }
 
 // With all attributes, and the varyings for lighting: a position, or the vector to the light and the second vector, or
@@ -102,6 +108,7 @@ struct LitSurface {
     @location(3) @interpolate(flat) region: u32,
     @location(4) first: vec3<f32>,
     @location(5) second: vec3<f32>,
+    @location(13) artist: vec3<f32>,
 }
 
 // The reduced variants for plain surfaces without lines in the image, and for light computed at the vertices. On a
@@ -147,6 +154,8 @@ struct Instance {
     @location(11) regions: vec2<u32>,
     // The scale of the object's transform, and its log2.
     @location(12) scale: vec2<f32>,
+    // The middle of the object's box, in world space.
+    @location(13) middle: vec3<f32>,
 }
 
 fn placed_position(position: vec3<f32>, instance: Instance) -> vec3<f32> {
@@ -170,6 +179,26 @@ fn placed_normal(normal: vec3<f32>, instance: Instance) -> vec3<f32> {
 
 fn placed_region(region: u32, instance: Instance) -> u32 {
     return ink_fold_region(instance.regions.x + instance.regions.y * region, max(ink.region_max, 1u));
+}
+
+// The world-space direction for an index of `ink_artist_direction`, which no visible surface can have as its normal,
+// rotated by a world-space vector from the eye.
+fn artist_normal(index: u32, from_eye: vec3<f32>) -> vec3<f32> {
+    let in_view = vec3<f32>(dot(from_eye, ink.right.xyz), dot(from_eye, ink.up.xyz), dot(from_eye, ink.back.xyz));
+    let direction = ink_artist_direction(index, in_view);
+    return direction.x * ink.right.xyz + direction.y * ink.up.xyz + direction.z * ink.back.xyz;
+}
+
+// The varying for an artist's lines: the direction at a vertex, if it is rotated there; the vector from the eye to the
+// object, if it is rotated by that.
+fn artist_vertex(position: vec3<f32>, color: vec4<f32>, instance: Instance) -> vec3<f32> {
+    if surface_artist == 1u {
+        return artist_normal(ink_artist_index(encode_srgb(color.rgb)), position * view.eye.w - view.eye.xyz);
+    }
+    if surface_artist == 2u {
+        return instance.middle * view.eye.w - view.eye.xyz;
+    }
+    return vec3<f32>(0.0);
 }
 
 @vertex
@@ -198,7 +227,8 @@ fn vs_plain_inked(
 ) -> InkedSurface {
     let world = placed_position(position, instance);
     let number = placed_region(region, instance);
-    return InkedSurface(view.clip_from_world * vec4<f32>(world, 1.0), placed_normal(normal, instance), number);
+    let artist = artist_vertex(world, vec4<f32>(1.0), instance);
+    return InkedSurface(view.clip_from_world * vec4<f32>(world, 1.0), placed_normal(normal, instance), number, artist);
 }
 
 @vertex
@@ -208,7 +238,10 @@ fn vs_textured_inked(
 ) -> InkedTexturedSurface {
     let world = placed_position(position, instance);
     let clip = view.clip_from_world * vec4<f32>(world, 1.0);
-    return InkedTexturedSurface(clip, placed_normal(normal, instance), uv, color, placed_region(region, instance));
+    let artist = artist_vertex(world, color, instance);
+    return InkedTexturedSurface(
+        clip, placed_normal(normal, instance), uv, color, placed_region(region, instance), artist,
+    );
 }
 
 // The varyings of a vertex for lighting.
@@ -236,7 +269,8 @@ fn vs_lit(
 ) -> LitSurface {
     let plain = lit_vertex(position, normal, instance);
     let number = placed_region(region, instance);
-    return LitSurface(plain.position, plain.normal, uv, color, number, plain.first, plain.second);
+    let artist = artist_vertex(placed_position(position, instance), color, instance);
+    return LitSurface(plain.position, plain.normal, uv, color, number, plain.first, plain.second, artist);
 }
 
 @vertex
@@ -351,26 +385,27 @@ fn texture_region(uv: vec2<f32>) -> u32 {
     return ink_region_of_color(encode_srgb(textureLoad(base_texture, texel, 0).rgb));
 }
 
-// The world-space direction for an index of `ink_artist_direction`, which no visible surface can have as its normal.
-fn artist_normal(index: u32, position_px: vec2<f32>) -> vec3<f32> {
-    let away = -to_eye(position_px);
-    let eye_to_point = vec3<f32>(dot(away, ink.right.xyz), dot(away, ink.up.xyz), dot(away, ink.back.xyz));
-    let direction = ink_artist_direction(index, eye_to_point);
-    return direction.x * ink.right.xyz + direction.y * ink.up.xyz + direction.z * ink.back.xyz;
-}
-
-fn inked_normal(normal: vec3<f32>, texel: vec4<f32>, color: vec4<f32>, position_px: vec2<f32>) -> vec3<f32> {
+// `artist`: of `artist_vertex`, interpolated.
+fn inked_normal(
+    normal: vec3<f32>, texel: vec4<f32>, color: vec4<f32>, position_px: vec2<f32>, artist: vec3<f32>,
+) -> vec3<f32> {
     if surface_line_kind == 0u {
         return normal;
     }
     if surface_line_kind >= 3u {
         return vec3<f32>(0.0);
     }
+    if surface_artist == 1u {
+        return artist;
+    }
     var index = ink_artist_index(encode_srgb(color.rgb));
     if surface_line_kind == 2u {
         index = ink_artist_texel(vec4<f32>(encode_srgb(texel.rgb), texel.a));
     }
-    return artist_normal(index, position_px);
+    if surface_artist == 2u {
+        return artist_normal(index, artist);
+    }
+    return artist_normal(index, -to_eye(position_px));
 }
 
 // The largest region number that leaves room for the shadow state.
@@ -394,7 +429,7 @@ fn words(normal: vec3<f32>, region: u32, position: vec4<f32>, at: ShadowAt) -> v
 
 fn plain_words(in: InkedSurface, front: bool, at: ShadowAt) -> vec4<u32> {
     let own = shadow_normal(facing(in.normal, front), at);
-    let normal = inked_normal(own, vec4<f32>(1.0), vec4<f32>(1.0), in.position.xy);
+    let normal = inked_normal(own, vec4<f32>(1.0), vec4<f32>(1.0), in.position.xy, in.artist);
     return words(normal, in.region, in.position, at);
 }
 
@@ -409,7 +444,7 @@ fn textured_words(in: InkedTexturedSurface, front: bool, texel: vec4<f32>, at: S
         }
     }
     let own = shadow_normal(facing(in.normal, front), at);
-    return words(inked_normal(own, texel, in.color, in.position.xy), region, in.position, at);
+    return words(inked_normal(own, texel, in.color, in.position.xy, in.artist), region, in.position, at);
 }
 
 @fragment
@@ -469,9 +504,10 @@ fn lit_texel(in: LitSurface) -> vec4<f32> {
 
 fn lit_words(in: LitSurface, texel: vec4<f32>, front: bool, at: ShadowAt) -> vec4<u32> {
     if surface_looked_up {
-        return textured_words(InkedTexturedSurface(in.position, in.normal, in.uv, in.color, in.region), front, texel, at);
+        let looked_up = InkedTexturedSurface(in.position, in.normal, in.uv, in.color, in.region, in.artist);
+        return textured_words(looked_up, front, texel, at);
     }
-    return plain_words(InkedSurface(in.position, in.normal, in.region), front, at);
+    return plain_words(InkedSurface(in.position, in.normal, in.region, in.artist), front, at);
 }
 
 @fragment

@@ -59,6 +59,7 @@ struct HatchedSurface {
     @location(11) dark_weights: vec3<f32>,
     // The normal in mesh space, like the stroke coordinates.
     @location(12) mesh_normal: vec3<f32>,
+    @location(13) artist: vec3<f32>,
 }
 
 // The inputs for hatching a pixel.
@@ -106,6 +107,7 @@ fn vs_hatched(
     var out = HatchedSurface(
         plain.position, plain.normal, uv, color, placed_region(region, instance), plain.first, plain.second, at,
         diagonal, others, octave + instance.scale.y, vec3<f32>(0.0), vec3<f32>(0.0), normal,
+        artist_vertex(placed_position(position, instance), color, instance),
     );
     if surface_hatch_at_vertices {
         let weights = hatched_weights(hatched_tone(plain.first.x));
@@ -228,7 +230,7 @@ fn hatched_color(in: HatchedSurface, base: vec3<f32>, light: vec2<f32>, front: b
 }
 
 fn hatched_lit(in: HatchedSurface) -> LitSurface {
-    return LitSurface(in.position, in.normal, in.uv, in.color, in.region, in.first, in.second);
+    return LitSurface(in.position, in.normal, in.uv, in.color, in.region, in.first, in.second, in.artist);
 }
 
 @fragment

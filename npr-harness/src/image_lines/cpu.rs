@@ -8,7 +8,7 @@ use crate::cpu::frame::CpuFrame;
 use crate::shadow::ShadowLines;
 use crate::shadow::cpu::ShadowAt;
 use glam::{DMat3, DVec3, DVec4, UVec2, Vec3};
-use npr_imagespace::artist::{LineKind, ink_artist_direction, ink_artist_index, ink_artist_texel};
+use npr_imagespace::artist::{ArtistRotation, LineKind, ink_artist_direction, ink_artist_index, ink_artist_texel};
 use npr_imagespace::composite::ink_composite;
 use npr_imagespace::format::texel::{
     BACKGROUND, TexelLayout, ink_fold_region, ink_texel32_bits, ink_texel32_pack, ink_texel32_tap, ink_texel64_bits,
@@ -33,9 +33,16 @@ pub(crate) struct InkSample<'a> {
     pub(crate) texture_color: &'a dyn Fn() -> DVec4,
     /// The bytes of the nearest texel, evaluated if regions come from a texture; `None` without a texture.
     pub(crate) texture_bytes: &'a dyn Fn() -> Option<[u8; 3]>,
-    /// The vector from the eye to the point, of any length, and the right, up and back axes of the view, in world
-    /// space. Evaluated if inner lines come from an artist's colours.
-    pub(crate) view: &'a dyn Fn() -> (DVec3, [DVec3; 3]),
+    /// How the directions of an artist's lines are rotated.
+    pub(crate) rotation: ArtistRotation,
+    /// The vector from the eye to the point, or to the middle of its object if directions are rotated per object: of any
+    /// length, in world space. Evaluated if inner lines come from an artist's colours.
+    pub(crate) from_eye: &'a dyn Fn() -> DVec3,
+    /// For each corner of the face: the barycentric weight, the linear vertex colour, and the vector from the eye.
+    /// Evaluated if directions are rotated per vertex.
+    pub(crate) corners: &'a dyn Fn() -> [(f64, DVec4, DVec3); 3],
+    /// The right, up and back axes of the view, in world space.
+    pub(crate) view_axes: [DVec3; 3],
     /// The shadow state, evaluated if shadows have lines.
     pub(crate) shadow: &'a dyn Fn() -> ShadowAt,
 }
@@ -79,19 +86,29 @@ fn attributes(image: &ImagePlan, sample: &InkSample<'_>) -> (u32, Vec3, ShadowAt
 
 /// The normal for line detection in world space, of any length; zero if there is none.
 fn normal(sample: &InkSample<'_>) -> DVec3 {
+    let index_of_color = |linear: DVec4| ink_artist_index(encode_rgb(linear.truncate()).as_vec3());
     let index = match sample.kind {
         LineKind::Normals => return sample.normal,
         LineKind::Regions | LineKind::None => return DVec3::ZERO,
-        LineKind::VertexColor => ink_artist_index(encode_rgb((sample.vertex_color)().truncate()).as_vec3()),
+        LineKind::VertexColor if sample.rotation == ArtistRotation::PerVertex => {
+            let direction = |(weight, color, from_eye)| weight * artist_normal(index_of_color(color), from_eye, sample);
+            return (sample.corners)().map(direction).into_iter().sum();
+        }
+        LineKind::VertexColor => index_of_color((sample.vertex_color)()),
         LineKind::Texture => {
             let linear = (sample.texture_color)();
             ink_artist_texel(encode_rgb(linear.truncate()).as_vec3().extend(linear.w as f32))
         }
     };
-    let (eye_to_point, axes) = (sample.view)();
-    let world_from_view = DMat3::from_cols_array_2d(&axes.map(|axis| axis.to_array()));
-    let eye_to_point = (world_from_view.transpose() * eye_to_point).as_vec3();
-    world_from_view * ink_artist_direction(index, eye_to_point).as_dvec3()
+    artist_normal(index, (sample.from_eye)(), sample)
+}
+
+/// The world-space direction for an index and a world-space vector from the eye.
+fn artist_normal(index: u32, from_eye: DVec3, sample: &InkSample<'_>) -> DVec3 {
+    let [right, up, back] = sample.view_axes;
+    let world_from_view = DMat3::from_cols(right, up, back);
+    let from_eye = (world_from_view.transpose() * from_eye).as_vec3();
+    world_from_view * ink_artist_direction(index, from_eye).as_dvec3()
 }
 
 /// A perturbation of a pixel by the rounding of a rasteriser.

@@ -9,7 +9,7 @@ use crate::shadow::ShadowLines;
 use crate::view::View;
 use glam::UVec2;
 use npr_imagespace::ImageSpaceError;
-use npr_imagespace::artist::LineKind;
+use npr_imagespace::artist::{ArtistRotation, LineKind};
 use npr_imagespace::composite::Composite;
 use npr_imagespace::filter::fused::{FilterUniform, FusedFilter, ShadowTest, ink_fused};
 use npr_imagespace::format::texel::{DepthCode, TexelLayout, ink_fold_region, ink_texel32_tap, ink_texel64_tap};
@@ -168,7 +168,7 @@ impl ImagePlan {
             _ => None,
         };
         let materials = scene.materials().len();
-        let mut line_kinds = if ink.artist { scene.line_kinds.clone() } else { Vec::new() };
+        let mut line_kinds = if ink.artist.is_some() { scene.line_kinds.clone() } else { Vec::new() };
         line_kinds.resize(materials, LineKind::Normals);
         let most = ink.region_max();
         let regions = RegionPlan::new(scene, ink.regions, &line_kinds, crease_angle_rad, most)?;
@@ -176,6 +176,16 @@ impl ImagePlan {
         let own_surfaces = ink.scale != InkScale::One || view.samples > 1;
         let size = ink.scale.size(view.size);
         Ok(Self { ink, code, regions, line_kinds, lines, shadow_lines, size, gbuffer, own_surfaces })
+    }
+
+    /// How the directions of a material's lines are rotated. A texture is sampled at the pixel, so that there are no
+    /// directions at its vertices: with rotations per vertex it has one for the object, as printed.
+    pub fn artist_rotation(&self, material: usize) -> ArtistRotation {
+        match (self.ink.artist.unwrap_or_default(), self.line_kinds[material]) {
+            (ArtistRotation::PerVertex, LineKind::Texture) => ArtistRotation::PerObject,
+            (rotation, LineKind::VertexColor | LineKind::Texture) => rotation,
+            (_, LineKind::Normals | LineKind::Regions | LineKind::None) => ArtistRotation::PerPixel,
+        }
     }
 
     /// Whether the ink must be stored before it is composited: for a dilation, because its size differs from the

@@ -5,6 +5,7 @@ use super::style::{ImageInk, InkScale, Regions};
 use crate::schema::{Color, black, one, yes};
 use crate::shadow::ShadowLines;
 use glam::IVec2;
+use npr_imagespace::artist::ArtistRotation;
 use npr_imagespace::composite::{AlphaTest, Composite};
 use npr_imagespace::filter::fused::{DepthTest, FusedFilter, ShadowTest};
 use npr_imagespace::format::texel::TexelLayout;
@@ -25,7 +26,7 @@ pub(crate) struct ImageTable {
     taps: TapsValue,
     softness: f32,
     layout: LayoutName,
-    artist: bool,
+    artist: ArtistName,
     scale: ScaleName,
     shadows: ShadowsTable,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -91,6 +92,44 @@ enum LayoutName {
     Narrow,
     #[serde(rename = "64-bit")]
     Wide,
+}
+
+#[derive(Clone, Copy, Serialize, Deserialize)]
+#[serde(untagged, expecting = "true, false, \"per-pixel\", \"per-vertex\" or \"per-object\"")]
+enum ArtistName {
+    /// `true` is per pixel.
+    Used(bool),
+    Rotated(RotationName),
+}
+
+#[derive(Clone, Copy, Serialize, Deserialize)]
+enum RotationName {
+    #[serde(rename = "per-pixel")]
+    Pixel,
+    #[serde(rename = "per-vertex")]
+    Vertex,
+    #[serde(rename = "per-object")]
+    Object,
+}
+
+impl ArtistName {
+    fn new(rotation: Option<ArtistRotation>) -> Self {
+        match rotation {
+            None => Self::Used(false),
+            Some(ArtistRotation::PerPixel) => Self::Used(true),
+            Some(ArtistRotation::PerVertex) => Self::Rotated(RotationName::Vertex),
+            Some(ArtistRotation::PerObject) => Self::Rotated(RotationName::Object),
+        }
+    }
+
+    fn rotation(self) -> Option<ArtistRotation> {
+        match self {
+            Self::Used(used) => used.then_some(ArtistRotation::PerPixel),
+            Self::Rotated(RotationName::Pixel) => Some(ArtistRotation::PerPixel),
+            Self::Rotated(RotationName::Vertex) => Some(ArtistRotation::PerVertex),
+            Self::Rotated(RotationName::Object) => Some(ArtistRotation::PerObject),
+        }
+    }
 }
 
 #[derive(Clone, Copy, Serialize, Deserialize)]
@@ -209,7 +248,7 @@ impl ImageTable {
                 TexelLayout::Bits32 => LayoutName::Narrow,
                 TexelLayout::Bits64 => LayoutName::Wide,
             },
-            artist: ink.artist,
+            artist: ArtistName::new(ink.artist),
             scale: match ink.scale {
                 InkScale::Half => ScaleName::Half,
                 InkScale::One => ScaleName::One,
@@ -274,7 +313,7 @@ impl ImageTable {
                 RegionsName::Mesh => Regions::Mesh,
                 RegionsName::None | RegionsName::Patch => Regions::Patch,
             },
-            artist: self.artist,
+            artist: self.artist.rotation(),
             shadows: match self.shadows {
                 ShadowsTable::None => ShadowLines::None,
                 ShadowsTable::Negated => ShadowLines::Negated,

@@ -7,6 +7,7 @@ use crate::schema::within_colors;
 use crate::shadow::ShadowLines;
 use glam::UVec2;
 use npr_imagespace::ImageSpaceError;
+use npr_imagespace::artist::ArtistRotation;
 use npr_imagespace::composite::Composite;
 use npr_imagespace::filter::fused::{FilterUniform, FusedFilter};
 use npr_imagespace::format::texel::{DepthCode, TexelLayout};
@@ -61,9 +62,9 @@ pub struct ImageInk {
     pub layout: TexelLayout,
     /// The definition of a region.
     pub regions: Regions,
-    /// Whether materials specify the source of their inner lines
-    /// ([`Scene::line_kinds`](crate::scene::Scene::line_kinds)); else normals are used for all materials.
-    pub artist: bool,
+    /// How the directions of an artist's lines are rotated where materials specify the source of their inner lines
+    /// ([`Scene::line_kinds`](crate::scene::Scene::line_kinds)). `None`: normals are used for all materials.
+    pub artist: Option<ArtistRotation>,
     /// How the borders of shadows are drawn.
     pub shadows: ShadowLines,
     /// The disc by which lines are dilated, if any.

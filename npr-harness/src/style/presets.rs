@@ -15,6 +15,7 @@ use crate::shadow::{ShadowLines, ShadowStyle};
 use glam::Vec3;
 use npr_gooch::Gooch;
 use npr_hatch::TamParameters;
+use npr_imagespace::artist::ArtistRotation;
 use npr_imagespace::composite::Composite;
 use npr_imagespace::morphology::disc::Disc;
 use npr_outline::line_style::{LineStyle, widths_px};
@@ -196,7 +197,7 @@ pub fn styles() -> Vec<Style> {
             "artist",
             "lines where an artist painted them, material by material",
             Shade::Toon(Bands::default()),
-            image_lines(ImageInk { artist: true, ..ImageInk::default() }),
+            image_lines(ImageInk { artist: Some(ArtistRotation::PerPixel), ..ImageInk::default() }),
         ),
         Style {
             shadow,

@@ -30,6 +30,7 @@
 //! A depth that is not valid for a surface ([`ink_is_surface`]) is background, which differs from every surface. The
 //! plain tests compare numbers only, and NaN is never ink.
 
+use crate::ImageSpaceError;
 use crate::filter::ink_ramp;
 use crate::format::ink_is_surface;
 
@@ -39,6 +40,15 @@ pub const DEPTH_SUM_CARD_MITCHELL: f32 = 0.02;
 pub const DEPTH_ANY_OUTLINING_SKETCH: f32 = 0.01;
 /// The default threshold of [`ink_depth_bend`]: a jump of 1 % of the distance.
 pub const BEND: f32 = 0.01;
+/// The largest softness with which a face that does not bend has no ink: the transition covers the differences
+/// T (1 ± s / 2), and begins at 0 with s = 2.
+pub const DEPTH_SOFTNESS_MAX: f32 = 2.0;
+
+/// Refuses a softness that gives flat faces ink by a test of depth.
+pub(crate) fn check_depth_softness(softness: f32) -> Result<(), ImageSpaceError> {
+    let most = DEPTH_SOFTNESS_MAX;
+    if softness > most { Err(ImageSpaceError::DepthSoftness { softness, most }) } else { Ok(()) }
+}
 
 /// How four differences of depth are combined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -25,9 +25,9 @@
 //! branches, which on a software rasteriser saves a third of the arithmetic's time.
 
 use crate::ImageSpaceError;
-use crate::filter::depth::BEND;
+use crate::filter::depth::{BEND, check_depth_softness};
 use crate::filter::ink_ramp;
-use crate::filter::normal::NORMAL_COS_OUTLINING_SKETCH;
+use crate::filter::normal::{NORMAL_COS_OUTLINING_SKETCH, check_normal_softness};
 use crate::format::texel::{DepthCode, Tap, TexelLayout};
 use crate::picture::Taps;
 use crate::shadow::ink_shadow_differs;
@@ -48,7 +48,9 @@ pub struct FusedFilter {
     /// The neighbours that are compared.
     pub taps: Taps,
     /// 0 for hard lines; else the width of the transition, in cosines for normals and as a share of its threshold for
-    /// depth. Above 2 (1 − cos) the ramp begins below an angle of 0, and flat surfaces have ink.
+    /// depth. At most [`normal_softness_max`](crate::filter::normal::normal_softness_max) of the cosine with a test of
+    /// normals, and [`DEPTH_SOFTNESS_MAX`](crate::filter::depth::DEPTH_SOFTNESS_MAX) with one of depth: beyond, flat
+    /// faces would have ink.
     pub softness: f32,
 }
 
@@ -143,7 +145,7 @@ impl FilterUniform {
     /// Checks the filter and brings it into the integers of texels with this layout and this code of depth.
     ///
     /// # Errors
-    /// If a threshold is out of its range; [`ImageSpaceError::TapStep`].
+    /// If a threshold is out of its range, or the softness gives flat faces ink; [`ImageSpaceError::TapStep`].
     pub fn new(filter: &FusedFilter, layout: TexelLayout, code: &DepthCode) -> Result<Self, ImageSpaceError> {
         filter.taps.validate()?;
         let cos = filter.normal_cos.unwrap_or(0.0);
@@ -157,6 +159,12 @@ impl FilterUniform {
         }
         if !(filter.softness >= 0.0 && filter.softness.is_finite()) {
             return Err(ImageSpaceError::Softness { softness: filter.softness });
+        }
+        if let Some(cos) = filter.normal_cos {
+            check_normal_softness(cos, filter.softness)?;
+        }
+        if filter.depth.is_some() {
+            check_depth_softness(filter.softness)?;
         }
         // Parallel: units of depth in codes. Else the code 0 lies at 1/z = -bias / scale.
         let (base, growth) = if code.parallel != 0 {
@@ -285,9 +293,11 @@ pub fn ink_tap_normal_soft(settings: &FilterUniform, a: IVec3, b: IVec3) -> f64 
     ink_ramp(f64::from(settings.normal_cos) - cos, f64::from(settings.softness))
 }
 
-/// The soft form of an excess over a threshold.
+/// The soft form of an excess over a threshold. The transition begins no lower than the effect of rounding, which is
+/// all that a plane has; a threshold that is the effect of rounding is hard.
 fn depth_soft(settings: &FilterUniform, (excess, threshold): (i32, i32)) -> f64 {
-    ink_ramp(f64::from(excess), f64::from(settings.softness) * f64::from(threshold))
+    let widest = 2 * (threshold - settings.depth_slack as i32);
+    ink_ramp(f64::from(excess), (f64::from(settings.softness) * f64::from(threshold)).min(f64::from(widest)))
 }
 
 /// The soft form of [`ink_tap_across`].

@@ -111,9 +111,14 @@ fn ink_fused_hard(
     return any(across);
 }
 
-// The soft form of a difference above a threshold, both in codes.
+// The soft form of a difference above a threshold, both in codes. The transition begins no lower than the effect of
+// rounding, which is all that a plane has; a threshold that is the effect of rounding is hard.
 fn ink_taps_depth_soft(settings: InkFilter, differences: vec4<i32>, thresholds: vec4<i32>) -> vec4<f32> {
-    return saturate(vec4<f32>(differences - thresholds) / (settings.softness * vec4<f32>(thresholds)) + 0.5);
+    let excess = vec4<f32>(differences - thresholds);
+    let widest = 2.0 * vec4<f32>(thresholds - vec4<i32>(i32(settings.depth_slack)));
+    let width = min(settings.softness * vec4<f32>(thresholds), widest);
+    let soft = saturate(excess / max(width, vec4<f32>(1e-6)) + 0.5);
+    return select(step(vec4<f32>(0.5), excess), soft, width > vec4<f32>(0.0));
 }
 
 // The soft form of normals that differ.

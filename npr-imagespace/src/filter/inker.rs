@@ -23,8 +23,12 @@
 //! below 0.1 repaired, and nowhere with explicit thresholds, N being at least 0.64.
 //!
 //! Soft, the explicit form gives 2 (1 − N), clamped, which is the listing's own ramp scaled so that ½ is a full
-//! line, or if larger the ramp of d₀² + d₁² around δ².
+//! line, or if larger the ramp of d₀² + d₁² around δ². On a flat face that is 0 where T ≤ 7/8, and up to 0.72 with the
+//! listing's 0.9, near the eye: soft lines need a lower threshold ([`INKER_SOFT_COS_MAX`]), which [`Inker::validate`]
+//! checks.
 
+use crate::ImageSpaceError;
+use crate::filter::depth::check_depth_softness;
 use crate::filter::ink_ramp;
 use crate::picture::Taps;
 use bytemuck::{Pod, Zeroable};
@@ -32,6 +36,11 @@ use glam::DVec3;
 
 /// √(1/512): the smallest difference of depth whose square is not 0 in 8 bits.
 pub const DEPTH_DELTA: f32 = 0.044_194_174;
+
+/// The largest normal threshold, at any depth, with which flat faces have no ink where lines are soft: 7/8, below which
+/// N = 1 for equal unit normals, less the 0.01326 by which the square of a unit normal in biased bytes may fall short
+/// of 1.
+pub const INKER_SOFT_COS_MAX: f32 = 0.8617;
 
 /// The form of listing 4.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -56,10 +65,32 @@ pub struct Inker {
     pub normal_fall: f32,
     /// δ of the explicit form.
     pub depth_delta: f32,
-    /// The explicit form's width of the transition, as a share of its thresholds; 0 for hard lines.
+    /// The explicit form's width of the transition of depth, as a share of its threshold, at most
+    /// [`DEPTH_SOFTNESS_MAX`](crate::filter::depth::DEPTH_SOFTNESS_MAX); 0 for hard lines. That of normals has one
+    /// width.
     pub softness: f32,
     /// The neighbours that are compared: listing 3's text describes the diagonal ones.
     pub taps: Taps,
+}
+
+impl Inker {
+    /// Whether the softness is within its range, and gives flat faces no ink.
+    ///
+    /// # Errors
+    /// If the softness is negative or not finite; in the explicit form, if flat faces would have ink.
+    pub fn validate(&self) -> Result<(), ImageSpaceError> {
+        if !(self.softness >= 0.0 && self.softness.is_finite()) {
+            return Err(ImageSpaceError::Softness { softness: self.softness });
+        }
+        if self.form != InkerForm::Explicit || self.softness == 0.0 {
+            return Ok(());
+        }
+        check_depth_softness(self.softness)?;
+        // At depth 0 and at depth 1.
+        let cos = self.normal_cos.max(self.normal_cos - self.normal_fall);
+        let most = INKER_SOFT_COS_MAX;
+        if cos > most { Err(ImageSpaceError::InkerSoftness { cos, most }) } else { Ok(()) }
+    }
 }
 
 impl Default for Inker {

@@ -8,6 +8,7 @@
 //! Background has a vector that is no normal. It differs from every normal and not from itself, whatever the dot
 //! products are; the printed form has no such rule ([`crate::format::printed`]).
 
+use crate::ImageSpaceError;
 use crate::filter::ink_ramp;
 use glam::DVec3;
 
@@ -34,6 +35,21 @@ fn ink_normal_tap(centre: DVec3, tap: DVec3, cos: f64, softness: f64) -> f64 {
         (false, false) => ink_ramp(cos - centre.dot(tap), softness),
         _ => 1.0,
     }
+}
+
+/// The largest softness with which a flat face has no ink: 2 (1 − t), rounded down.
+///
+/// The transition of [`ink_normal`] covers the cosines t ± s / 2, and neighbours on a flat face have the cosine 1.
+pub fn normal_softness_max(cos: f32) -> f32 {
+    let most = 2.0 * (1.0 - cos);
+    // Below ½ the difference is rounded.
+    if f64::from(most) > 2.0 * (1.0 - f64::from(cos)) { most.next_down() } else { most }
+}
+
+/// Refuses a softness that gives flat faces ink by the test of normals.
+pub(crate) fn check_normal_softness(cos: f32, softness: f32) -> Result<(), ImageSpaceError> {
+    let most = normal_softness_max(cos);
+    if softness > most { Err(ImageSpaceError::NormalSoftness { softness, cos, most }) } else { Ok(()) }
 }
 
 /// As printed, hard, without a rule for the background: 1 where n · nᵢ < t for any i.

@@ -22,8 +22,10 @@
 //! z for eye-space depth z > 0: d = A + B/z, so that scale = 1/B and bias = −A/B.
 
 use crate::ImageSpaceError;
-use crate::filter::depth::{BEND, DepthPlain, ink_depth_bend, ink_depth_plain, ink_depth_step, ink_depth_step_soft};
-use crate::filter::normal::{NORMAL_COS_OUTLINING_SKETCH, ink_normal};
+use crate::filter::depth::{
+    BEND, DepthPlain, check_depth_softness, ink_depth_bend, ink_depth_plain, ink_depth_step, ink_depth_step_soft,
+};
+use crate::filter::normal::{NORMAL_COS_OUTLINING_SKETCH, check_normal_softness, ink_normal};
 use crate::filter::region::ink_region;
 use crate::picture::{Taps, checked_len, filter_picture};
 use bytemuck::{Pod, Zeroable};
@@ -41,7 +43,9 @@ pub struct SeparateFilter {
     /// The neighbours that are compared.
     pub taps: Taps,
     /// 0 for hard lines; else the width of the transition, in cosines for normals and as a share of its threshold for
-    /// depth.
+    /// depth. At most [`normal_softness_max`](crate::filter::normal::normal_softness_max) of the cosine with a test of
+    /// normals, and [`DEPTH_SOFTNESS_MAX`](crate::filter::depth::DEPTH_SOFTNESS_MAX) with one of depth: beyond, flat
+    /// faces would have ink.
     pub softness: f32,
 }
 
@@ -220,8 +224,8 @@ impl SeparateUniform {
     /// Checks the filter.
     ///
     /// # Errors
-    /// If a threshold is out of its range, or a depth buffer's numbers are not finite or its scale is 0;
-    /// [`ImageSpaceError::TapStep`].
+    /// If a threshold is out of its range, the softness gives flat faces ink, or a depth buffer's numbers are not
+    /// finite or its scale is 0; [`ImageSpaceError::TapStep`].
     pub fn new(filter: &SeparateFilter) -> Result<Self, ImageSpaceError> {
         filter.taps.validate()?;
         let normal = filter.normal.unwrap_or_default();
@@ -238,6 +242,12 @@ impl SeparateUniform {
         }
         if !(filter.softness >= 0.0 && filter.softness.is_finite()) {
             return Err(ImageSpaceError::Softness { softness: filter.softness });
+        }
+        if filter.normal.is_some() {
+            check_normal_softness(normal.cos, filter.softness)?;
+        }
+        if filter.depth.is_some() {
+            check_depth_softness(filter.softness)?;
         }
         let (depth_scale, depth_bias, depth_clear) = match depth.source {
             DepthSource::Linear => (1.0, 0.0, 0.0),

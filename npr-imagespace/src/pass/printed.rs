@@ -81,7 +81,7 @@ impl PrintedPass {
     /// Records filtering `texels`, of format `Rgba8Unorm` and the target's size.
     ///
     /// # Errors
-    /// If a threshold, or the inker's softness, is out of its range; [`ImageSpaceError::OtherFilter`] if the filter
+    /// If a threshold is out of its range, or the inker is not valid ([`Inker::validate`](crate::filter::inker::Inker::validate)); [`ImageSpaceError::OtherFilter`] if the filter
     /// looks for anything else than what the pass was made for; if a texture is not as [`crate::pass`] says.
     pub fn record(
         &self,
@@ -98,10 +98,10 @@ impl PrintedPass {
         check_view("texels", texels, wgpu::TextureFormat::Rgba8Unorm, "Rgba8Unorm", Some(size))?;
         let what = match filter {
             PrintedFilter::Edges(edges) => uniform(device, bytemuck::bytes_of(&PrintedUniform::new(edges)?)),
-            PrintedFilter::Inker(inker) if !(inker.softness >= 0.0 && inker.softness.is_finite()) => {
-                return Err(ImageSpaceError::Softness { softness: inker.softness });
+            PrintedFilter::Inker(inker) => {
+                inker.validate()?;
+                uniform(device, bytemuck::bytes_of(&InkerUniform::from(inker)))
             }
-            PrintedFilter::Inker(inker) => uniform(device, bytemuck::bytes_of(&InkerUniform::from(inker))),
         };
         let resources = [what.as_entire_binding(), wgpu::BindingResource::TextureView(texels)];
         self.draw.record(device, encoder, &resources, target);

@@ -108,8 +108,10 @@ fn the_inker_is_that_of_the_cpu() {
     let mut random = Random(32);
     let (mut inked, mut pixels, mut borderline) = (0, 0, 0);
     for form in [InkerForm::Printed, InkerForm::Corrected, InkerForm::Explicit] {
-        for (softness, taps) in [(0.0, Taps::Diagonal), (0.5, Taps::Diagonal), (0.0, LONG)] {
-            let inker = Inker { form, softness, taps, ..Default::default() };
+        // Soft, the explicit form needs a lower threshold.
+        for (softness, normal_cos, taps) in [(0.0, 0.9, Taps::Diagonal), (0.5, 0.86, Taps::Diagonal), (0.0, 0.9, LONG)]
+        {
+            let inker = Inker { form, softness, normal_cos, taps, ..Default::default() };
             let off = u8::from(softness > 0.0);
             // With thresholds off by what rounding amounts to, towards less ink and towards more.
             let shaken = [1.0f32, -1.0].map(|sign| Inker {
@@ -175,11 +177,17 @@ fn thresholds_out_of_range_are_refused() {
         assert!(matches!(error, ImageSpaceError::DepthStep { .. }));
     }
     let Some(gpu) = gpu() else { return };
-    let filter = PrintedFilter::Inker(Inker { softness: f32::NAN, ..Default::default() });
-    let pass = PrintedPass::new(&gpu.device, &filter, InkTarget::Ink).unwrap();
     let from = view(&gpu.texture(wgpu::TextureFormat::Rgba8Unorm, [2, 2]));
-    drawn(gpu, [2, 2], InkTarget::Ink, &Composite::default(), None, |encoder, target| {
-        let refused = pass.record(&gpu.device, encoder, &filter, &from, target).unwrap_err();
-        assert!(matches!(refused, ImageSpaceError::Softness { .. }));
-    });
+    let refused = |softness| {
+        let filter = PrintedFilter::Inker(Inker { softness, ..Default::default() });
+        let pass = PrintedPass::new(&gpu.device, &filter, InkTarget::Ink).unwrap();
+        let mut refused = None;
+        drawn(gpu, [2, 2], InkTarget::Ink, &Composite::default(), None, |encoder, target| {
+            refused = pass.record(&gpu.device, encoder, &filter, &from, target).err();
+        });
+        refused
+    };
+    assert!(matches!(refused(f32::NAN), Some(ImageSpaceError::Softness { .. })));
+    assert!(matches!(refused(0.5), Some(ImageSpaceError::InkerSoftness { .. })));
+    assert_eq!(refused(0.0), None);
 }

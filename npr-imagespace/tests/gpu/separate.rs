@@ -270,7 +270,7 @@ fn depth_buffers_and_small_formats_are_read() {
         let floats = view(&gpu.upload(TextureFormat::R32Float, size, bytemuck::cast_slice(&numbers)));
         let normals = view(&gpu.upload(TextureFormat::Rgba8Unorm, size, normals.as_flattened()));
         let regions = view(&gpu.upload(TextureFormat::R8Uint, size, &regions));
-        for softness in [0.0, 0.4] {
+        for softness in [0.0, 0.375] {
             let normal = Some(SeparateNormal { biased: true, ..Default::default() });
             let filter = SeparateFilter { normal, depth: Some(depth), softness, ..Default::default() };
             let pass = SeparatePass::new(&gpu.device, &filter, InkTarget::Ink).unwrap();

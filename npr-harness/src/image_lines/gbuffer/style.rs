@@ -156,6 +156,7 @@ impl GBuffer {
                 within("the inker's difference of depth", depth_delta, 0.0, 1.0, "0..=1")?;
                 within("the inker's softness", softness, 0.0, 1.0, "0..=1")?;
                 taps.validate()?;
+                inker.validate()?;
             }
             GBufferTarget::Separate(separate) => {
                 SeparateUniform::new(&separate.filter)?;
