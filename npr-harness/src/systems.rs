@@ -318,7 +318,7 @@ pub const SYSTEMS: [System; 45] = [
         "artist lines from vertex colours: four directions that face away from the viewer",
         ("npr-imagespace/src/artist.rs", "ink_artist_direction"),
         Ok("artist"),
-        "article-3",
+        "variants-artist",
         ("npr-imagespace/tests/artist.rs", "no_visible_normal_is_within_45_degrees_wherever_a_point_is_seen"),
     ),
     row(
@@ -327,7 +327,7 @@ pub const SYSTEMS: [System; 45] = [
         "artist lines from a texture, rotated for an object",
         ("npr-imagespace/src/artist.rs", "ink_artist_texel"),
         Ok("artist"),
-        "article-3",
+        "variants-artist",
         ("npr-imagespace/tests/artist.rs", "directions_rotated_once_for_an_object_fail_near_it_as_the_formula_says"),
     ),
     row(

@@ -240,13 +240,15 @@ fn slides() -> Vec<Figure> {
         Figure {
             name: "slides-dilation",
             shows: "SIGGRAPH 2002 slides: thin and dilated, hard and fuzzy",
-            caption: "Dilation is the minimum of lightness that the text names, twice over a + of five pixels; fuzzy is \
-                      the shader as it is, which adds up instead: 0.4 of a line for each sample on one.",
-            columns: 3,
+            caption: "Dilation is the minimum of lightness that the text names, twice over a + of five pixels. Fuzzy dilation is \
+                      the shader as it is, which adds up instead: 0.4 of a line for each sample on one. Fuzzy filters \
+                      have ramps around their thresholds instead of steps.",
+            columns: 2,
             panels: vec![
                 Panel::style("thin", still_life, lines(SLIDES, separate)),
                 Panel::style("dilated twice", still_life, lines(SLIDES, &format!("{separate}\n{thick}"))),
-                Panel::style("fuzzy", still_life, lines(SLIDES, &format!("{separate}\n{fuzzy}"))),
+                Panel::style("fuzzy dilation", still_life, lines(SLIDES, &format!("{separate}\n{fuzzy}"))),
+                Panel::style("fuzzy filters", still_life, lines(&format!("{SLIDES}\nsoftness = 0.3"), separate)),
             ],
         },
     ]

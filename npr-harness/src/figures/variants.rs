@@ -37,6 +37,7 @@ pub fn variants() -> Vec<Figure> {
     let taps = |step: i32| {
         lines(&format!("depth = false\ntaps = [[{step}, {step}], [-{step}, {step}]]"), "target = \"separate\"")
     };
+    let artist = |turned: &str| format!("{BANDS}[lines.image]\nartist = \"{turned}\"\n");
     let stepped = |step: &str| lines("", &format!("target = \"separate\"\nstep = [{step}]"));
     vec![
         Figure {
@@ -172,6 +173,19 @@ pub fn variants() -> Vec<Figure> {
                 Panel::style("lines along edges", Setting::Crossing, format!("{BANDS}[lines.edges]\n")),
                 Panel::style("lines in the image", Setting::Crossing, format!("{BANDS}[lines.image]\n")),
                 Panel::style("cut by a plane", Setting::Clipped, format!("{BANDS}[lines.image]\n")),
+            ],
+        },
+        Figure {
+            name: "variants-artist",
+            shows: "Artist lines with directions turned for each pixel, each vertex and each object",
+            caption: "Printed are turns for vertices, for colours of vertices, and for objects, for a texture through the \
+                      palette. Turned once for an object, directions are wrong away from its middle: lines vanish near \
+                      the viewer.",
+            columns: 3,
+            panels: vec![
+                Panel::style("pixels", Setting::Painted, artist("per-pixel")),
+                Panel::style("vertices", Setting::Painted, artist("per-vertex")),
+                Panel::style("objects", Setting::Painted, artist("per-object")),
             ],
         },
         Figure {
