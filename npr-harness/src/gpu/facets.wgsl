@@ -27,6 +27,8 @@ struct FacetSurface {
     @location(6) @interpolate(flat) corners_c: vec4<f32>,
     @location(7) @interpolate(flat) corners_d: vec4<f32>,
     @location(8) @interpolate(flat) corners_e: vec4<f32>,
+    // Of `artist_vertex`.
+    @location(9) artist: vec3<f32>,
 }
 
 fn facet_texel(index: u32) -> vec3<f32> {
@@ -75,17 +77,19 @@ fn vs_facet(
     @builtin(vertex_index) vertex: u32, @location(0) position: vec3<f32>, @location(1) normal: vec3<f32>,
     @location(2) uv: vec2<f32>, @location(3) color: vec4<f32>, @location(4) region: u32, instance: Instance,
 ) -> FacetSurface {
-    let clip = view.clip_from_world * vec4<f32>(placed_position(position, instance), 1.0);
+    let world = placed_position(position, instance);
+    let clip = view.clip_from_world * vec4<f32>(world, 1.0);
     let uv_weights = vec4<f32>(uv, facet_weights(vertex));
     let corners = facet_corners_of(vertex, instance).rows;
     return FacetSurface(
         clip, placed_normal(normal, instance), uv_weights, color, placed_region(region, instance), corners[0], corners[1],
-        corners[2], corners[3], corners[4],
+        corners[2], corners[3], corners[4], artist_vertex(world, color, instance),
     );
 }
 
 fn facet_lit(in: FacetSurface) -> LitSurface {
-    return LitSurface(in.position, in.normal, in.uv_weights.xy, in.color, in.region, vec3<f32>(0.0), vec3<f32>(0.0));
+    let no_light = vec3<f32>(0.0);
+    return LitSurface(in.position, in.normal, in.uv_weights.xy, in.color, in.region, no_light, no_light, in.artist);
 }
 
 // Requires uniform control flow.
