@@ -17,6 +17,8 @@ struct HatchedFacet {
     @location(10) diagonal: vec3<f32>,
     @location(11) others: vec3<f32>,
     @location(12) mesh_normal: vec3<f32>,
+    // Of `artist_vertex`.
+    @location(13) artist: vec3<f32>,
 }
 
 @vertex
@@ -25,17 +27,20 @@ fn vs_hatched_facet(
     @location(2) uv: vec2<f32>, @location(3) color: vec4<f32>, @location(4) region: u32,
     @location(5) diagonal: vec3<f32>, @location(6) others: vec3<f32>, @location(7) octave: f32, instance: Instance,
 ) -> HatchedFacet {
-    let clip = view.clip_from_world * vec4<f32>(placed_position(position, instance), 1.0);
+    let world = placed_position(position, instance);
+    let clip = view.clip_from_world * vec4<f32>(world, 1.0);
     let corners = facet_corners_of(vertex, instance).rows;
     return HatchedFacet(
         clip, placed_normal(normal, instance), vec4<f32>(uv, facet_weights(vertex)), color,
         placed_region(region, instance), corners[0], corners[1], corners[2], corners[3], corners[4],
         vec4<f32>(hatched_place(position, uv, instance), octave + instance.scale.y), diagonal, others, normal,
+        artist_vertex(world, color, instance),
     );
 }
 
 fn hatched_facet_lit(in: HatchedFacet) -> LitSurface {
-    return LitSurface(in.position, in.normal, in.uv_weights.xy, in.color, in.region, vec3<f32>(0.0), vec3<f32>(0.0));
+    let none = vec3<f32>(0.0);
+    return LitSurface(in.position, in.normal, in.uv_weights.xy, in.color, in.region, none, none, in.artist);
 }
 
 // Requires uniform control flow.
@@ -45,7 +50,7 @@ fn hatched_facet_color(in: HatchedFacet, base: vec3<f32>, front: bool, at: Shado
     let none = vec3<f32>(0.0);
     let surface = HatchedSurface(
         in.position, in.normal, in.uv_weights.xy, in.color, in.region, none, none, in.at_octave.xyz, in.diagonal,
-        in.others, in.at_octave.w, none, none, in.mesh_normal,
+        in.others, in.at_octave.w, none, none, in.mesh_normal, in.artist,
     );
     return hatched_color(surface, base, light, front, at);
 }
