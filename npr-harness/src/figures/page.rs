@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 ///
 /// # Errors
 /// [`HarnessError::Write`], [`HarnessError::Image`].
-pub fn write_figure(dir: &Path, drawn: &Drawn) -> Result<PathBuf, HarnessError> {
+fn write_figure(dir: &Path, drawn: &Drawn) -> Result<PathBuf, HarnessError> {
     let path = picture_file(dir, &drawn.figure);
     drawn.image.save_png(&path)?;
     for (number, panel) in drawn.figure.panels.iter().enumerate() {
@@ -24,7 +24,7 @@ pub fn write_figure(dir: &Path, drawn: &Drawn) -> Result<PathBuf, HarnessError> 
 /// Writes all of it: each figure, and `index.html`, which shows them with their captions.
 ///
 /// # Errors
-/// Those of [`write_figure`].
+/// [`HarnessError::Write`], [`HarnessError::Image`].
 pub fn write(dir: &Path, all: &[Drawn], made_by: &str) -> Result<Vec<PathBuf>, HarnessError> {
     std::fs::create_dir_all(dir).map_err(|source| HarnessError::Write { path: dir.to_owned(), source })?;
     let mut paths = all.iter().map(|drawn| write_figure(dir, drawn)).collect::<Result<Vec<_>, _>>()?;
