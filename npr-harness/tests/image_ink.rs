@@ -234,17 +234,51 @@ fn holed() -> Model {
     model
 }
 
+/// However the picture is shaded and whichever pass the G-buffer is drawn in: the hole has a line around it, what is
+/// behind it is seen by the filter, and with the cutoff below all alpha the card has no hole.
 #[test]
 fn what_alpha_leaves_has_lines_around_it() {
     let camera = camera_at(DVec3::new(-0.5, 0.0, 5.0), DVec3::new(-0.5, 0.0, 0.0), 30.0, 0.1);
     // The left square is 1 wide and 2 high, and so is its texture.
     let hole: Vec<DVec2> =
         circle(DVec3::ZERO, DVec3::Z, 0.3).map(|p| project(&camera, DVec3::new(p.x - 0.5, 2.0 * p.y, 0.0))).collect();
+    // A wall close behind, of the card's normal; the filters see it through the hole.
+    let mut walled = holed();
+    let mut wall = squares_side_by_side();
+    wall.positions.iter_mut().for_each(|p| *p = *p * 3.0 - Vec3::Z);
+    wall.materials = vec![Material::default()];
+    walled.append(&wall);
+    // Light of one direction, light of a position, strokes.
+    let styles = ["toon", "two-lights", "hatch"].map(|name| style(name).expect("a style of the crate"));
     for executor in executors() {
-        let ink = drawn(&executor, &Scene::new(holed()), &camera, one_region());
-        assert!(share(&are_near(&ink, hole.iter().copied(), WITHIN_PX)) >= 0.99, "{}", executor.describe());
-        let inside = project(&camera, DVec3::new(-0.5, 0.0, 0.0));
-        assert!(!are_near(&ink, [inside].into_iter(), 10.0)[0]);
+        for (model, what) in [(holed(), "alone"), (walled.clone(), "before a wall")] {
+            let scene = Scene::new(model.clone());
+            let mut whole = model;
+            whole.materials[0].alpha_mode = AlphaMode::Mask { cutoff: 0.0 };
+            let whole = Scene::new(whole);
+            for scale in [InkScale::One, InkScale::Double] {
+                let what = format!("{what}, {scale:?}, {}", executor.describe());
+                let ink = drawn(&executor, &scene, &camera, ImageInk { scale, ..one_region() });
+                assert!(share(&are_near(&ink, hole.iter().copied(), WITHIN_PX)) >= 0.99, "{what}");
+                let inside = project(&camera, DVec3::new(-0.5, 0.0, 0.0));
+                assert!(!are_near(&ink, [inside].into_iter(), 10.0)[0], "{what}");
+                let ink = drawn(&executor, &whole, &camera, ImageInk { scale, ..one_region() });
+                assert_eq!(share(&are_near(&ink, hole.iter().copied(), WITHIN_PX)), 0.0, "{what}");
+            }
+            // Beside a shaded picture: what lines add to it is around the hole.
+            for style in &styles {
+                let lines = Lines::image(ImageInk { composite: Default::default(), ..one_region() });
+                let [inked, plain] = [lines, Lines::NONE]
+                    .map(|lines| rendered(&executor, &scene, &Style { lines, ..style.clone() }, &camera, SIZE));
+                let pixels = (0..SIZE.1).flat_map(|y| (0..SIZE.0).map(move |x| (x, y)));
+                let added: Vec<DVec2> = pixels
+                    .filter(|&(x, y)| inked.pixel(x, y)[1] == 0 && plain.pixel(x, y)[1] > 0)
+                    .map(|(x, y)| DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5))
+                    .collect();
+                let found = share(&are_near(&added, hole.iter().copied(), WITHIN_PX));
+                assert!(found >= 0.99, "{what}, {}, {}: {found}", executor.describe(), style.name);
+            }
+        }
     }
 }
 
