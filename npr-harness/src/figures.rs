@@ -11,7 +11,7 @@ mod variants;
 
 pub use documents::figures;
 pub use errata::{Erratum, errata};
-pub use page::write;
+pub use page::{write, write_gallery};
 pub use scenes::Setting;
 pub use variants::variants;
 

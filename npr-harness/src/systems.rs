@@ -64,7 +64,7 @@ pub const SYSTEMS: [System; 45] = [
         3,
         "CM, listing 1",
         "silhouettes by the product of two dot products, in the vertex shader",
-        (FIN, "fin_printed_flag"),
+        (FIN, "fin_printed_triangles"),
         Ok("[lines.printed]"),
         "erratum-2",
         (FINS, "the_listing_draws_silhouettes_and_neither_creases_nor_edges_seen_edge_on"),
@@ -202,7 +202,7 @@ pub const SYSTEMS: [System; 45] = [
         ("npr-harness/src/hatch/plan.rs", "HatchPlan"),
         Ok("normals"),
         "chapter-10",
-        ("npr-harness/tests/light.rs", "strokes_are_the_same_on_both"),
+        ("npr-harness/tests/hatch_truth.rs", "spheres_have_the_tone_that_is_asked_for"),
     ),
     row(
         19,

@@ -288,6 +288,16 @@ fn erratum_18_negated_normals_outline_the_terminator() {
     assert!(added * 2 > differing.len(), "{added} of {}", differing.len());
 }
 
+/// Of a wedge that points at the viewer the ridge is lost, and nothing else.
+#[test]
+fn erratum_18_negated_normals_lose_a_ridge_between_light_and_shadow() {
+    let pair = Pair::new(&mut Stage::default(), "erratum-18-ridge");
+    let differing = pair.differing([PRINTED, CORRECTED]);
+    assert!(differing.iter().all(|&(x, y)| pair.ink(PRINTED, x, y) == 0 && pair.ink(CORRECTED, x, y) == 255));
+    let columns: BTreeSet<_> = differing.iter().map(|&(x, _)| x).collect();
+    assert!(differing.len() > 200 && columns.len() <= 2, "{} in {columns:?}", differing.len());
+}
+
 /// Every erratum with two forms that run has a pair.
 #[test]
 fn errata_with_two_forms_have_pairs() {

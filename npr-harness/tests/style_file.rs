@@ -77,7 +77,7 @@ fn every_style_survives_being_written_and_read() {
         "[shadow]\n[lines.image]\nshadows = \"negated\"\ndepth-step = 0.25\nnormals = false\n[lines.image.gbuffer]\n\
          target = \"separate\"\nnegated-depth = true\ndepth-format = \"half\"\ndepth-test = \"sum-printed\"\nregion-test = \
          \"color-sums\"\nshow = \"regions\"\n",
-        "[lines.image]\nsoftness = 0.5\n[lines.image.gbuffer]\ntarget = \"rgba8\"\ninker = { form = \"printed\", \
+        "[lines.image]\nsoftness = 0.5\n[lines.image.gbuffer]\ntarget = \"rgba8\"\ninker = { normal-cos = 0.75, \
          normal-fall = 0.125 }\nstep = [{ kind = \"open\", kernel = \"square\", times = 3 }, { kind = \"soft-diagonal\", \
          threshold = 0.75 }, { kind = \"close\" }, { kind = \"soft-diagonal-printed\" }]\n",
         "normal-space = \"mesh\"\n[lines.printed]\ndepth = \"eye\"\nreversed = true\nnormals = \"octahedral-8\"\n",
@@ -357,6 +357,17 @@ fn what_is_wrong_is_said() {
         (&format!("[lines.image]\nlayout = \"32-bit\"\n{RGBA8}"), "`layout` cannot be there beside `gbuffer`"),
         (&format!("[shadow]\n[lines.image]\nshadows = \"lines\"\n{RGBA8}"), "lines over it needs shadows"),
         (&format!("[lines.image]\nscale = \"half\"\n{RGBA8}show = \"depth\""), "to show it needs scale"),
+        (&format!("[lines.image]\ndepth = false\n{RGBA8}inker = {{}}"), "the inker has tests of its own"),
+        (&format!("[lines.image]\nnormal-cos = 0.5\n{RGBA8}inker = {{}}"), "the inker has tests of its own"),
+        (&format!("{RGBA8}inker = {{ form = \"printed\", depth-delta = 0.5 }}"), "only the explicit form of the inker"),
+        (&format!("[lines.image]\nregions = \"mesh\"\n{RGBA8}"), "an RGBA8 target has no regions"),
+        (&format!("{RGBA8}show = \"regions\""), "an RGBA8 target has no regions to show"),
+        (&format!("[lines.image]\nregions = \"none\"\n{SEPARATE}show = \"regions\""), "regions are to be shown"),
+        (&format!("{SEPARATE}show = \"depth\"\nstep = [{{ kind = \"erode\" }}]"), "steps of morphology need lines"),
+        (
+            &format!("[lines.image]\ndilation = {{ radius-px = 2 }}\n{SEPARATE}show = \"normals\""),
+            "a dilation needs lines",
+        ),
         (&format!("{SEPARATE}inker = {{}}"), "the inker needs target = \"rgba8\""),
         (&format!("{SEPARATE}negated-depth = true"), "negated depth needs negated normals"),
         (&format!("[shadow]\n[lines.image]\nshadows = \"negated\"\n{SEPARATE}negated-depth = true"), "with a sign"),

@@ -73,5 +73,5 @@ fn the_table_in_docs_is_what_the_command_prints() {
     let Some(text) = read("docs/systems.md") else {
         panic!("there is no docs/systems.md: npr figures --systems writes it")
     };
-    assert_eq!(text, table());
+    assert!(text == table(), "docs/systems.md is not what `npr figures --systems` prints");
 }

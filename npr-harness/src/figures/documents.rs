@@ -50,8 +50,7 @@ fn chapter() -> Vec<Figure> {
         Figure {
             name: "chapter-1",
             shows: "Card & Mitchell 2002, figure 1: shading by N·L, outlines from edges, outlines from the image",
-            caption: "Outlines from edges are found per edge and have the width that is asked for; those from the image \
-                      are found between pixels. Printed: vertex-shader fins; here: lines of constant width.",
+            caption: "Outlines from edges are found per edge and have the width that is asked for; those from the image are found between pixels. Printed: vertex-shader fins; here: lines of constant width. The far plane of the image's depth is twice as far as the farthest point.",
             columns: 3,
             panels: vec![
                 Panel::style("N·L", objects, "[shade.lambert]\nambient = 0.1\n"),
@@ -63,14 +62,14 @@ fn chapter() -> Vec<Figure> {
             name: "chapter-3-4",
             shows: "Card & Mitchell 2002, figures 3 and 4: cartoon shading with outlines; with several diffuse regions \
                     and a specular one",
-            caption: "The text has a threshold for N·L and one for N·H; listing 3 as printed has two for N·L and none \
-                      for N·H. Both are here, and the borders are antialiased, which the listings' are not.",
+            caption: "Figure 3 has three colours, ambient, diffuse and specular: the text's form, a threshold for N·L and one for N·H. Figure 4 has more diffuse regions. Here tones are factors on the surfaces' own colours, and borders are antialiased, neither of which the listings have. Listing 3 as printed, two thresholds for N·L and no highlight, is the style printed-bands.",
             columns: 2,
             panels: vec![
                 Panel::style(
-                    "one threshold, outlines",
+                    "a diffuse and a specular threshold",
                     still_life,
-                    "[shade.toon]\nthresholds = [0.2]\ntones = [[0.45, 0.42, 0.5], [1, 1, 1]]\n[lines.edges]\n",
+                    "[shade.toon]\nthresholds = [0.2]\ntones = [[0.45, 0.42, 0.5], [0.9, 0.9, 0.9]]\n\
+                     [shade.toon.highlight]\nthreshold = 0.9\n[lines.edges]\n",
                 ),
                 Panel::style(
                     "three diffuse bands and a highlight",
@@ -108,8 +107,7 @@ fn chapter() -> Vec<Figure> {
         Figure {
             name: "chapter-8",
             shows: "Card & Mitchell 2002, figure 8: world-space normals and eye-space depth in one RGBA8 target",
-            caption: "Cleared to +z, as printed: the background is the colour of a surface that faces +z. Depth is a \
-                      byte in alpha, from the nearest to the farthest point.",
+            caption: "Cleared to +z, as printed: the background is the colour of a surface that faces +z. Depth is a byte in alpha, from the nearest to the farthest point of the scene, of which the picture cuts off the nearest.",
             columns: 2,
             panels: vec![
                 Panel::style(
@@ -127,8 +125,7 @@ fn chapter() -> Vec<Figure> {
         Figure {
             name: "chapter-9",
             shows: "Card & Mitchell 2002, figure 9: edges of normals, of depth, and both",
-            caption: "Thresholds 0.85 and 0.02. Two errors of print are corrected: all four differences of depth count, \
-                      and the background is no normal. Slanted surfaces become ink where their differences add up to the threshold.",
+            caption: "Thresholds 0.85 and 0.02, and a far plane twice as far as the farthest point, which halves what a difference counts. Two errors of print are corrected: all four differences of depth count, and the background is no normal.",
             columns: 3,
             panels: vec![
                 Panel::style(
@@ -147,9 +144,7 @@ fn chapter() -> Vec<Figure> {
         Figure {
             name: "chapter-10",
             shows: "Card & Mitchell 2002, figure 10: how shadow outlines come about",
-            caption: "By listings 9 and 10 themselves over the 8-bit target, not by shadow states: normals are negated \
-                      in shadow, and the border of the side that faces away from the light becomes a line, too. The far ground is so slanted that its differences of depth reach listing 10's threshold. \
-                      Strokes follow the form, where the chapter lays them by texture coordinates.",
+            caption: "By listings 9 and 10 themselves over the 8-bit target, not by shadow states: normals are negated in shadow, and the border of the side that faces away from the light becomes a line, too. The far ground is so slanted that its differences of depth reach listing 10's threshold. Strokes follow the form, where the chapter lays them by texture coordinates. Panel d has tones that are linear in N·L over some ambient light, where the others have the listing's.",
             columns: 2,
             panels: vec![
                 Panel::style(
@@ -211,10 +206,29 @@ fn slides() -> Vec<Figure> {
             ],
         },
         Figure {
+            name: "slides-plain",
+            shows: "SIGGRAPH 2002 slides: normals and depth, and the edges of each, without shadows",
+            caption: "What the filters read, and what they find: thresholds 0.80 and 0.01 for each difference.",
+            columns: 2,
+            panels: vec![
+                Panel::style("normals", still_life, lines(none, &format!("{separate}\nshow = \"normals\""))),
+                Panel::style("depth", still_life, lines(none, &format!("{separate}\nshow = \"depth\""))),
+                Panel::style(
+                    "edges of normals",
+                    still_life,
+                    lines(&format!("{SLIDES}\ndepth = false\n{none}"), "target = \"separate\""),
+                ),
+                Panel::style(
+                    "edges of depth",
+                    still_life,
+                    lines(&format!("{SLIDES}\nnormals = false\n{none}"), separate),
+                ),
+            ],
+        },
+        Figure {
             name: "slides-edges",
             shows: "SIGGRAPH 2002 slides: edges of normals, of depth, and of region IDs",
-            caption: "Thresholds 0.80 and 0.01 for each difference; regions by number, where the slides add up signed \
-                      differences of colour channels.",
+            caption: "Normals and depth as they are negated in shadow, so that their edges outline shadows too. Thresholds 0.80 and 0.01 for each difference; regions by number, where the slides add up signed differences of colour channels.",
             columns: 3,
             panels: vec![
                 Panel::style(
@@ -229,8 +243,7 @@ fn slides() -> Vec<Figure> {
         Figure {
             name: "slides-outlines",
             shows: "SIGGRAPH 2002 slides: outlines of objects and of shadows together",
-            caption: "All three filters in one pass over negated normals and depths. Where a shadow falls along a \
-                      surface's own border with the opposite normal, the line is missing, as printed.",
+            caption: "All three filters in one pass, over normals and depths that are negated in shadow on the right. The border of the side that faces away from the light becomes a line with them, which the slides' pictures show, too.",
             columns: 2,
             panels: vec![
                 Panel::style("objects alone", still_life, lines(SLIDES, separate)),
@@ -267,9 +280,7 @@ fn article() -> Vec<Figure> {
         Figure {
             name: "article-1",
             shows: "The Evolution of a Cartoon Renderer, figure 1: interpolated and renormalised normals",
-            caption: "Interpolated normals are shorter than 1 between the corners of a triangle, so that bands and \
-                      highlights pull away from its middle; a normalising cube map, or today an instruction, mends \
-                      it. A coarse ball, as of 2002, would show more.",
+            caption: "Interpolated normals are shorter than 1 between the corners of a triangle, so that bands and highlights pull away from its middle; a normalising cube map, or today an instruction, mends it. Ball and can have ten segments.",
             columns: 3,
             panels: vec![
                 Panel::style("interpolated", Setting::Coarse, format!("normals = \"interpolated\"\n{bands}")),
@@ -280,8 +291,7 @@ fn article() -> Vec<Figure> {
         Figure {
             name: "article-2",
             shows: "The Evolution of a Cartoon Renderer, figure 2: the shading texture, and what it does",
-            caption: "The first light's N·L runs to the right, the second's downwards. The strip below the texture has \
-                      the first light's N·L alone.",
+            caption: "The first light's N·L runs to the right, the second's downwards. The strip below the texture has the first light's N·L alone. The second light is a lamp here; both of the article's have directions.",
             columns: 2,
             panels: vec![
                 Panel::drawn("texture and strip", shading_texture),
@@ -291,9 +301,7 @@ fn article() -> Vec<Figure> {
         Figure {
             name: "article-3",
             shows: "The Evolution of a Cartoon Renderer, figure 3: the four directions of artist lines, and the palette",
-            caption: "The four vectors lie 45° from the plane of the picture and are 60° and 90° apart, not 45°, which is \
-                      impossible. Left the colours that an artist paints with, right a scene in which a ball's seams are \
-                      vertex colours, the bricks a texture through the palette, and the pips regions.",
+            caption: "The four vectors lie 45° from the plane of the picture and are 60° and 90° apart, not 45°, which is impossible. Left the colours that an artist paints with, right a scene in which a ball's seams are vertex colours, the bricks a texture through the palette, and the pips regions. Of the two blue cubes one has creases, the other is asked to have no inner lines.",
             columns: 2,
             panels: vec![
                 Panel::drawn("palette, with the directions as arrows", palette),

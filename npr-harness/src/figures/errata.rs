@@ -1,6 +1,6 @@
 //! Errata that have two forms that run: pairs with equal parameters in which only the erratum differs.
 
-use super::{Figure, Panel, Setting};
+use super::{Content, Figure, Panel, Setting};
 
 /// A pair, or three readings, of an erratum.
 #[derive(Clone, Debug)]
@@ -9,6 +9,16 @@ pub struct Erratum {
     pub number: u32,
     /// As printed, corrected, and where they differ; for three readings the third as well.
     pub figure: Figure,
+}
+
+impl Erratum {
+    /// Another panel of the same setting, after the difference.
+    fn and(mut self, legend: &'static str, toml: String) -> Self {
+        if let Some(&Panel { content: Content::Style { setting, .. }, .. }) = self.figure.panels.first() {
+            self.figure.panels.push(Panel::style(legend, setting, toml));
+        }
+        self
+    }
 }
 
 /// Light from the left, low enough for visible shadows.
@@ -49,9 +59,18 @@ pub fn errata() -> Vec<Erratum> {
              \"rgba8\"\nfar = 2.0\n{gbuffer}\n"
         )
     };
-    let inker = |form: &str| listings("", &format!("inker = {{ form = \"{form}\" }}"));
+    let inker = |form: &str| {
+        format!(
+            "shade = \"paper\"\n[lines.image.gbuffer]\ntarget = \"rgba8\"\nfar = 2.0\ninker = {{ form = \"{form}\" }}\n"
+        )
+    };
     let stepped = |step: &str| listings("", &format!("step = [{step}]"));
     let shadowed = |shadows: &str| format!("{FROM_THE_LEFT}[shadow]\n{bands}[lines.image]\nshadows = \"{shadows}\"\n");
+    let ridge = |shadows: &str| {
+        let light = "[[light]]\nframe = \"world\"\ndirection = [-1.0, 0.6, 0.4]\n";
+        let keys = "depth = false\nregions = \"one\"";
+        format!("shade = \"paper\"\n{light}[shadow]\n[lines.image]\nshadows = \"{shadows}\"\n{keys}\n")
+    };
     let hatched = |brightness: u32| {
         format!("[shade.hatch]\nencoding = \"six-tones\"\nmapping = \"form\"\nbrightness = {brightness}\n")
     };
@@ -67,19 +86,16 @@ pub fn errata() -> Vec<Erratum> {
         format!("normal-space = \"{space}\"\n[[light]]\nframe = \"world\"\ndirection = [-0.6, 0.8, 0.5]\n{bands}")
     };
 
-    let mut alpha = pair(
+    let alpha = pair(
         9,
         "erratum-9",
         "Chapter, alpha test: GREATER and 0, or LESS and 128; and the co-issued reading",
-        "To discard the white pixels of the edge image alpha must be less than the reference. GREATER keeps them and \
-         discards the lines, and the reference, (DWORD) 0.5f, is 0. If both halves of a co-issued pair of instructions \
-         read before either writes, listing 10's alpha is its sum, and GREATER then keeps the edges of depth; of those of \
-         normals it keeps what the last tap alone finds.",
+        "To discard the white pixels of the edge image alpha must be less than the reference. GREATER keeps them and discards the lines, and the reference, (DWORD) 0.5f, is 0. If both halves of a co-issued pair of instructions read before either writes, listing 10's alpha is its sum less the threshold, and GREATER then keeps the edges of depth; of those of normals it keeps what the last tap alone finds.",
         objects,
         [composited("{ less = false, reference = 0 }", ""), composited("{ less = true, reference = 128 }", "")],
     );
     let co_issued = composited("{ less = false, reference = 0 }", "co-issued = true");
-    alpha.figure.panels.push(Panel::style("as printed, co-issued", objects, co_issued));
+    let alpha = alpha.and("as printed, co-issued", co_issued);
 
     vec![
         pair(
@@ -109,7 +125,8 @@ pub fn errata() -> Vec<Erratum> {
              classified once for an edge.",
             Setting::Cans,
             [fins("normals = \"byte\"\nwidth-px = 3"), fins("width-px = 3")],
-        ),
+        )
+        .and("as shorts", fins("normals = \"short\"\nwidth-px = 3")),
         pair(
             6,
             "erratum-6",
@@ -150,9 +167,7 @@ pub fn errata() -> Vec<Erratum> {
             12,
             "erratum-12",
             "Article, listing 4: one difference of depth squared, or two thresholds",
-            "Only the first difference is squared, so that the sign of the second decides whether it makes a line: \
-             borders are inked on one side. Corrected: a threshold for normals and one for depth. With the missing \
-             instruction added and nothing else, any slanted surface is ink.",
+            "Only the first difference of depth is squared, and both are added to the difference of normals before one threshold. So the sign of the second difference decides, and surfaces that curve away a little, which neither test would take, become ink where depth rises: the ring. Corrected: a threshold for normals and one for depth.",
             objects,
             [inker("printed"), inker("explicit")],
         ),
@@ -211,10 +226,18 @@ pub fn errata() -> Vec<Erratum> {
             18,
             "erratum-18",
             "Chapter and slides, shadow outlines: negated normals, or a state beside the region",
-            "Negated normals make a line of the border of the side that faces away from the light, and none between a \
-             surface in shadow and a lit one with the opposite normal. A state in two bits does neither.",
+            "Negated normals make a line of the border of the side that faces away from the light. A state in two bits does not.",
             still_life,
             [shadowed("negated"), shadowed("lines")],
+        ),
+        pair(
+            18,
+            "erratum-18-ridge",
+            "Chapter and slides, shadow outlines: a ridge between a lit and a shadowed side",
+            "A sharp wedge points at the viewer, with its right side in shadow. The negated normal of that side is nearly the \
+             normal of the lit one, and the line between them vanishes. Only normals are compared.",
+            Setting::Wedge,
+            [ridge("negated"), ridge("lines")],
         ),
     ]
 }

@@ -33,13 +33,17 @@ pub enum Setting {
     Crossing,
     /// The same, cut by a plane.
     Clipped,
-    /// Alpha-tested cards with round holes, before a ball.
+    /// The same, cut by the near plane.
+    NearCut,
+    /// Alpha-tested cards with petals, before a ball.
     CutOut,
+    /// A sharp wedge that points at the viewer.
+    Wedge,
 }
 
 impl Setting {
     /// All settings.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 14] = [
         Self::StillLife,
         Self::Objects,
         Self::NearPlane,
@@ -51,8 +55,30 @@ impl Setting {
         Self::Cans,
         Self::Crossing,
         Self::Clipped,
+        Self::NearCut,
         Self::CutOut,
+        Self::Wedge,
     ];
+
+    /// What it is, and where a view is not the scene's usual one, how it is seen.
+    pub fn about(self) -> &'static str {
+        match self {
+            Self::StillLife => "the built-in still life",
+            Self::Objects => "the still life without its ground",
+            Self::NearPlane => "the still life, the near plane at 7 of some 14 to 20 units",
+            Self::Painted => "the scene that an artist painted",
+            Self::Front => "a cube, a can, a ball and a ring from the side of +z",
+            Self::Coarse => "a ball and a can of ten segments",
+            Self::Tiles => "1,296 tiles of one plane, each a mesh",
+            Self::TwoTeapots => "a teapot twice, upright and lying",
+            Self::Cans => "cans of 367 to 613 segments",
+            Self::Crossing => "a rounded ball through a cube",
+            Self::Clipped => "a rounded ball through a cube, clipped by (-0.5, 0, -1, 1.1)",
+            Self::NearCut => "a rounded ball through a cube, the near plane at 6.9 of some 8 units",
+            Self::CutOut => "two alpha-tested cards before a ball",
+            Self::Wedge => "a wedge of 24 degrees",
+        }
+    }
 
     /// The scene.
     pub fn scene(self) -> Scene {
@@ -65,13 +91,14 @@ impl Setting {
             Self::Tiles => tiles(),
             Self::TwoTeapots => two_teapots(),
             Self::Cans => Scene::new(cans()),
-            Self::Crossing => Scene::new(crossing()),
+            Self::Crossing | Self::NearCut => Scene::new(crossing()),
             Self::Clipped => {
                 let mut scene = Scene::new(crossing());
                 scene.clip = Some(scene.plane_here(DVec4::new(-0.5, 0.0, -1.0, 1.1)));
                 scene
             }
             Self::CutOut => Scene::new(cut_out()),
+            Self::Wedge => Scene::new(wedge()),
         }
     }
 
@@ -93,6 +120,8 @@ impl Setting {
             Self::Tiles => looking(DVec3::new(0.0, 0.0, 10.0), DVec3::ZERO, 34.0),
             Self::TwoTeapots => looking(DVec3::new(0.0, 4.5, 15.0), DVec3::new(0.0, 1.6, 0.0), 31.0),
             Self::Crossing | Self::Clipped => looking(DVec3::new(2.5, 3.0, 7.5), DVec3::new(0.0, 0.1, 0.0), 26.0),
+            Self::NearCut => Camera { near: 6.9, ..Self::Crossing.camera() },
+            Self::Wedge => looking(DVec3::new(0.0, 1.0, 9.0), DVec3::new(0.0, 0.6, 0.0), 22.0),
             Self::CutOut => looking(DVec3::new(0.5, 1.5, 8.0), DVec3::new(0.0, 0.1, 0.0), 26.0),
             Self::Cans => looking(DVec3::new(0.0, 1.4, 3.4), DVec3::new(0.0, 0.9, 0.0), 50.0),
         }
@@ -244,4 +273,32 @@ fn leaves(side: u32) -> Texture {
     };
     let rgba8 = (0..side).flat_map(|y| (0..side).flat_map(move |x| texel(x, y))).collect();
     Texture { name: "petals".into(), width: side, height: side, rgba8, wrap: [Wrap::Clamp; 2], smooth: true }
+}
+
+/// Two faces that meet in an upright ridge at an angle of 24°, closed behind, above and below.
+fn wedge() -> Model {
+    let (half, deep, high) = (12f32.to_radians().tan() * 3.0, 3.0, 1.8);
+    let corners = [[0.0, 1.5], [half, 1.5 - deep], [-half, 1.5 - deep]];
+    let mut model = Model { materials: vec![material(0.8, 0.8, 0.75)], ..Model::default() };
+    let mut polygon = |points: &[Vec3]| {
+        let first = model.positions.len() as u32;
+        let normal = (points[1] - points[0]).cross(points[2] - points[0]).normalize();
+        let number = model.face_polygon.last().map_or(0, |last| last + 1);
+        model.positions.extend(points);
+        model.normals.extend(points.iter().map(|_| normal));
+        for corner in 2..points.len() as u32 {
+            model.faces.push([first, first + corner - 1, first + corner]);
+            model.face_material.push(0);
+            model.face_polygon.push(number);
+        }
+    };
+    let at = |[x, z]: [f32; 2], y: f32| Vec3::new(x, y, z);
+    for side in 0..3 {
+        let (a, b) = (corners[side], corners[(side + 1) % 3]);
+        polygon(&[at(a, 0.0), at(b, 0.0), at(b, high), at(a, high)]);
+    }
+    polygon(&corners.map(|corner| at(corner, high)));
+    let [a, b, c] = corners.map(|corner| at(corner, 0.0));
+    polygon(&[a, c, b]);
+    model
 }

@@ -110,8 +110,7 @@ pub fn variants() -> Vec<Figure> {
         Figure {
             name: "variants-depth",
             shows: "Depth of 8, 16 and 32 bits, and floats, feeding the filter of depth",
-            caption: "The far plane is twenty times as far as the farthest point, and the threshold 0.002 of the range. A \
-                      step of 8 bits is 0.0039 of it, so that slanted surfaces are ink wherever a code ends.",
+            caption: "The far plane is twenty times as far as the farthest point, and the threshold 0.002 of the range. A step of 8 bits is 0.0039 of it, so that slanted surfaces are ink wherever a code ends. From 16 bits on no code is as coarse as the threshold, and the pictures are the same.",
             columns: 2,
             panels: vec![
                 Panel::style("8 bits", objects, depth("8-bit")),
@@ -135,8 +134,7 @@ pub fn variants() -> Vec<Figure> {
         Figure {
             name: "variants-morphology",
             shows: "Erosion, opening, closing, and steps of dilation with three kernels",
-            caption: "Lines of two pixels vanish in one erosion by a square; closing fills what is narrower than its \
-                      kernel. The diagonal kernel leaves a hole around single pixels.",
+            caption: "Lines of one and two pixels are broken by an erosion; closing fills what is narrower than its kernel. Repeated, a + grows to a diamond, diagonals and a square to a square.",
             columns: 3,
             panels: vec![
                 Panel::style("eroded by a +", objects, stepped("{ kind = \"erode\", kernel = \"cross\" }")),
@@ -173,14 +171,16 @@ pub fn variants() -> Vec<Figure> {
                 Panel::style("lines along edges", Setting::Crossing, format!("{BANDS}[lines.edges]\n")),
                 Panel::style("lines in the image", Setting::Crossing, format!("{BANDS}[lines.image]\n")),
                 Panel::style("cut by a plane", Setting::Clipped, format!("{BANDS}[lines.image]\n")),
+                Panel::style("cut by the near plane", Setting::NearCut, format!("{BANDS}[lines.image]\n")),
             ],
         },
         Figure {
             name: "variants-artist",
             shows: "Artist lines with directions turned for each pixel, each vertex and each object",
-            caption: "Printed are turns for vertices, for colours of vertices, and for objects, for a texture through the \
-                      palette. Turned once for an object, directions are wrong away from its middle: lines vanish near \
-                      the viewer.",
+            caption: "Printed are turns for vertices, for their colours, and for objects, for a texture through the palette. All \
+                      three find the same lines here: a turn moves the four directions alike, and painted areas differ as \
+                      before. Only the border against a surface with normals of its own is lost where an object is near \
+                      and turned as a whole: within 7.1 of its radii for the threshold 0.8.",
             columns: 3,
             panels: vec![
                 Panel::style("pixels", Setting::Painted, artist("per-pixel")),

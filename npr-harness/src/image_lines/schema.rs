@@ -223,8 +223,10 @@ impl ImageTable {
         let FusedFilter { mut normal_cos, mut depth, mut regions, mut taps, mut softness, .. } = ink.filter;
         if let Some(gbuffer) = &ink.gbuffer {
             let keys = SharedKeys::of(gbuffer);
-            normal_cos = keys.normal_cos;
-            depth = keys.depth_step.map(|step| DepthTest { step, plain: false });
+            if !gbuffer.has_inker() {
+                normal_cos = keys.normal_cos;
+                depth = keys.depth_step.map(|step| DepthTest { step, plain: false });
+            }
             (regions, taps, softness) = (keys.regions, keys.taps, keys.softness);
         }
         let fallback = FusedFilter::default();
@@ -281,6 +283,12 @@ impl ImageTable {
             softness: self.softness,
         };
         let composite = self.composite.composite();
+        let usual = FusedFilter::default();
+        if let (Some(table), Some(_)) = (&self.gbuffer, &self.dilation)
+            && !table.shows_lines()
+        {
+            return Err("a dilation needs lines: show = \"lines\"".into());
+        }
         let gbuffer = match self.gbuffer {
             None => None,
             Some(_) if self.depth_plain => {
@@ -293,6 +301,8 @@ impl ImageTable {
                 normal_cos: fused.normal_cos,
                 depth_step: fused.depth.map(|depth| depth.step),
                 regions: fused.regions,
+                named_regions: !matches!(self.regions, RegionsName::Patch | RegionsName::None),
+                named_tests: fused.normal_cos != usual.normal_cos || fused.depth != usual.depth,
                 taps: fused.taps,
                 softness: fused.softness,
                 alpha_test: match composite {

@@ -17,7 +17,7 @@ pub struct Options {
     #[arg(short, long, value_name = "DIR", required_unless_present = "systems")]
     output: Option<PathBuf>,
     /// Print a table of all systems of the documents instead: code, style key, figure and test of each.
-    #[arg(long, conflicts_with_all = ["output", "names"])]
+    #[arg(long, exclusive = true)]
     systems: bool,
     /// Only these figures, by name.
     #[arg(value_name = "NAME")]

@@ -4,6 +4,7 @@ use crate::paths;
 use crate::terminal::{announce, progress_bar, say};
 use npr_harness::error::HarnessError;
 use npr_harness::executor::{Backend, Executor};
+use npr_harness::figures::write_gallery;
 use npr_harness::gallery;
 use std::path::Path;
 
@@ -20,5 +21,7 @@ pub fn run() -> Result<bool, HarnessError> {
     let rows = gallery::render(&mut executor, backend, folder, &tell)?;
     bar.finish_and_clear();
     say(format_args!("{}", gallery::table(&rows)))?;
+    let page = write_gallery(folder, &rows, &executor.describe().to_string())?;
+    say(format_args!("{}\n", page.display()))?;
     Ok(true)
 }

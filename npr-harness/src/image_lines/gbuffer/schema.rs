@@ -6,7 +6,7 @@ use super::style::{Background, GBuffer, GBufferTarget, InkStep, MOST_STEPS, Sepa
 use crate::schema::one;
 use npr_imagespace::composite::AlphaTest;
 use npr_imagespace::filter::depth::DepthPlain;
-use npr_imagespace::filter::inker::{Inker, InkerForm};
+use npr_imagespace::filter::inker::{DEPTH_DELTA, Inker, InkerForm};
 use npr_imagespace::filter::printed::{PrintedDepth, PrintedEdges, PrintedFilter, PrintedNormal};
 use npr_imagespace::filter::separate::{SeparateDepth, SeparateDepthTest, SeparateFilter, SeparateNormal};
 use npr_imagespace::format::depth::DepthFormat;
@@ -116,7 +116,7 @@ enum ShowName {
 }
 
 #[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case", default, expecting = "a table of the inker, also {}")]
 struct InkerTable {
     form: InkerFormName,
     normal_cos: f32,
@@ -195,6 +195,9 @@ pub(crate) struct SharedKeys {
     pub(crate) normal_cos: Option<f32>,
     pub(crate) depth_step: Option<f32>,
     pub(crate) regions: bool,
+    /// Whether the kind of regions is not the default, and whether the tests of normals and depth are not.
+    pub(crate) named_regions: bool,
+    pub(crate) named_tests: bool,
     pub(crate) taps: Taps,
     pub(crate) softness: f32,
     /// That of the composite.
@@ -209,13 +212,24 @@ impl SharedKeys {
                 depth_step: edges.depth.map(|depth| depth.threshold),
                 // There are none, but they can be shown.
                 regions: true,
+                named_regions: false,
+                named_tests: false,
                 taps: edges.taps,
                 softness: 0.0,
                 alpha_test: edges.co_issued,
             },
             GBufferTarget::Rgba8(PrintedFilter::Inker(inker)) => {
                 let (taps, softness) = (inker.taps, inker.softness);
-                Self { normal_cos: None, depth_step: None, regions: true, taps, softness, alpha_test: None }
+                Self {
+                    normal_cos: None,
+                    depth_step: None,
+                    regions: true,
+                    named_regions: false,
+                    named_tests: false,
+                    taps,
+                    softness,
+                    alpha_test: None,
+                }
             }
             GBufferTarget::Separate(SeparateTargets { filter, .. }) => Self {
                 normal_cos: filter.normal.map(|normal| normal.cos),
@@ -224,6 +238,8 @@ impl SharedKeys {
                     SeparateDepthTest::Plain { threshold, .. } => threshold,
                 }),
                 regions: filter.regions,
+                named_regions: false,
+                named_tests: false,
                 taps: filter.taps,
                 softness: filter.softness,
                 alpha_test: None,
@@ -233,6 +249,10 @@ impl SharedKeys {
 }
 
 impl GBufferTable {
+    pub(crate) fn shows_lines(&self) -> bool {
+        matches!(self.show, ShowName::Lines)
+    }
+
     pub(crate) fn new(gbuffer: &GBuffer) -> Self {
         let plain = |form| match form {
             DepthPlain::Sum => DepthTestName::Sum,
@@ -318,9 +338,23 @@ impl GBufferTable {
                 if is_separate {
                     return Err("formats and region tests of a G-buffer need target = \"separate\"".into());
                 }
+                if keys.named_regions {
+                    return Err("an RGBA8 target has no regions: `regions` cannot say which".into());
+                }
+                if matches!(self.show, ShowName::Regions) {
+                    return Err("an RGBA8 target has no regions to show: target = \"separate\" has".into());
+                }
                 GBufferTarget::Rgba8(if let Some(inker) = self.inker {
                     if self.depth_test.is_some() {
                         return Err("the inker has a depth test of its own: `depth-test` cannot be there too".into());
+                    }
+                    if keys.named_tests {
+                        let own = "`normals`, `normal-cos`, `depth` and `depth-step` cannot be there too";
+                        return Err(format!("the inker has tests of its own: {own}"));
+                    }
+                    let is_explicit = matches!(inker.form, InkerFormName::Explicit);
+                    if !is_explicit && (inker.depth_delta != DEPTH_DELTA || keys.softness != 0.0) {
+                        return Err("only the explicit form of the inker has `depth-delta` and softness".into());
                     }
                     PrintedFilter::Inker(Inker {
                         form: match inker.form {
@@ -389,6 +423,12 @@ impl GBufferTable {
                 })
             }
         };
+        if !matches!(self.show, ShowName::Lines) && !self.step.is_empty() {
+            return Err("steps of morphology need lines: show = \"lines\"".into());
+        }
+        if matches!(self.show, ShowName::Regions) && !keys.regions {
+            return Err("regions are to be shown, and `regions` is \"none\"".into());
+        }
         let count = self.step.len();
         if count > MOST_STEPS {
             return Err(format!("{count} steps of morphology: at most {MOST_STEPS} (each has `times`)"));

@@ -137,6 +137,11 @@ impl GBuffer {
         }
     }
 
+    /// Whether the inker finds lines.
+    pub(crate) fn has_inker(&self) -> bool {
+        matches!(self.target, GBufferTarget::Rgba8(PrintedFilter::Inker(_)))
+    }
+
     /// Whether lines are tested by the alpha of the co-issued reading of listings 9 and 10.
     pub(crate) fn is_co_issued(&self) -> bool {
         matches!(self.target, GBufferTarget::Rgba8(PrintedFilter::Edges(PrintedEdges { co_issued: Some(_), .. })))
