@@ -366,3 +366,47 @@ fn untransformed_normals_agree_in_every_use_of_them() {
         assert!(agrees(&comparison, magnitude(&plan)), "{normals}: {comparison:?}");
     }
 }
+
+/// Formats and tests that are in no figure.
+#[test]
+fn other_g_buffers_agree_on_both_executors() {
+    let Some(executor) = device() else { return };
+    let setting = Setting::Front;
+    let (scene, camera) = (setting.scene(), setting.camera());
+    let hits = PrimaryHits::kept(&scene, View::new(camera, SIZE), PLACES);
+    for (keys, table) in [
+        ("depth = false\nregions = \"none\"", "background = \"plus-z\""),
+        ("", "normal-format = \"octahedral-5\"\ndepth-format = \"half\"\ndepth-test = \"step\""),
+        (
+            "regions = \"material\"",
+            "normal-format = \"octahedral-16\"\ndepth-format = \"packed-2x8\"\ndepth-test = \"sum\"",
+        ),
+        ("softness = 0.2", "normal-format = \"half\"\ndepth-format = \"16-bit\"\nregion-test = \"color-sums\""),
+        (
+            "taps = \"cross\"",
+            "normal-format = \"bytes\"\nstep = [{ kind = \"soft-diagonal\", threshold = 0.4, times = 3 }]",
+        ),
+        (
+            "dilation = { radius-px = 2.5 }\nscale = \"double\"",
+            "step = [{ kind = \"erode\", kernel = \"diagonal\", times = 1 }]",
+        ),
+    ] {
+        let text = format!("[lines.image]\n{keys}\n[lines.image.gbuffer]\ntarget = \"separate\"\n{table}\n");
+        let style = Style::from_toml(&text, Path::new("other.toml")).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        let plan = planned(&scene, &style, &camera, SIZE);
+        let reference = Reference::new(Shot { hits: &hits, style: &style, plan: &plan }).expect("pictures");
+        let actual = rendered(&executor, &scene, &style, &camera, SIZE);
+        let comparison = compare(&reference.image, &actual, &reference.exempt).expect("one size");
+        assert!(agrees(&comparison, magnitude(&plan)), "{text}: {} {comparison:?}", comparison.worst);
+        let none = format!("shade = \"paper\"\n{text}");
+        let drawn = rendered(
+            &executor,
+            &scene,
+            &Style::from_toml(&none, Path::new("ink.toml")).expect("a style"),
+            &camera,
+            SIZE,
+        );
+        let ink = drawn.rgba8.chunks_exact(4).filter(|pixel| pixel[1] < 128).count();
+        assert!((400..20_000).contains(&ink), "{ink} px of ink by {text}");
+    }
+}
