@@ -388,7 +388,7 @@ fn other_g_buffers_agree_on_both_executors() {
         ),
         (
             "dilation = { radius-px = 2.5 }\nscale = \"double\"",
-            "step = [{ kind = \"erode\", kernel = \"diagonal\", times = 1 }]",
+            "step = [{ kind = \"close\", kernel = \"diagonal\", times = 2 }]",
         ),
     ] {
         let text = format!("[lines.image]\n{keys}\n[lines.image.gbuffer]\ntarget = \"separate\"\n{table}\n");
