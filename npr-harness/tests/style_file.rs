@@ -336,6 +336,8 @@ fn what_is_wrong_is_said() {
         ("[lines.hull]\nink = [0, 2, 0]", "a component of the hull's ink of 2"),
         ("[lines.hull]\nnormals = \"faces\"", "unknown variant `faces`, expected `welded` or `vertices`"),
         ("[lines.image]\nshadows = \"lines\"", "draws lines around shadows, and has none"),
+        ("shade = \"toon\"", "this kind has a table of its own"),
+        ("[lines.image]\nshadows = \"separate\"", "this kind has a table of its own"),
         ("normal-space = \"eye\"", "unknown variant `eye`"),
         ("[lines.printed]\nnormals = \"int\"", "unknown variant `int`"),
         ("[lines.image]\ntaps = [[0, 0], [1, 1]]", "a step of (0, 0) px to a tap"),

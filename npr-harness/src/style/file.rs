@@ -92,6 +92,10 @@ fn with_suggestion(message: &str) -> String {
     if message.starts_with("wanted exactly 1 element, found 0") {
         return "the table is empty: it holds one table, whose name says of which kind it is".to_owned();
     }
+    // serde's message for the name of a kind that has a table, and the reverse.
+    if message.contains("unit variant, expected") {
+        return "this kind has a table of its own: write it as a table, such as [shade.toon]".to_owned();
+    }
     let unknown = ["unknown field `", "unknown variant `"].iter().find_map(|&start| {
         let (name, known) = message.strip_prefix(start)?.split_once("`, expected ")?;
         Some((start, name, known))
