@@ -689,3 +689,44 @@ fn the_co_issued_alpha_lacks_the_last_instruction() {
     assert!(!ink(false, true, AlphaTest { less: false, reference: 20 }, [z, far, z, z]));
     assert!(ink(false, true, AlphaTest { less: false, reference: 19 }, [z, far, z, z]));
 }
+
+/// A difference of exactly the threshold is no line, a code more is one.
+#[test]
+fn a_jump_of_exactly_the_threshold_is_no_line() {
+    for plain in [false, true] {
+        let depth = Some(DepthTest { step: 0.05, plain });
+        let filter = FusedFilter { normal_cos: None, depth, regions: false, ..Default::default() };
+        for layout in [TexelLayout::Bits32, TexelLayout::Bits64] {
+            let uniform = uniform(&filter, layout);
+            let near = tap(Vec3::Z, 3, 2.0, layout);
+            let threshold = ink_tap_depth_threshold(&uniform, near.depth);
+            assert!(threshold > 0 && threshold < near.depth);
+            for (more, expected) in [(0, false), (1, true)] {
+                let far = Tap { depth: near.depth - threshold - more, ..near };
+                let found = if plain {
+                    ink_tap_across(&uniform, &near, &far)
+                } else {
+                    ink_tap_bends(&uniform, &near, &near, &far)
+                };
+                assert_eq!(found, expected, "{plain} {layout:?} {more}");
+            }
+        }
+    }
+}
+
+/// Normals that point away from each other are compared only where normals are; no normal differs from any.
+#[test]
+fn opposite_normals_and_none() {
+    for layout in [TexelLayout::Bits32, TexelLayout::Bits64] {
+        let [front, back, none] = [Vec3::Z, Vec3::NEG_Z, Vec3::ZERO].map(|normal| tap(normal, 3, 10.0, layout));
+        let none_asked = FusedFilter { normal_cos: None, depth: None, regions: false, ..Default::default() };
+        assert!(!ink_tap_across(&uniform(&none_asked, layout), &front, &back));
+        let asked = uniform(&FusedFilter { normal_cos: Some(0.8), softness: 0.1, ..none_asked }, layout);
+        assert!(ink_tap_across(&asked, &front, &back));
+        for (a, b, ink) in
+            [(front, back, 1.0), (front, none, 1.0), (none, front, 1.0), (none, none, 0.0), (front, front, 0.0)]
+        {
+            assert_eq!(ink_tap_normal_soft(&asked, a.normal, b.normal), ink);
+        }
+    }
+}
