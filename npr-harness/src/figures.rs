@@ -29,6 +29,17 @@ pub const PANEL: (u32, u32) = (480, 270);
 /// The space between panels, px.
 const GAP: u32 = 8;
 
+/// Light from the left, low enough for visible shadows.
+const FROM_THE_LEFT: &str = "[[light]]\ndirection = [-0.75, 0.95, 0.35]\n";
+/// Three bands of light.
+const BANDS: &str =
+    "[shade.toon]\nthresholds = [0.05, 0.6]\ntones = [[0.35, 0.33, 0.42], [0.7, 0.69, 0.74], [1, 1, 1]]\n";
+
+/// A style without surfaces: black lines of a G-buffer on white.
+fn lines(keys: &str, gbuffer: &str) -> String {
+    format!("shade = \"paper\"\n[lines.image]\n{keys}\n[lines.image.gbuffer]\n{gbuffer}\n")
+}
+
 /// A figure: panels in rows.
 #[derive(Clone, Debug)]
 pub struct Figure {
@@ -105,14 +116,13 @@ pub fn all() -> Vec<Figure> {
     figures().into_iter().chain(variants()).chain(errata().into_iter().map(|erratum| erratum.figure)).collect()
 }
 
-/// The work for all figures.
+/// The work for figures, whose scenes are built on the stage.
 ///
 /// # Errors
 /// Those of [`Figure::styles`].
-pub fn work() -> Result<Work, HarnessError> {
-    let mut stage = Stage::default();
+pub fn work(stage: &mut Stage, figures: &[Figure]) -> Result<Work, HarnessError> {
     let mut work = Work::default();
-    for figure in all() {
+    for figure in figures {
         for (setting, style) in figure.styles()? {
             work = work.and(Work::new(stage.scene(setting), &style, PANEL, 1));
         }

@@ -9,7 +9,7 @@ pub(crate) mod instances;
 mod materials;
 mod resolve;
 mod scene;
-mod shader;
+pub(crate) mod shader;
 mod surface;
 pub(crate) mod targets;
 pub(crate) mod uniform;

@@ -1,6 +1,6 @@
 //! The figures of the three documents, one by one.
 
-use super::{Figure, Panel, Setting};
+use super::{FROM_THE_LEFT, Figure, Panel, Setting, lines};
 use crate::error::HarnessError;
 use crate::picture::Image;
 use crate::shade::Shade;
@@ -11,15 +11,8 @@ use npr_hatch::{TamParameters, draw, sheet};
 use npr_imagespace::artist::{artist_color, ink_artist_vector};
 use npr_toon::table::{toon_ramp_2d, toon_table};
 
-/// Light from the left, low enough for visible shadows.
-const FROM_THE_LEFT: &str = "[[light]]\ndirection = [-0.75, 0.95, 0.35]\n";
 /// Strokes of six tones by texture coordinates or planes, as the chapter hatches.
 const SIX_TONES: &str = "encoding = \"six-tones\"\nmapping = \"form\"\n";
-
-/// A style without surfaces: black lines of a G-buffer on white.
-fn lines(keys: &str, gbuffer: &str) -> String {
-    format!("shade = \"paper\"\n[lines.image]\n{keys}\n[lines.image.gbuffer]\n{gbuffer}\n")
-}
 
 /// The same with negated normals in shadow.
 fn shadowed(keys: &str, gbuffer: &str) -> String {

@@ -1,6 +1,6 @@
 //! Errata that have two forms that run: pairs with equal parameters in which only the erratum differs.
 
-use super::{Content, Figure, Panel, Setting};
+use super::{BANDS, Content, FROM_THE_LEFT, Figure, Panel, Setting};
 
 /// A pair, or three readings, of an erratum.
 #[derive(Clone, Debug)]
@@ -20,9 +20,6 @@ impl Erratum {
         self
     }
 }
-
-/// Light from the left, low enough for visible shadows.
-const FROM_THE_LEFT: &str = "[[light]]\ndirection = [-0.75, 0.95, 0.35]\n";
 
 fn pair(
     number: u32,
@@ -51,11 +48,10 @@ pub fn errata() -> Vec<Erratum> {
              \"rgba8\"\nfar = 2.0\n{gbuffer}\n"
         )
     };
-    let bands = "[shade.toon]\nthresholds = [0.05, 0.6]\ntones = [[0.35, 0.33, 0.42], [0.7, 0.69, 0.74], [1, 1, 1]]\n";
     let composited = |test: &str, gbuffer: &str| {
         let composite = format!("composite = {{ alpha-tested = {test} }}");
         format!(
-            "{bands}[lines.image]\nnormal-cos = 0.85\ndepth-step = 0.02\n{composite}\n[lines.image.gbuffer]\ntarget = \
+            "{BANDS}[lines.image]\nnormal-cos = 0.85\ndepth-step = 0.02\n{composite}\n[lines.image.gbuffer]\ntarget = \
              \"rgba8\"\nfar = 2.0\n{gbuffer}\n"
         )
     };
@@ -65,7 +61,7 @@ pub fn errata() -> Vec<Erratum> {
         )
     };
     let stepped = |step: &str| listings("", &format!("step = [{step}]"));
-    let shadowed = |shadows: &str| format!("{FROM_THE_LEFT}[shadow]\n{bands}[lines.image]\nshadows = \"{shadows}\"\n");
+    let shadowed = |shadows: &str| format!("{FROM_THE_LEFT}[shadow]\n{BANDS}[lines.image]\nshadows = \"{shadows}\"\n");
     let ridge = |shadows: &str| {
         let light = "[[light]]\nframe = \"world\"\ndirection = [-1.0, 0.6, 0.4]\n";
         let keys = "depth = false\nregions = \"one\"";
@@ -83,7 +79,7 @@ pub fn errata() -> Vec<Erratum> {
         )
     };
     let spaces = |space: &str| {
-        format!("normal-space = \"{space}\"\n[[light]]\nframe = \"world\"\ndirection = [-0.6, 0.8, 0.5]\n{bands}")
+        format!("normal-space = \"{space}\"\n[[light]]\nframe = \"world\"\ndirection = [-0.6, 0.8, 0.5]\n{BANDS}")
     };
 
     let alpha = pair(

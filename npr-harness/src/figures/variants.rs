@@ -1,14 +1,6 @@
 //! Systems of the documents that have no figure of their own in print.
 
-use super::{Figure, Panel, Setting};
-
-/// Black lines of a G-buffer on white.
-fn lines(keys: &str, gbuffer: &str) -> String {
-    format!("shade = \"paper\"\n[lines.image]\n{keys}\n[lines.image.gbuffer]\n{gbuffer}\n")
-}
-
-const BANDS: &str =
-    "[shade.toon]\nthresholds = [0.05, 0.6]\ntones = [[0.35, 0.33, 0.42], [0.7, 0.69, 0.74], [1, 1, 1]]\n";
+use super::{BANDS, Figure, Panel, Setting, lines};
 
 const SHINY: &str = "[shade.toon]\nthresholds = [0.05, 0.6]\ntones = [[0.35, 0.33, 0.42], [0.7, 0.69, 0.74], [1, 1, 1]]\n\
                      [shade.toon.highlight]\nthreshold = 0.97\n";

@@ -13,7 +13,7 @@ use npr_toon::source::{Light, LightKind};
 use wgpu::util::DeviceExt;
 
 /// The parts of a shader, each with its name.
-pub(super) type Parts = Vec<(&'static str, &'static str)>;
+pub(crate) type Parts = Vec<(&'static str, &'static str)>;
 
 /// The parts of the shader for a shade: libraries, lights, the shade's own functions, shadows, the geometry pass, and that
 /// of faces that are lit as wholes or in pieces.
@@ -44,7 +44,7 @@ fn parts(shade: &ShadeOnDevice, hatched: bool, lights_faces: bool) -> Parts {
 }
 
 /// Concatenates the parts of a shader, with a list of them at its head and a name before each part.
-pub(super) fn assemble(parts: &Parts) -> String {
+pub(crate) fn assemble(parts: &Parts) -> String {
     let names: Vec<_> = parts.iter().map(|(name, _)| *name).collect();
     let mut text = format!("// Made of: {}.\n", names.join("; "));
     for (name, part) in parts {

@@ -42,12 +42,13 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
     }
     wanted.retain(|figure| options.names.is_empty() || options.names.iter().any(|name| name == figure.name));
     let backend: Backend = options.backend.into();
-    let mut executor = Executor::choose_for(backend, &figures::work()?)?;
+    let mut stage = Stage::default();
+    let mut executor = Executor::choose_for(backend, &figures::work(&mut stage, &wanted)?)?;
     announce(&executor);
     let made_by = executor.describe().to_string();
     say(format_args!("on {made_by}\n"))?;
     let bar = progress_bar("figures");
-    let (count, mut stage) = (wanted.len(), Stage::default());
+    let count = wanted.len();
     let mut drawn = Vec::new();
     for (number, figure) in wanted.into_iter().enumerate() {
         bar.set_position((number * 1000 / count) as u64);

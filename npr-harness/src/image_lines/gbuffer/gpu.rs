@@ -4,11 +4,13 @@ use super::plan::GBufferPlan;
 use super::style::{Background, GBufferTarget, InkStep, Show, StepKind};
 use super::targets::{RGBA8, SEPARATE};
 use crate::error::HarnessError;
+use crate::gpu::shader::assemble;
 use crate::gpu::targets::{COLOR_FORMAT, InkTargets};
 use crate::gpu::uniform::uniform_buffer;
 use npr_imagespace::composite::Composite;
 use npr_imagespace::format::depth::DepthFormat;
 use npr_imagespace::format::normal::NormalFormat;
+use npr_imagespace::morphology::Kernel;
 use npr_imagespace::pass::printed::PrintedPass;
 use npr_imagespace::pass::separate::{SeparatePass, SeparateTextures};
 use npr_imagespace::pass::step::{PingPong, Step, StepPass};
@@ -59,10 +61,20 @@ impl EncodeUniform {
     }
 }
 
-/// The pipelines that encode, created on first use, each with its entry point.
+/// A filter's pipeline.
+enum FilterPass {
+    Printed(PrintedPass),
+    Separate(SeparatePass),
+}
+
+/// The pipelines, created on first use: those that encode, each with its entry point; the filter of the last style; the
+/// steps of morphology.
 #[derive(Default)]
 pub(crate) struct GBufferPasses {
     encoders: RefCell<Vec<(&'static str, wgpu::RenderPipeline)>>,
+    filter: RefCell<Option<(GBufferTarget, FilterPass)>>,
+    soft_steps: RefCell<Vec<(Step, StepPass)>>,
+    hard_steps: RefCell<Vec<(Kernel, PingPong)>>,
 }
 
 impl GBufferPasses {
@@ -78,23 +90,32 @@ impl GBufferPasses {
         let views: Vec<_> = targets.encoded.iter().collect();
         let black = Composite::default();
         let onto = |view| PassTarget { view, composite: &black, area: None };
-        match &plan.gbuffer.target {
-            GBufferTarget::Rgba8(filter) => {
+        let mut kept = self.filter.borrow_mut();
+        if !kept.as_ref().is_some_and(|(target, _)| *target == plan.gbuffer.target) {
+            let pass = match &plan.gbuffer.target {
+                GBufferTarget::Rgba8(filter) => FilterPass::Printed(PrintedPass::new(device, filter, InkTarget::Ink)?),
+                GBufferTarget::Separate(separate) => {
+                    FilterPass::Separate(SeparatePass::new(device, &separate.filter, InkTarget::Ink)?)
+                }
+            };
+            *kept = Some((plan.gbuffer.target, pass));
+        }
+        match kept.as_ref() {
+            Some((GBufferTarget::Rgba8(filter), FilterPass::Printed(pass))) => {
                 self.encode(device, encoder, plan, ink, ("fs_rgba8", &RGBA8), &views);
-                let pass = PrintedPass::new(device, filter, InkTarget::Ink)?;
                 pass.record(device, encoder, filter, views[0], &onto(found))?;
             }
-            GBufferTarget::Separate(separate) => {
+            Some((GBufferTarget::Separate(separate), FilterPass::Separate(pass))) => {
                 self.encode(device, encoder, plan, ink, ("fs_separate", &SEPARATE), &views);
                 let textures =
                     SeparateTextures { normal: Some(views[0]), depth: Some(views[1]), region: Some(views[2]) };
-                let pass = SeparatePass::new(device, &separate.filter, InkTarget::Ink)?;
                 pass.record(device, encoder, &separate.filter, &textures, &onto(found))?;
             }
+            _ => unreachable!("a pass is kept with the target that it is for"),
         }
         let mut pictures = [found, &targets.ink];
         for step in plan.gbuffer.steps.iter().flatten() {
-            if record_step(device, encoder, step, pictures)? == 1 {
+            if self.record_step(device, encoder, step, pictures)? == 1 {
                 pictures.reverse();
             }
         }
@@ -175,17 +196,55 @@ impl GBufferPasses {
         pass.set_bind_group(0, &group, &[]);
         pass.draw(0..3, 0..1);
     }
+
+    /// Records a step with its repetitions; returns which of the two pictures holds the result.
+    fn record_step(
+        &self,
+        device: &wgpu::Device,
+        encoder: &mut wgpu::CommandEncoder,
+        InkStep { kind, times }: &InkStep,
+        pictures: [&wgpu::TextureView; 2],
+    ) -> Result<usize, HarnessError> {
+        let soft = match *kind {
+            StepKind::Hard(operation, kernel) => {
+                let mut kept = self.hard_steps.borrow_mut();
+                let number = kept.iter().position(|(of, _)| *of == kernel).unwrap_or_else(|| {
+                    kept.push((kernel, PingPong::new(device, kernel)));
+                    kept.len() - 1
+                });
+                return Ok(kept[number].1.record(device, encoder, operation, *times, pictures)?);
+            }
+            StepKind::SoftCross => Step::SoftCross,
+            StepKind::SoftDiagonal(threshold) => Step::SoftDiagonal { threshold },
+            StepKind::SoftDiagonalPrinted(threshold) => Step::SoftDiagonalPrinted { threshold },
+        };
+        let mut kept = self.soft_steps.borrow_mut();
+        let number = match kept.iter().position(|(of, _)| *of == soft) {
+            Some(number) => number,
+            None => {
+                kept.push((soft, StepPass::new(device, soft, InkTarget::Ink)?));
+                kept.len() - 1
+            }
+        };
+        let composite = Composite::default();
+        let mut from = 0;
+        for _ in 0..*times {
+            let target = PassTarget { view: pictures[1 - from], composite: &composite, area: None };
+            kept[number].1.record(device, encoder, pictures[from], &target)?;
+            from = 1 - from;
+        }
+        Ok(from)
+    }
 }
 
-/// The parts of the shader that encodes.
-pub(crate) fn encode_wgsl() -> String {
-    [
-        npr_imagespace::format::FORMAT_WGSL,
-        npr_imagespace::shadow::SHADOW_WGSL,
-        super::texel::WGSL,
-        include_str!("encode.wgsl"),
-    ]
-    .concat()
+/// The shader that encodes.
+fn encode_wgsl() -> String {
+    assemble(&vec![
+        ("npr-imagespace, format", npr_imagespace::format::FORMAT_WGSL),
+        ("npr-imagespace, shadow", npr_imagespace::shadow::SHADOW_WGSL),
+        ("gbuffer/texel.wgsl", super::texel::WGSL),
+        ("gbuffer/encode.wgsl", include_str!("encode.wgsl")),
+    ])
 }
 
 fn pipeline(device: &wgpu::Device, entry: &str, formats: &[wgpu::TextureFormat]) -> wgpu::RenderPipeline {
@@ -215,30 +274,4 @@ fn pipeline(device: &wgpu::Device, entry: &str, formats: &[wgpu::TextureFormat])
         multiview_mask: None,
         cache: None,
     })
-}
-
-/// Records a step with its repetitions; returns which of the two pictures holds the result.
-fn record_step(
-    device: &wgpu::Device,
-    encoder: &mut wgpu::CommandEncoder,
-    InkStep { kind, times }: &InkStep,
-    pictures: [&wgpu::TextureView; 2],
-) -> Result<usize, HarnessError> {
-    let soft = match *kind {
-        StepKind::Hard(operation, kernel) => {
-            return Ok(PingPong::new(device, kernel).record(device, encoder, operation, *times, pictures)?);
-        }
-        StepKind::SoftCross => Step::SoftCross,
-        StepKind::SoftDiagonal(threshold) => Step::SoftDiagonal { threshold },
-        StepKind::SoftDiagonalPrinted(threshold) => Step::SoftDiagonalPrinted { threshold },
-    };
-    let pass = StepPass::new(device, soft, InkTarget::Ink)?;
-    let composite = Composite::default();
-    let mut from = 0;
-    for _ in 0..*times {
-        let target = PassTarget { view: pictures[1 - from], composite: &composite, area: None };
-        pass.record(device, encoder, pictures[from], &target)?;
-        from = 1 - from;
-    }
-    Ok(from)
 }
