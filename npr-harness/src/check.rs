@@ -28,7 +28,7 @@ use glam::Vec3;
 use npr_imagespace::artist::LineKind as InnerLines;
 use npr_mesh::AlphaMode;
 use npr_outline::line_style::LineStyle;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -84,7 +84,7 @@ pub struct Metric {
 }
 
 /// A bound.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Limit {
     /// At least.
@@ -94,7 +94,8 @@ pub enum Limit {
 }
 
 impl Limit {
-    fn holds(self, value: f64) -> bool {
+    /// Whether a value is within the bound.
+    pub fn holds(self, value: f64) -> bool {
         match self {
             Self::AtLeast(limit) => value >= limit,
             Self::AtMost(limit) => value <= limit,

@@ -20,7 +20,7 @@
 //! | what is shown | [`scene`], [`camera`], [`view`], [`lights`], [`facets`], [`texture`], [`color`] |
 //! | how it looks | [`style`], and a module for each technique: [`shade`], [`hatch`], [`edge_lines`], [`printed_fins`], [`hull_lines`], [`image_lines`], [`shadow`] |
 //! | rendering | [`plan`], [`capabilities`], [`picture_limits`], [`executor`], [`gpu`], [`cpu`], [`rays`], [`picture`] |
-//! | measuring | [`truth`], what is exactly right; [`compare`]; [`check`] |
+//! | measuring | [`truth`], what is exactly right; [`compare`]; [`check`]; [`stability`], where methods fail |
 //! | the command | [`gallery`], [`inspect`], [`suggest`], [`error`] |
 //!
 //! # Features
@@ -71,6 +71,7 @@ mod schema;
 #[cfg_attr(not(feature = "gpu"), allow(dead_code, unused_imports, reason = "what shades give to a device"))]
 pub mod shade;
 pub mod shadow;
+pub mod stability;
 pub mod style;
 pub mod suggest;
 pub mod systems;

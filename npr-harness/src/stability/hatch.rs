@@ -1,0 +1,5 @@
+//! Sweeps of hatching.
+
+use super::Sweep;
+
+pub(super) const SWEEPS: &[Sweep] = &[];

@@ -1,0 +1,5 @@
+//! Sweeps of lines from edges, fins and hulls.
+
+use super::Sweep;
+
+pub(super) const SWEEPS: &[Sweep] = &[];

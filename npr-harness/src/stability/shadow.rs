@@ -1,0 +1,5 @@
+//! Sweeps of shadows.
+
+use super::Sweep;
+
+pub(super) const SWEEPS: &[Sweep] = &[];

@@ -1,0 +1,1 @@
+//! Limits of lines found in the image.

@@ -1,0 +1,1 @@
+//! Limits of bands and tones of light.

@@ -1,0 +1,1 @@
+//! Limits of meshes: scale, coincident faces, junctions, welding.

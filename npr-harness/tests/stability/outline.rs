@@ -1,0 +1,1 @@
+//! Limits of lines from edges, fins and hulls.
