@@ -5,5 +5,7 @@ pub(crate) mod cpu;
 pub(crate) mod gpu;
 pub mod plan;
 pub(crate) mod schema;
+mod variants;
 
 pub use plan::{HullLines, HullPlan};
+pub(crate) use variants::VARIANTS;

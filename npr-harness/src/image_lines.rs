@@ -7,6 +7,8 @@ pub(crate) mod gpu;
 pub mod plan;
 pub(crate) mod schema;
 pub mod style;
+mod variants;
 
 pub use plan::{ImageLines, ImagePlan};
 pub use style::{ImageInk, InkScale, Regions};
+pub(crate) use variants::{VARIANTS, width_px};

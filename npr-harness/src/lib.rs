@@ -77,6 +77,7 @@ pub mod suggest;
 pub mod systems;
 pub mod texture;
 pub mod truth;
+pub mod variant;
 pub mod view;
 
 /// The crate of the vectors and matrices in this API.

@@ -3,5 +3,7 @@
 pub(crate) mod cpu;
 pub mod plan;
 pub(crate) mod schema;
+mod variants;
 
 pub use plan::{PrintedFinPlan, PrintedLines};
+pub(crate) use variants::VARIANTS;

@@ -14,10 +14,12 @@ pub mod ramp;
 mod ramp_table;
 pub mod toon;
 mod unlit;
+mod variants;
 pub mod x_toon;
 
 pub use model::ShadeView;
 pub(crate) use model::{LitPoint, ShadeModel, ShadeOnDevice, Shading, flag};
+pub(crate) use variants::VARIANTS;
 
 use crate::error::HarnessError;
 use crate::hatch::HatchShade;

@@ -19,6 +19,8 @@ pub(crate) mod gpu;
 pub mod plan;
 pub(crate) mod schema;
 pub mod style;
+mod variants;
 
 pub use plan::{ShadowPlan, ShadowTechnique, VolumeMethod};
 pub use style::{ShadowLines, ShadowMethod, ShadowStyle};
+pub(crate) use variants::VARIANTS;

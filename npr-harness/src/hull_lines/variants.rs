@@ -1,0 +1,29 @@
+//! Inverted hulls as a way to draw lines.
+
+use super::HullLines;
+use crate::style::Lines;
+use crate::variant::{AskedLines, Setup, Variant};
+use npr_outline::hull::HullNormals;
+
+/// Ways to draw lines.
+pub(crate) const VARIANTS: &[Variant] = &[
+    Variant {
+        name: "hull, welded normals",
+        choices: &["HullNormals::Welded"],
+        historical: false,
+        apply: |setup| hull(setup, HullNormals::Welded),
+    },
+    Variant {
+        name: "hull, normals of vertices",
+        choices: &["HullNormals::Vertices"],
+        historical: false,
+        apply: |setup| hull(setup, HullNormals::Vertices),
+    },
+];
+
+fn hull(setup: &Setup, normals: HullNormals) -> Option<Setup> {
+    AskedLines::drawn(setup, |asked| {
+        let AskedLines { width_px, color, opacity, .. } = *asked;
+        (opacity == 1.0).then(|| Lines::hull(HullLines { width_px, ink: color, normals }))
+    })
+}

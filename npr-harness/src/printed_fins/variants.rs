@@ -1,0 +1,28 @@
+//! Printed fins as a way to draw lines.
+
+use super::PrintedLines;
+use crate::style::Lines;
+use crate::variant::{AskedLines, Setup, Variant};
+
+/// Ways to draw lines. What formats of normals change is a chart of its own.
+pub(crate) const VARIANTS: &[Variant] = &[
+    Variant {
+        name: "fins, as printed",
+        choices: &["FinDepth::Printed"],
+        historical: true,
+        apply: |setup| fins(setup, PrintedLines::default()),
+    },
+    Variant {
+        name: "fins, width by distance",
+        choices: &["FinDepth::Eye"],
+        historical: false,
+        apply: |setup| fins(setup, PrintedLines { eye_depth: true, ..PrintedLines::default() }),
+    },
+];
+
+fn fins(setup: &Setup, fins: PrintedLines) -> Option<Setup> {
+    AskedLines::drawn(setup, |asked| {
+        let AskedLines { width_px, color, opacity, .. } = *asked;
+        (opacity == 1.0).then(|| Lines::printed(PrintedLines { width_px, ink: color, ..fins }))
+    })
+}
