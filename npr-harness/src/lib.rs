@@ -64,6 +64,8 @@ pub mod lights;
 pub mod picture;
 pub mod picture_limits;
 pub mod plan;
+#[cfg(feature = "laboratory")]
+pub mod plot;
 pub mod printed_fins;
 pub mod rays;
 pub mod scene;
