@@ -20,7 +20,7 @@
 //! | what is shown | [`scene`], [`camera`], [`view`], [`lights`], [`facets`], [`texture`], [`color`] |
 //! | how it looks | [`style`], and a module for each technique: [`shade`], [`hatch`], [`edge_lines`], [`printed_fins`], [`hull_lines`], [`image_lines`], [`shadow`] |
 //! | rendering | [`plan`], [`capabilities`], [`picture_limits`], [`executor`], [`gpu`], [`cpu`], [`rays`], [`picture`] |
-//! | measuring | [`truth`], what is exactly right; [`compare`]; [`check`]; [`measure`], times of frames; [`stability`], where methods fail |
+//! | measuring | [`truth`], what is exactly right; [`compare`]; [`check`]; [`chart`], accuracy against speed; [`measure`], times of frames; [`stability`], where methods fail |
 //! | the command | [`gallery`], [`inspect`], [`suggest`], [`error`] |
 //!
 //! # Features
@@ -43,6 +43,7 @@
 
 pub mod camera;
 pub mod capabilities;
+pub mod chart;
 pub mod check;
 pub mod color;
 pub mod compare;

@@ -28,7 +28,7 @@ use crate::error::HarnessError;
 use crate::executor::Executor;
 use crate::plan::Plan;
 use crate::scene::Scene;
-use std::convert::Infallible;
+use serde::{Deserialize, Serialize};
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -36,7 +36,7 @@ use std::time::Instant;
 pub const LEAST_ROUNDS: usize = 5;
 
 /// The median and the quartiles of some values.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Spread {
     /// The median.
     pub median: f64,
@@ -155,11 +155,22 @@ struct Measurement {
     device_ms: Option<f64>,
 }
 
-/// Measures frames of an executor, in the order of the cases. `tell` is called with the fraction done, 0..=1.
-///
-/// On an adapter, one renderer draws all cases; scenes are uploaded before the first round, one upload a case, and cases
-/// of the same size and samples share render targets, unless they find lines in the image in targets of different
-/// formats. On the CPU, hierarchies are built before, and each frame casts all of its rays.
+/// Something to measure beside others.
+pub enum Case<'a> {
+    /// A frame.
+    Frame {
+        /// What draws it.
+        executor: &'a Executor,
+        /// The scene.
+        scene: &'a Scene,
+        /// A plan of the scene for the executor's capabilities.
+        plan: &'a Plan,
+    },
+    /// Work on the CPU. What takes less than some µs must repeat itself.
+    Work(&'a mut dyn FnMut()),
+}
+
+/// Measures frames of an executor, in the order of the cases, as [`time`] does.
 ///
 /// # Errors
 /// The first error of a case, which ends the measurement.
@@ -169,32 +180,47 @@ pub fn time_frames(
     rounds: &Rounds,
     tell: &dyn Fn(f64),
 ) -> Result<Vec<Timed>, HarnessError> {
-    match executor {
-        #[cfg(feature = "gpu")]
-        Executor::Gpu(context) => on_adapter::time_frames(context, cases, rounds, tell),
-        Executor::Cpu { .. } => {
-            cases.iter().for_each(|case| case.scene.build_rays());
-            let options = CpuOptions::default();
-            let frames = rounds.frames_a_wait.unwrap_or(1).max(1);
-            interleaved(cases.len(), rounds, tell, |case| {
-                let FrameCase { scene, plan } = cases[case];
-                let wall_ms = mean_ms(frames, || {
-                    black_box(cpu::render(scene, plan, &options, &|_| {}));
-                });
-                Ok(Measurement { wall_ms, device_ms: None })
-            })
-        }
-    }
+    let mut cases: Vec<Case<'_>> =
+        cases.iter().map(|&FrameCase { scene, plan }| Case::Frame { executor, scene, plan }).collect();
+    time(&mut cases, rounds, tell)
 }
 
-/// Measures work on the CPU, in the order given. Work that takes less than some µs must repeat itself.
+/// Measures work on the CPU, in the order given, as [`time`] does.
 pub fn time_work(work: &mut [&mut dyn FnMut()], rounds: &Rounds) -> Vec<Samples> {
-    let calls = rounds.frames_a_wait.unwrap_or(1).max(1);
-    let timed = interleaved(work.len(), rounds, &|_| {}, |number| {
-        Ok::<_, Infallible>(Measurement { wall_ms: mean_ms(calls, &mut *work[number]), device_ms: None })
-    });
-    let Ok(timed) = timed;
+    let mut cases: Vec<Case<'_>> = work.iter_mut().map(|work| Case::Work(&mut **work)).collect();
+    let timed = time(&mut cases, rounds, &|_| {}).expect("only frames have errors");
     timed.into_iter().map(|timed| timed.wall).collect()
+}
+
+/// Measures cases of any kind and on several executors, in their order. `tell` is called with the fraction done, 0..=1.
+///
+/// On each adapter one renderer draws all of its cases; scenes are uploaded before the first round, one upload a case, and
+/// cases of the same size and samples share render targets, unless they find lines in the image in targets of different
+/// formats. On the CPU, hierarchies are built before, and each frame casts all of its rays.
+///
+/// # Errors
+/// The first error of a case, which ends the measurement.
+pub fn time(cases: &mut [Case<'_>], rounds: &Rounds, tell: &dyn Fn(f64)) -> Result<Vec<Timed>, HarnessError> {
+    #[cfg(feature = "gpu")]
+    let mut on_adapters = on_adapter::Prepared::new(cases, rounds)?;
+    for case in &*cases {
+        if let Case::Frame { executor: Executor::Cpu { .. }, scene, .. } = case {
+            scene.build_rays();
+        }
+    }
+    let options = CpuOptions::default();
+    let calls = rounds.frames_a_wait.unwrap_or(1).max(1);
+    interleaved(cases.len(), rounds, tell, |number| {
+        let wall_ms = match &mut cases[number] {
+            Case::Work(work) => mean_ms(calls, work),
+            Case::Frame { executor: Executor::Cpu { .. }, scene, plan } => mean_ms(calls, || {
+                black_box(cpu::render(scene, plan, &options, &|_| {}));
+            }),
+            #[cfg(feature = "gpu")]
+            Case::Frame { executor: Executor::Gpu(_), scene, plan } => return on_adapters.measure(number, scene, plan),
+        };
+        Ok(Measurement { wall_ms, device_ms: None })
+    })
 }
 
 /// The mean time of some calls, ms.

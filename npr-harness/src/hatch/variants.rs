@@ -44,4 +44,3 @@ fn strokes(setup: &Setup, encoding: HatchEncoding, normals: NormalUse) -> Option
     let shade = Shade::Hatch(HatchShade { encoding, ..hatch.clone() });
     Some(Setup { style: Style { shade, normals, ..setup.style.clone() }, ..*setup })
 }
-
