@@ -1,16 +1,22 @@
 //! What the sources claim, measured: "The Evolution of a Cartoon Renderer", Card & Mitchell 2002, and the slides of
 //! SIGGRAPH 2002.
 //!
-//! `cargo bench -p npr-harness --bench claims`. Prints the rows of docs/claims.md. Times are those of interleaved rounds
-//! in one run, and only their ratios mean something. Without an adapter the two parts that need none are measured.
-#![allow(clippy::print_stdout)]
+//! `cargo bench -p npr-harness --bench claims -- [--frames N] [--rounds N]`. Prints the rows of docs/claims.md. Times are
+//! those of interleaved rounds in one run, and only their ratios mean something. Without an adapter the two parts that
+//! need none are measured.
+#![allow(clippy::print_stdout, clippy::print_stderr)]
 
+mod common;
+
+use common::shared;
 use glam::{DVec2, DVec3, UVec2, Vec3};
 use npr_harness::camera::{Camera, Framing, Projection};
 use npr_harness::capabilities::Capabilities;
 use npr_harness::cpu::{self, CpuOptions};
-use npr_harness::gpu::{self, GpuContext, GpuRenderer};
+use npr_harness::executor::Executor;
+use npr_harness::gpu::{GpuContext, GpuRenderer};
 use npr_harness::image_lines::ImageInk;
+use npr_harness::measure::{FrameCase, Rounds, Samples, time_frames, time_work};
 use npr_harness::plan::Plan;
 use npr_harness::printed_fins::PrintedLines;
 use npr_harness::scene::Scene;
@@ -31,22 +37,17 @@ use npr_imagespace::pass::{INK_FORMAT, InkTarget, PassTarget};
 use npr_imagespace::picture::{Taps, filter_picture};
 use npr_mesh::{Model, embedded, pn_triangles};
 use npr_outline::line_style::LineStyle;
-use std::path::Path;
-use std::time::Instant;
-
-const ROUNDS: usize = 25;
 
 fn main() {
-    let context = gpu::open();
-    match &context {
-        Ok(context) => println!("Times on {}.\n", context.describe()),
-        Err(error) => println!("Nothing that takes time is measured: {error}.\n"),
-    }
-    println!("| claim | measured | verdict |\n| --- | --- | --- |");
-    if let Ok(context) = &context {
-        second_geometry_pass(context);
-        alpha_test(context);
-        polygons(context);
+    let rounds = common::arguments(common::ROUNDS).rounds;
+    let executor = common::on_adapter();
+    println!("\n| claim | measured | verdict |\n| --- | --- | --- |");
+    if let Some(executor) = &executor {
+        second_geometry_pass(executor, &rounds);
+        if let Executor::Gpu(context) = executor {
+            alpha_test(context, &rounds);
+            polygons(context, &rounds);
+        }
     }
     depth_scaled_threshold();
     fins();
@@ -54,12 +55,6 @@ fn main() {
 
 fn row(claim: &str, measured: &str, verdict: &str) {
     println!("| {claim} | {measured} | {verdict} |");
-}
-
-/// A model by its name: one of the shared ones if it is there, else `None`.
-fn shared(file: &str) -> Option<Model> {
-    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/data")).join(file);
-    path.exists().then(|| npr_mesh::load(&path, &Default::default()).expect("the model loads").into_model())
 }
 
 fn framed(model: Model, size: (u32, u32)) -> (Scene, View) {
@@ -76,30 +71,15 @@ fn lambert(lines: Lines) -> Style {
     }
 }
 
-/// Times in ms of interleaved rounds, for each case.
-fn rounds(cases: &mut [Box<dyn FnMut() + '_>]) -> Vec<Vec<f64>> {
-    let mut times = vec![Vec::new(); cases.len()];
-    for round in 0..=ROUNDS {
-        for (times, case) in times.iter_mut().zip(cases.iter_mut()) {
-            let start = Instant::now();
-            case();
-            // The first round creates the pipelines.
-            if round > 0 {
-                times.push(start.elapsed().as_secs_f64() * 1e3);
-            }
-        }
-    }
-    times
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values[values.len() / 2]
+/// Times of interleaved rounds, for each case.
+fn timed(cases: &mut [Box<dyn FnMut() + '_>], rounds: &Rounds) -> Vec<Samples> {
+    let mut cases: Vec<&mut dyn FnMut()> = cases.iter_mut().map(|case| &mut **case as &mut dyn FnMut()).collect();
+    time_work(&mut cases, rounds)
 }
 
 /// The median over rounds of the ratio of two cases of the same round.
-fn ratio(of: &[f64], to: &[f64]) -> f64 {
-    median(of.iter().zip(to).map(|(of, to)| of / to).collect())
+fn ratio(of: &Samples, to: &Samples) -> f64 {
+    of.relative_to(to).median
 }
 
 /// Draws a plan again and again.
@@ -118,8 +98,7 @@ fn frames<'a>(
 }
 
 /// Frames without lines, with the G-buffer as a second target of the picture's pass, and with a pass of its own.
-fn second_geometry_pass(context: &GpuContext) {
-    let renderer = GpuRenderer::new(context);
+fn second_geometry_pass(executor: &Executor, rounds: &Rounds) {
     let round = |segments: u32| embedded::sphere(segments);
     let bunny = || shared("stanford-bunny.obj");
     let models = [
@@ -132,15 +111,23 @@ fn second_geometry_pass(context: &GpuContext) {
     for (name, model, size) in models {
         let Some(model) = model else { continue };
         let (scene, view) = framed(model, size);
-        let plan = |lines| Plan::new(&scene, &lambert(lines), &view, &context.capabilities).expect("a good style");
+        let plan = |lines| Plan::new(&scene, &lambert(lines), &view, &executor.capabilities()).expect("a good style");
         let beside = plan(Lines::image(ImageInk::default()));
         let mut apart = beside.clone();
         apart.image.as_mut().expect("lines in the image").own_surfaces = true;
-        let mut cases = [plan(Lines::NONE), beside, apart].map(|plan| frames(context, &renderer, &scene, plan));
-        let times = rounds(&mut cases);
-        let [beside, apart] = [1, 2].map(|case| ratio(&times[case], &times[0]));
+        let plans = [plan(Lines::NONE), beside, apart];
+        let cases = plans.each_ref().map(|plan| FrameCase { scene: &scene, plan });
+        let times = time_frames(executor, &cases, rounds, &|_| {}).expect("the frames are drawn");
+        let [beside, apart] = [1, 2].map(|case| ratio(&times[case].wall, &times[0].wall));
+        let on_device = [0, 1, 2].map(|case| times[case].device.as_ref());
+        let device = match on_device {
+            [Some(plain), Some(beside), Some(apart)] => {
+                format!("; in device time {:.2}, {:.2}", ratio(beside, plain), ratio(apart, plain))
+            }
+            _ => String::new(),
+        };
         let measured = format!(
-            "{name}, {} faces: over a frame without lines, two targets {beside:.2}, two passes {apart:.2}",
+            "{name}, {} faces: over a frame without lines, two targets {beside:.2}, two passes {apart:.2}{device}",
             scene.face_count()
         );
         let kept = 100.0 * beside / apart;
@@ -235,7 +222,7 @@ impl Pixels {
 }
 
 /// The composite of stored ink over a picture, with and without the alpha test, and the bytes that each writes.
-fn alpha_test(context: &GpuContext) {
+fn alpha_test(context: &GpuContext, rounds: &Rounds) {
     let size = (1280, 720);
     let pass = CompositePass::new(&context.device, InkTarget::Picture(PICTURE_FORMAT)).expect("a picture's format");
     let forms =
@@ -250,7 +237,7 @@ fn alpha_test(context: &GpuContext) {
                 pass.record(&context.device, encoder, &pixels.ink, &target).expect("the textures fit");
             })
         });
-        let times = rounds(&mut cases);
+        let times = timed(&mut cases, rounds);
         let [tested, printed] = [1, 2].map(|case| ratio(&times[case], &times[0]));
         let all = 4 * pixels.found.len();
         let written =
@@ -272,7 +259,7 @@ fn alpha_test(context: &GpuContext) {
 }
 
 /// The filter's time against that of the geometry, on models of more and more polygons that look alike.
-fn polygons(context: &GpuContext) {
+fn polygons(context: &GpuContext, rounds: &Rounds) {
     let size = (1280, 720);
     let renderer = GpuRenderer::new(context);
     let pass = FusedPass::new(&context.device, &FusedFilter::default(), TexelLayout::Bits64, InkTarget::Ink)
@@ -296,7 +283,7 @@ fn polygons(context: &GpuContext) {
             frames(context, &renderer, scene, plan)
         });
         let mut cases: Vec<_> = filters.chain(geometry).collect();
-        let times = rounds(&mut cases);
+        let times = timed(&mut cases, rounds);
         let count = shown.len();
         let over = |first: usize| {
             let ratios: Vec<f64> = (0..count).map(|i| ratio(&times[first + i], &times[first])).collect();

@@ -1,15 +1,14 @@
 //! The cost of a frame: Lambert, all other shades, and lines, on one adapter, with the same targets and culling.
 //!
-//! `cargo bench -p npr-harness --bench frame`. Prints minimum and median of interleaved rounds, and ratios, which are
-//! the meaningful numbers. docs/speed.md has measured figures.
-#![allow(clippy::print_stdout)]
+//! `cargo bench -p npr-harness --bench frame -- [--size WIDTHxHEIGHT] [--model FILE] [--frames N] [--rounds N]`. Prints
+//! times of interleaved rounds, and ratios, which are the meaningful numbers. docs/speed.md has measured figures.
+#![allow(clippy::print_stdout, clippy::print_stderr)]
 
 mod common;
 
 use common::Case;
 use glam::Vec3;
 use npr_harness::edge_lines::EdgeLineMethod;
-use npr_harness::gpu;
 use npr_harness::hull_lines::HullLines;
 use npr_harness::image_lines::ImageInk;
 use npr_harness::plan::Plan;
@@ -21,12 +20,9 @@ use npr_outline::hull::HullNormals;
 use npr_toon::normal::NormalUse;
 
 fn main() {
-    let context = match gpu::open() {
-        Ok(context) => context,
-        Err(error) => return println!("skipped: {error}"),
-    };
-    println!("on {}", context.describe());
-    let (scene, camera) = common::bunny(|_| {});
+    let arguments = common::arguments(common::ROUNDS);
+    let Some(executor) = common::on_adapter() else { return };
+    let (scene, camera) = common::scene(&arguments, |_| {});
     let base = style("cartoon").expect("a style of this crate");
     let without_highlight = match &base.shade {
         Shade::Toon(bands) => Shade::Toon(npr_toon::Bands { highlight: None, ..bands.clone() }),
@@ -58,7 +54,7 @@ fn main() {
     ]
     .map(|(name, style)| Case::new(name, style))
     .into();
-    if context.capabilities.can_find_lines() {
+    if executor.capabilities().can_find_lines() {
         let change = |plan: &mut Plan| {
             if let Some(edges) = &mut plan.edge_lines {
                 edges.method = EdgeLineMethod::OnDevice;
@@ -71,5 +67,5 @@ fn main() {
     cases.push(Case { samples: 2, ..Case::new("toon + edge lines, 2 × 2 samples", base.clone()) });
     // A ratio other than 1 here is noise, and the effect of the previous case on the caches.
     cases.push(Case::new("Lambert again", cases[0].style.clone()));
-    common::compare(&context, &scene, &camera, &cases);
+    common::compare(&executor, &scene, &camera, &arguments, &cases);
 }

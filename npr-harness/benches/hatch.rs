@@ -1,13 +1,12 @@
 //! The cost of strokes: encodings, mappings, and weights at vertices or pixels, relative to a plain Lambert pass.
 //!
-//! `cargo bench -p npr-harness --bench hatch`. Prints minimum and median of interleaved rounds, and ratios, which are
-//! the meaningful numbers. docs/speed.md has measured figures.
-#![allow(clippy::print_stdout)]
+//! `cargo bench -p npr-harness --bench hatch -- [--size WIDTHxHEIGHT] [--model FILE] [--frames N] [--rounds N]`. Prints
+//! times of interleaved rounds, and ratios, which are the meaningful numbers. docs/speed.md has measured figures.
+#![allow(clippy::print_stdout, clippy::print_stderr)]
 
 mod common;
 
 use common::Case;
-use npr_harness::gpu;
 use npr_harness::hatch::{HatchEncoding, HatchMapping, HatchShade};
 use npr_harness::shade::Shade;
 use npr_harness::shade::lambert::Lambert;
@@ -15,12 +14,9 @@ use npr_harness::style::{Lines, Style, style};
 use npr_toon::normal::NormalUse;
 
 fn main() {
-    let context = match gpu::open() {
-        Ok(context) => context,
-        Err(error) => return println!("skipped: {error}"),
-    };
-    println!("on {}", context.describe());
-    let (scene, camera) = common::bunny(|model| {
+    let arguments = common::arguments(common::ROUNDS);
+    let Some(executor) = common::on_adapter() else { return };
+    let (scene, camera) = common::scene(&arguments, |model| {
         // The model has no texture coordinates.
         if model.uvs.is_empty() {
             model.uvs = model.positions.iter().map(|p| p.truncate()).collect();
@@ -49,5 +45,5 @@ fn main() {
         ("thresholds, form", hatched(thresholds, form, pixel)),
     ];
     let cases = cases.map(|(name, style)| Case::new(name, style));
-    common::compare(&context, &scene, &camera, &cases);
+    common::compare(&executor, &scene, &camera, &arguments, &cases);
 }

@@ -1,14 +1,13 @@
 //! The cost of shadows: volumes and maps relative to the same frame without them, and shadow lines relative to lines of
 //! objects alone.
 //!
-//! `cargo bench -p npr-harness --bench shadow`. Prints minimum and median of interleaved rounds, and ratios, which are
-//! the meaningful numbers. docs/speed.md has measured figures.
-#![allow(clippy::print_stdout)]
+//! `cargo bench -p npr-harness --bench shadow -- [--size WIDTHxHEIGHT] [--model FILE] [--frames N] [--rounds N]`. Prints
+//! times of interleaved rounds, and ratios, which are the meaningful numbers. docs/speed.md has measured figures.
+#![allow(clippy::print_stdout, clippy::print_stderr)]
 
 mod common;
 
 use common::Case;
-use npr_harness::gpu;
 use npr_harness::image_lines::ImageInk;
 use npr_harness::plan::Plan;
 use npr_harness::shade::Shade;
@@ -17,11 +16,8 @@ use npr_harness::shadow::{ShadowLines, ShadowMethod, ShadowStyle, ShadowTechniqu
 use npr_harness::style::{Lines, Style, style};
 
 fn main() {
-    let context = match gpu::open() {
-        Ok(context) => context,
-        Err(error) => return println!("skipped: {error}"),
-    };
-    println!("on {}", context.describe());
+    let arguments = common::arguments(common::ROUNDS);
+    let Some(executor) = common::on_adapter() else { return };
     let named = |name: &str| style(name).expect("a style of this crate");
     let plain = Style {
         shade: Shade::Lambert(Lambert { ambient: 0.25 }),
@@ -45,9 +41,9 @@ fn main() {
         ("volumes, image lines of both", Style { lines: lines(ShadowLines::Lines), ..shadowed(ShadowMethod::Volumes) }),
         ("toon-shadow", named("toon-shadow")),
     ];
-    let (scene, camera) = common::bunny(|_| {});
+    let (scene, camera) = common::scene(&arguments, |_| {});
     let by_plan = cases.clone().map(|(name, style)| Case::new(name, style));
-    common::compare(&context, &scene, &camera, &by_plan);
+    common::compare(&executor, &scene, &camera, &arguments, &by_plan);
     // With the bounds of volumes found on the GPU, as on hardware.
     let change = |plan: &mut Plan| {
         if let Some(ShadowTechnique::Volumes { method, .. }) = plan.shadow.as_mut().map(|shadow| &mut shadow.technique)
@@ -56,5 +52,5 @@ fn main() {
         }
     };
     let on_device = Case { change, ..Case::new("volumes, bounds on the device", cases[1].1.clone()) };
-    common::compare(&context, &scene, &camera, &[Case::new("Lambert", plain), on_device]);
+    common::compare(&executor, &scene, &camera, &arguments, &[Case::new("Lambert", plain), on_device]);
 }

@@ -22,7 +22,7 @@ use crate::printed_fins::PrintedLines;
 use crate::scene::Scene;
 use crate::shade::Shade;
 use crate::style::{Lines, Style, style};
-use crate::truth::lines::{accuracy, drawn_centreline, true_lines};
+use crate::truth::lines::{accuracy, darkness, drawn_centreline, true_lines};
 use crate::view::View;
 use glam::Vec3;
 use npr_imagespace::artist::LineKind as InnerLines;
@@ -484,9 +484,4 @@ fn one_px_style(lines: Lines) -> Style {
         lines,
         crease_angle_rad: 45f32.to_radians(),
     }
-}
-
-/// Per pixel: the darkness, 0 (white) to 1.
-fn darkness(image: &Image) -> Vec<f64> {
-    image.rgba8.chunks_exact(4).map(|p| 1.0 - f64::from(p[1]) / 255.0).collect()
 }

@@ -156,6 +156,44 @@ impl Executor {
         Ok(Candidates::find(backend)?.choose_for(work))
     }
 
+    /// Opens an adapter, with the limits set in the environment ([`DeviceLimits::from_env`](gpu::DeviceLimits::from_env)).
+    /// `NPR_GPU` is ignored.
+    ///
+    /// # Errors
+    /// [`HarnessError::NoDevice`], [`HarnessError::GpuLimits`].
+    #[cfg(feature = "gpu")]
+    pub fn on_adapter(adapter: &gpu::GpuAdapter) -> Result<Self, HarnessError> {
+        Ok(Self::Gpu(Box::new(adapter.open(gpu::DeviceLimits::from_env()?)?)))
+    }
+
+    /// Every executor that the environment allows: the CPU, then each adapter of
+    /// [`GpuAdapter::all`](crate::gpu::GpuAdapter::all) unless `NPR_GPU=off`.
+    ///
+    /// # Errors
+    /// If `NPR_GPU=required` and there is no adapter; if an adapter cannot be opened.
+    pub fn all() -> Result<Vec<Self>, HarnessError> {
+        let policy = GpuPolicy::from_env()?;
+        let mut executors = vec![Self::Cpu { why: None }];
+        if policy != GpuPolicy::Off {
+            executors.extend(Self::adapters()?);
+        }
+        if policy == GpuPolicy::Required && executors.len() == 1 {
+            // Names the adapters that were considered.
+            return Self::choose(Backend::Gpu).map(|executor| vec![executor]);
+        }
+        Ok(executors)
+    }
+
+    #[cfg(feature = "gpu")]
+    fn adapters() -> Result<Vec<Self>, HarnessError> {
+        gpu::GpuAdapter::all().iter().map(Self::on_adapter).collect()
+    }
+
+    #[cfg(not(feature = "gpu"))]
+    fn adapters() -> Result<Vec<Self>, HarnessError> {
+        Ok(Vec::new())
+    }
+
     /// Falls back to the CPU for a picture that the GPU could not render because of `error`, unless `backend` or the
     /// environment requires the GPU.
     ///
@@ -185,6 +223,16 @@ impl Executor {
             Self::Gpu(context) => context.describe(),
             Self::Cpu { why: None } => "CPU, ray casting".into(),
             Self::Cpu { why: Some(why) } => format!("CPU, ray casting ({why})"),
+        }
+    }
+
+    /// A short name for files and charts: `cpu`, or API and adapter, such as `vulkan-llvmpipe`
+    /// ([`GpuContext::name`](crate::gpu::GpuContext::name)).
+    pub fn name(&self) -> String {
+        match self {
+            #[cfg(feature = "gpu")]
+            Self::Gpu(context) => context.name(),
+            Self::Cpu { .. } => "cpu".into(),
         }
     }
 

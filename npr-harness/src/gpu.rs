@@ -143,6 +143,23 @@ impl<'a> GpuRenderer<'a> {
     /// # Errors
     /// [`HarnessError::TooManyDraws`], and those of the techniques' passes.
     pub fn draw(&self, scene: &Scene, uploaded: &GpuScene, plan: &Plan, targets: &Targets) -> Result<(), HarnessError> {
+        let frame = self.encode(scene, uploaded, plan, targets)?;
+        self.context.queue.submit([frame]);
+        Ok(())
+    }
+
+    /// The commands of a frame, as [`Self::draw`] submits them. They must be submitted before the next frame of the
+    /// same upload is encoded.
+    ///
+    /// # Errors
+    /// Those of [`Self::draw`].
+    pub(crate) fn encode(
+        &self,
+        scene: &Scene,
+        uploaded: &GpuScene,
+        plan: &Plan,
+        targets: &Targets,
+    ) -> Result<wgpu::CommandBuffer, HarnessError> {
         let device = &self.context.device;
         let canvas = targets.canvas();
         let view = &plan.view;
@@ -211,8 +228,7 @@ impl<'a> GpuRenderer<'a> {
             };
             self.ink.record(&mut encoder, &ink_frame)?;
         }
-        self.context.queue.submit([encoder.finish()]);
-        Ok(())
+        Ok(encoder.finish())
     }
 
     /// Computes the shadows on the surfaces of a target of the given size.

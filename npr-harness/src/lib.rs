@@ -20,7 +20,7 @@
 //! | what is shown | [`scene`], [`camera`], [`view`], [`lights`], [`facets`], [`texture`], [`color`] |
 //! | how it looks | [`style`], and a module for each technique: [`shade`], [`hatch`], [`edge_lines`], [`printed_fins`], [`hull_lines`], [`image_lines`], [`shadow`] |
 //! | rendering | [`plan`], [`capabilities`], [`picture_limits`], [`executor`], [`gpu`], [`cpu`], [`rays`], [`picture`] |
-//! | measuring | [`truth`], what is exactly right; [`compare`]; [`check`]; [`stability`], where methods fail |
+//! | measuring | [`truth`], what is exactly right; [`compare`]; [`check`]; [`chart`], accuracy against speed; [`measure`], times of frames; [`stability`], where methods fail |
 //! | the command | [`gallery`], [`inspect`], [`suggest`], [`error`] |
 //!
 //! # Features
@@ -36,13 +36,14 @@
 //! - The CPU executor renders on the calling thread. A number of threads above 1 ([`cpu::CpuOptions`]) panics.
 //! - What reads or writes files, such as [`style::Style::read`] or [`picture::Image::save_png`], returns an error.
 //!   [`style::Style::from_toml`] takes text.
-//! - [`gallery::render`] and [`check::run`] panic, for the clock and for files.
+//! - [`gallery::render`], [`check::run`] and the functions of [`measure`] panic, for the clock and for files.
 //! - [`executor::Executor::choose`] with [`executor::Backend::Auto`] or [`executor::Backend::Gpu`], and whatever reads a
 //!   picture back from a device, would block until the browser has answered, and panic; [`executor::Backend::Cpu`] does not.
 #![warn(missing_docs)]
 
 pub mod camera;
 pub mod capabilities;
+pub mod chart;
 pub mod check;
 pub mod color;
 pub mod compare;
@@ -61,6 +62,7 @@ pub mod hull_lines;
 pub mod image_lines;
 pub mod inspect;
 pub mod lights;
+pub mod measure;
 pub mod picture;
 pub mod picture_limits;
 pub mod plan;

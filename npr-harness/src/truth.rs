@@ -5,7 +5,9 @@ pub mod bands;
 pub mod hatch;
 pub mod lines;
 pub mod normal_use;
+pub mod pieces;
 pub mod shadows;
+pub mod width;
 
 /// The shift of a reference's samples that finds where it is sensitive to sampling, px.
 pub const SHIFT_PX: f64 = 1.0 / 32.0;

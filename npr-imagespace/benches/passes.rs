@@ -1,7 +1,8 @@
 //! Each pass on whatever graphics adapter there is, against a pass that only copies as many bytes.
 //!
-//! `cargo bench -p npr-imagespace --features wgpu --bench passes`. Interleaved rounds, a pass recorded, submitted and
-//! waited for at a time; minimum and median; read the ratios. Bytes are those of the textures' texels, each read once
+//! `cargo bench -p npr-imagespace --features wgpu --bench passes -- [--size WIDTHxHEIGHT] [--frames N]`. Interleaved
+//! rounds, a pass recorded N times (1 by default, which is too few on hardware, where the wait would take most of the
+//! time), submitted and waited for at a time; minimum and median; read the ratios. Bytes are those of the textures' texels, each read once
 //! and written once: what a cache cannot save.
 //!
 //! # Measured
@@ -31,7 +32,7 @@
 //!
 //! With 1, 2, 3, 4 and 6 for the fan of the plan, a disc of 64 px took 2.7, 2.2, 2.2 to 3.2, 2.2 and 3.0 times as long
 //! as one 3 × 3 step; 2 to 4 are the same but for noise.
-#![allow(clippy::print_stdout)]
+#![allow(clippy::print_stdout, clippy::print_stderr)]
 
 #[path = "../tests/gpu/device.rs"]
 #[allow(dead_code, reason = "the tests use all of it")]
@@ -94,14 +95,15 @@ impl<'a> Passes<'a> {
         self.0.push(Timed { name: name.to_owned(), bytes, run: Box::new(run), times_ms: Vec::new() });
     }
 
-    fn run(&mut self, gpu: &Gpu) {
+    /// `repeats`: how often a pass is recorded for one measurement.
+    fn run(&mut self, gpu: &Gpu, repeats: u32) {
         for round in 0..=ROUNDS {
             for timed in &mut self.0 {
                 let start = Instant::now();
-                gpu.run(&timed.run);
+                gpu.run(|encoder| (0..repeats).for_each(|_| (timed.run)(encoder)));
                 // The first warms up.
                 if round > 0 {
-                    timed.times_ms.push(start.elapsed().as_secs_f64() * 1e3);
+                    timed.times_ms.push(start.elapsed().as_secs_f64() * 1e3 / f64::from(repeats));
                 }
             }
         }
@@ -252,7 +254,7 @@ fn frame(size: [u32; 2]) -> Frame {
     }
 }
 
-fn bench(gpu: &Gpu, size: [u32; 2]) {
+fn bench(gpu: &Gpu, size: [u32; 2], repeats: u32) {
     let device = &gpu.device;
     let frame = frame(size);
     let inked = frame.ink.iter().filter(|&&ink| ink > 0).count() as f64 / frame.ink.len() as f64;
@@ -365,7 +367,7 @@ fn bench(gpu: &Gpu, size: [u32; 2]) {
         timed.add(name, bytes + 8.0, run);
     }
 
-    timed.run(gpu);
+    timed.run(gpu, repeats);
     let square = timed.least(SQUARE);
     let pixels = f64::from(size[0]) * f64::from(size[1]);
     println!("                                      min     median    bytes    / copy of as many   / 3 × 3");
@@ -429,9 +431,32 @@ fn errors(ink: &[u8], size: [u32; 2]) {
     }
 }
 
+/// The sizes and repeats of the arguments.
+fn arguments() -> Option<(Vec<[u32; 2]>, u32)> {
+    let (mut sizes, mut repeats) = (vec![[1280, 720], [1920, 1080]], 1);
+    // Cargo adds an argument of its own.
+    let mut arguments = std::env::args().skip(1).filter(|argument| argument != "--bench");
+    while let Some(argument) = arguments.next() {
+        let value = arguments.next()?;
+        match argument.as_str() {
+            "--size" => {
+                let (width, height) = value.split_once('x')?;
+                sizes = vec![[width.parse().ok()?, height.parse().ok()?]];
+            }
+            "--frames" => repeats = value.parse().ok().filter(|&repeats| repeats > 0)?,
+            _ => return None,
+        }
+    }
+    Some((sizes, repeats))
+}
+
 fn main() {
+    let Some((sizes, repeats)) = arguments() else {
+        eprintln!("expected [--size WIDTHxHEIGHT] [--frames N]");
+        std::process::exit(2)
+    };
     let Some(gpu) = gpu() else { return };
-    for size in [[1280, 720], [1920, 1080]] {
-        bench(gpu, size);
+    for size in sizes {
+        bench(gpu, size, repeats);
     }
 }

@@ -1,30 +1,103 @@
-//! Renders frames of several styles in turn, each timed relative to the first.
+//! Arguments of the benches, and frames of several styles timed relative to the first.
+#![allow(dead_code, reason = "each bench uses a part of it")]
 
 use npr_harness::camera::{Camera, Framing};
-use npr_harness::gpu::{GpuContext, GpuRenderer};
+use npr_harness::executor::{Backend, Executor};
+use npr_harness::measure::{FrameCase, Rounds, Samples, Spread, time_frames};
 use npr_harness::plan::Plan;
 use npr_harness::scene::Scene;
 use npr_harness::style::Style;
 use npr_harness::view::View;
 use npr_mesh::Model;
-use std::path::Path;
-use std::time::Instant;
+use std::path::{Path, PathBuf};
 
-const SIZE: (u32, u32) = (1280, 720);
-const ROUNDS: usize = 25;
+/// The arguments of a bench: `--size WIDTHxHEIGHT`, px; `--model FILE`; `--frames N`, the frames between two waits for
+/// the adapter; `--rounds N`; and what else there is.
+pub struct Arguments {
+    pub size: (u32, u32),
+    pub model: Option<PathBuf>,
+    pub rounds: Rounds,
+    pub rest: Vec<String>,
+}
 
-/// The bunny if it is there, else the built-in scene, after `change`.
-pub fn bunny(change: impl Fn(&mut Model)) -> (Scene, Camera) {
-    let bunny = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/data/stanford-bunny.obj"));
-    let (name, mut model) = if bunny.exists() {
-        ("bunny", npr_mesh::load(bunny, &Default::default()).expect("the bunny loads").into_model())
-    } else {
-        ("built-in scene", npr_mesh::embedded::scene())
+/// The rounds of most benches.
+pub const ROUNDS: Rounds = Rounds { rounds: 25, frames_a_wait: None, most_ms: f64::INFINITY };
+
+/// Reads the arguments; ends the process with a message if they are wrong.
+pub fn arguments(rounds: Rounds) -> Arguments {
+    parsed(rounds, std::env::args().skip(1)).unwrap_or_else(|error| {
+        eprintln!("{error}");
+        std::process::exit(2)
+    })
+}
+
+fn parsed(rounds: Rounds, mut arguments: impl Iterator<Item = String>) -> Result<Arguments, String> {
+    let mut read = Arguments { size: (1280, 720), model: None, rounds, rest: Vec::new() };
+    while let Some(argument) = arguments.next() {
+        let mut value = || arguments.next().ok_or_else(|| format!("{argument}: a value is missing"));
+        let number = |text: String| match text.parse::<u32>() {
+            Ok(number) if number > 0 => Ok(number),
+            _ => Err(format!("{text:?} is not a number of at least 1")),
+        };
+        match argument.as_str() {
+            // Cargo adds this argument.
+            "--bench" => {}
+            "--size" => {
+                let text = value()?;
+                let (width, height) = text.split_once('x').ok_or("--size: expected WIDTHxHEIGHT, such as 1280x720")?;
+                read.size = (number(width.into())?, number(height.into())?);
+            }
+            "--model" => read.model = Some(value()?.into()),
+            "--frames" => read.rounds.frames_a_wait = Some(number(value()?)?),
+            "--rounds" => read.rounds.rounds = number(value()?)? as usize,
+            option if option.starts_with("--") => return Err(format!("{option}: no such option")),
+            _ => read.rest.push(argument),
+        }
+    }
+    Ok(read)
+}
+
+/// A model of the folder that the environment variable `NPR_MODELS` names, by default one beside the checkout; `None`
+/// if it is not there.
+pub fn shared(file: &str) -> Option<Model> {
+    let beside = concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/data");
+    let folder = std::env::var_os("NPR_MODELS").unwrap_or_else(|| beside.into());
+    let path = Path::new(&folder).join(file);
+    path.exists().then(|| load(&path))
+}
+
+pub fn load(path: &Path) -> Model {
+    match npr_mesh::load(path, &Default::default()) {
+        Ok(loaded) => loaded.into_model(),
+        Err(error) => panic!("{}: {error}", path.display()),
+    }
+}
+
+/// An adapter's executor; `None` with a message if there is none.
+pub fn on_adapter() -> Option<Executor> {
+    match Executor::choose(Backend::Gpu) {
+        Ok(executor) => {
+            println!("on {}: {}", executor.name(), executor.describe());
+            Some(executor)
+        }
+        Err(error) => {
+            println!("skipped: {error}");
+            None
+        }
+    }
+}
+
+/// The model of the arguments; without one the bunny if it is there, else the built-in scene. `change` is applied to it.
+pub fn scene(arguments: &Arguments, change: impl Fn(&mut Model)) -> (Scene, Camera) {
+    let bunny = || shared("stanford-bunny.obj").map(|bunny| ("bunny".to_owned(), bunny));
+    let (name, mut model) = match &arguments.model {
+        Some(path) => (path.display().to_string(), load(path)),
+        None => bunny().unwrap_or_else(|| ("built-in scene".to_owned(), npr_mesh::embedded::scene())),
     };
     change(&mut model);
-    let scene = Scene::new(model);
-    let camera = Camera::framed(scene.corners(), f64::from(SIZE.0) / f64::from(SIZE.1), &Framing::default());
-    println!("{name}, {} faces, {} × {} px", scene.face_count(), SIZE.0, SIZE.1);
+    let (scene, (width, height)) = (Scene::new(model), arguments.size);
+    let camera = Camera::framed(scene.corners(), f64::from(width) / f64::from(height), &Framing::default());
+    println!("{name}, {} faces, {width} × {height} px", scene.face_count());
     (scene, camera)
 }
 
@@ -44,40 +117,29 @@ impl<'a> Case<'a> {
     }
 }
 
-/// Prints minimum and median of interleaved rounds, and their ratios to those of the first case.
-pub fn compare(context: &GpuContext, scene: &Scene, camera: &Camera, cases: &[Case<'_>]) {
-    let renderer = GpuRenderer::new(context);
-    let prepared: Vec<_> = cases
-        .iter()
-        .map(|Case { name, style, samples, change }| {
-            let view = View { samples: *samples, ..View::new(*camera, SIZE) };
-            let mut plan = Plan::new(scene, style, &view, &context.capabilities).expect("the styles are valid");
-            change(&mut plan);
-            let uploaded = renderer.upload(scene, &plan).expect("the scene fits");
-            let targets = renderer.targets(&plan.view).expect("a size for every device");
-            (name, plan, uploaded, targets)
-        })
-        .collect();
-    let mut times = vec![Vec::new(); prepared.len()];
-    for round in 0..=ROUNDS {
-        for (times, (_, plan, uploaded, targets)) in times.iter_mut().zip(&prepared) {
-            let start = Instant::now();
-            renderer.draw(scene, uploaded, plan, targets).expect("the frame is drawn");
-            context.wait().expect("the frame is drawn");
-            // The first round creates the pipelines.
-            if round > 0 {
-                times.push(start.elapsed().as_secs_f64() * 1e3);
-            }
-        }
-    }
-    let summary = |times: &mut Vec<f64>| {
-        times.sort_by(f64::total_cmp);
-        (times[0], times[times.len() / 2])
+/// Prints the least and the median wall time of interleaved rounds, and ratios to the first case within a round: their
+/// median, and their quartiles in brackets. Beside it device time, where the adapter has timestamps.
+pub fn compare(executor: &Executor, scene: &Scene, camera: &Camera, arguments: &Arguments, cases: &[Case<'_>]) {
+    let plan = |Case { style, samples, change, .. }: &Case<'_>| {
+        let view = View { samples: *samples, ..View::new(*camera, arguments.size) };
+        let mut plan = Plan::new(scene, style, &view, &executor.capabilities()).expect("the styles are valid");
+        change(&mut plan);
+        plan
     };
-    let (plain_min, plain_median) = summary(&mut times[0].clone());
-    println!("{:36} {:>9} {:>9}   ratio to {}: min, median", "", "min ms", "median ms", cases[0].name);
-    for (times, (name, ..)) in times.iter_mut().zip(&prepared) {
-        let (min, median) = summary(times);
-        println!("{name:36} {min:9.2} {median:9.2}   {:.3} {:.3}", min / plain_min, median / plain_median);
+    let plans: Vec<Plan> = cases.iter().map(plan).collect();
+    let frames: Vec<_> = plans.iter().map(|plan| FrameCase { scene, plan }).collect();
+    let timed = time_frames(executor, &frames, &arguments.rounds, &|_| {}).expect("the frames are drawn");
+    println!("ms: least, median; ratio to {}: median (quartiles)", cases[0].name);
+    println!("{:36} {:^37}   device time", "", "wall time");
+    let columns = |samples: &Samples, plain: &Samples| {
+        let Spread { median, low, high } = samples.relative_to(plain);
+        format!("{:9.2} {:9.2} {median:6.3} ({low:.3}–{high:.3})", samples.least_ms(), samples.spread().median)
+    };
+    for (timed_case, Case { name, .. }) in timed.iter().zip(cases) {
+        let device = match (&timed_case.device, &timed[0].device) {
+            (Some(device), Some(plain)) => columns(device, plain),
+            _ => "no timestamps".into(),
+        };
+        println!("{name:36} {:37}   {device}", columns(&timed_case.wall, &timed[0].wall));
     }
 }

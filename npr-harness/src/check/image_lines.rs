@@ -6,7 +6,7 @@
 //! depth steps smaller than [`LEAST_STEP`], borders between coplanar regions, and the third pixel of a line where a
 //! surface curves away steeply.
 
-use super::{Checker, Limit, SIZE, WITHIN_PX, darkness, one_px_style};
+use super::{Checker, Limit, SIZE, WITHIN_PX, one_px_style};
 use crate::camera::Camera;
 use crate::capabilities::Capabilities;
 use crate::cpu::{self, CpuOptions};
@@ -17,8 +17,8 @@ use crate::plan::Plan;
 use crate::scene::Scene;
 use crate::style::Lines;
 use crate::truth::lines::{
-    MOST_FACES_INTERSECTED, TrueLines, TrueSegment, accuracy, drawn_centreline, scene_edge, true_intersections,
-    true_lines, true_lines_of_steps,
+    MOST_FACES_INTERSECTED, TrueLines, TrueSegment, accuracy, darkness, drawn_centreline, scene_edge,
+    true_intersections, true_lines, true_lines_of_steps,
 };
 use crate::view::View;
 use glam::UVec2;

@@ -12,9 +12,10 @@ use crate::executor::{Executor, Picture};
 use crate::plan::Plan;
 use crate::scene::Scene;
 use crate::style::Lines;
+use crate::truth::lines::darkness;
+use crate::truth::width::{triangle, width_in_the_middle};
 use crate::view::View;
-use glam::{DVec2, DVec3, Vec3};
-use npr_mesh::Model;
+use glam::{DVec2, DVec3};
 use npr_outline::line_style::LineStyle;
 use npr_outline::normal_format::{NormalFormat, misclassified_share, misclassified_share_of_planes};
 
@@ -148,36 +149,10 @@ fn largest_width_error(
                 .map(|end| npr_outline::segment::outline_screen(clip_from_world * end.extend(1.0), size_px).0);
             for width_px in WIDTHS_PX {
                 let image = render(&scene, width_px, &camera)?;
-                let width = width_in_the_middle(&super::darkness(&image), image.width, ends, f64::from(width_px));
+                let width = width_in_the_middle(&darkness(&image), image.width, ends, f64::from(width_px));
                 worst = worst.max((width / f64::from(width_px) - 1.0).abs());
             }
         }
     }
     Ok(worst)
-}
-
-fn triangle(corners: [Vec3; 3]) -> Model {
-    Model {
-        positions: corners.to_vec(),
-        normals: vec![Vec3::Z; 3],
-        faces: vec![[0, 1, 2]],
-        face_material: vec![0],
-        materials: vec![Default::default()],
-        ..Default::default()
-    }
-}
-
-/// The mean, over the columns of the middle third, of the darkness across a line from end to end, perpendicular to it.
-fn width_in_the_middle(darkness: &[f64], width: u32, [from, to]: [DVec2; 2], asked_px: f64) -> f64 {
-    let along = to - from;
-    let (first, end) = ((from.x + along.x / 3.0) as u32, (to.x - along.x / 3.0) as u32);
-    let reach = 2.0 * asked_px + 4.0;
-    let mut sum = 0.0;
-    for x in first..end {
-        let middle = from.y + along.y * (f64::from(x) + 0.5 - from.x) / along.x;
-        for y in (middle - reach) as u32..=(middle + reach) as u32 {
-            sum += darkness[(y * width + x) as usize];
-        }
-    }
-    sum / f64::from(end - first) * along.x / along.length()
 }

@@ -1,9 +1,10 @@
 //! Selection of the adapter, and the features and limits requested from it.
 
-use super::context::{GpuContext, describe};
+use super::context::{GpuContext, describe, short_name};
 use crate::capabilities::{Capabilities, ExecutorKind};
 use crate::error::HarnessError;
 use crate::picture_limits::MEMORY_BYTES;
+use std::collections::HashSet;
 
 /// An adapter that meets the requirements, not opened yet.
 pub struct GpuAdapter {
@@ -43,23 +44,32 @@ impl GpuAdapter {
     /// [`HarnessError::NoAdapter`] with a list of the adapters considered.
     pub fn find() -> Result<Self, HarnessError> {
         let (mut seen, mut software) = (Vec::new(), None);
-        for backends in [wgpu::Backends::PRIMARY, wgpu::Backends::GL] {
-            let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
-            descriptor.backends &= backends;
-            if descriptor.backends.is_empty() {
-                continue;
-            }
-            let mut adapters = pollster::block_on(wgpu::Instance::new(descriptor).enumerate_adapters(backends));
-            seen.extend(adapters.iter().map(|adapter| describe(&adapter.get_info())));
-            adapters.retain(is_enough);
-            // Among adapters of equal rank, the first that the system lists wins.
-            let Some(adapter) = adapters.into_iter().min_by_key(|adapter| rank(&adapter.get_info())) else { continue };
-            if adapter.get_info().device_type != wgpu::DeviceType::Cpu {
-                return Ok(Self { adapter });
+        for backends in BACKENDS {
+            let Some(adapter) = usable(backends, &mut seen).into_iter().next() else { continue };
+            if !adapter.is_software() {
+                return Ok(adapter);
             }
             software.get_or_insert(adapter);
         }
-        software.map(|adapter| Self { adapter }).ok_or(HarnessError::NoAdapter { seen })
+        software.ok_or(HarnessError::NoAdapter { seen })
+    }
+
+    /// Every adapter that meets the requirements, hardware and software, of all APIs that `WGPU_BACKEND` allows. The
+    /// first is that of [`Self::find`]; of several with the same [`Self::name`], such as two equal graphics cards, only
+    /// the first that the system lists is returned.
+    pub fn all() -> Vec<Self> {
+        let mut adapters: Vec<Self> =
+            BACKENDS.into_iter().flat_map(|backends| usable(backends, &mut Vec::new())).collect();
+        // Stable, so that among hardware and among software the order of APIs and ranks remains.
+        adapters.sort_by_key(Self::is_software);
+        let mut names = HashSet::new();
+        adapters.retain(|adapter| names.insert(adapter.name()));
+        adapters
+    }
+
+    /// A short name for files and charts, such as `vulkan-llvmpipe`, see [`GpuContext::name`].
+    pub fn name(&self) -> String {
+        short_name(&self.adapter.get_info())
     }
 
     /// Whether the adapter runs on the CPU.
@@ -79,6 +89,7 @@ impl GpuAdapter {
     pub fn open(&self, limits: DeviceLimits) -> Result<GpuContext, HarnessError> {
         // Timestamps are for measurements, the other two features for shadow volumes.
         let wanted = wgpu::Features::TIMESTAMP_QUERY
+            | wgpu::Features::TIMESTAMP_QUERY_INSIDE_ENCODERS
             | wgpu::Features::DEPTH32FLOAT_STENCIL8
             | wgpu::Features::DEPTH_CLIP_CONTROL;
         let required_limits = match limits {
@@ -123,6 +134,25 @@ fn capabilities(adapter: &wgpu::Adapter, device: &wgpu::Device) -> Capabilities 
         storage_bytes: limits.max_storage_buffer_binding_size.min(limits.max_buffer_size),
         memory_bytes: MEMORY_BYTES,
     }
+}
+
+/// The APIs in the order in which they are tried.
+const BACKENDS: [wgpu::Backends; 2] = [wgpu::Backends::PRIMARY, wgpu::Backends::GL];
+
+/// The adapters of some APIs that meet the requirements, the preferred one first; `seen` receives a line about each that
+/// there is.
+fn usable(backends: wgpu::Backends, seen: &mut Vec<String>) -> Vec<GpuAdapter> {
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
+    descriptor.backends &= backends;
+    if descriptor.backends.is_empty() {
+        return Vec::new();
+    }
+    let mut adapters = pollster::block_on(wgpu::Instance::new(descriptor).enumerate_adapters(backends));
+    seen.extend(adapters.iter().map(|adapter| describe(&adapter.get_info())));
+    adapters.retain(is_enough);
+    // Stable: among adapters of equal rank, the first that the system lists wins.
+    adapters.sort_by_key(|adapter| rank(&adapter.get_info()));
+    adapters.into_iter().map(|adapter| GpuAdapter { adapter }).collect()
 }
 
 /// Whether an adapter meets the requirements of every picture.

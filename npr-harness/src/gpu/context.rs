@@ -82,6 +82,12 @@ impl GpuContext {
         describe(&self.info)
     }
 
+    /// A short name of API and adapter for files and charts, such as `vulkan-llvmpipe` or `gl-nvidia-h200-pcie-sse2`:
+    /// lower-case ASCII letters, digits and hyphens, without versions of drivers.
+    pub fn name(&self) -> String {
+        short_name(&self.info)
+    }
+
     /// Waits for all submitted work.
     ///
     /// # Errors
@@ -135,7 +141,40 @@ pub(super) fn describe(info: &wgpu::AdapterInfo) -> String {
     format!("{} ({:?}, {})", info.name, info.backend, info.driver_info)
 }
 
+/// The name of [`GpuContext::name`].
+pub(super) fn short_name(info: &wgpu::AdapterInfo) -> String {
+    // Mesa's software rasterisers add the version of LLVM and the width of its vectors.
+    let name = info.name.split(" (LLVM").next().unwrap_or_default();
+    let text = format!("{} {name}", info.backend.to_str()).to_ascii_lowercase();
+    let words = text.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
+    words.collect::<Vec<_>>().join("-")
+}
+
 /// wgpu prints each cause of an error on a line of its own.
 fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn short_names_are_stable_and_fit_into_file_names() {
+        let named = |name: &str, backend| {
+            let info =
+                wgpu::AdapterInfo { name: name.into(), ..wgpu::AdapterInfo::new(wgpu::DeviceType::Other, backend) };
+            short_name(&info)
+        };
+        assert_eq!(named("llvmpipe (LLVM 15.0.6, 256 bits)", wgpu::Backend::Vulkan), "vulkan-llvmpipe");
+        assert_eq!(named("llvmpipe (LLVM 19.1.7, 128 bits)", wgpu::Backend::Gl), "gl-llvmpipe");
+        assert_eq!(named("NVIDIA H200", wgpu::Backend::Vulkan), "vulkan-nvidia-h200");
+        assert_eq!(named("NVIDIA H200/PCIe/SSE2", wgpu::Backend::Gl), "gl-nvidia-h200-pcie-sse2");
+        // Two drivers of one card differ.
+        assert_eq!(
+            named("AMD Radeon RX 6800 (RADV NAVI21)", wgpu::Backend::Vulkan),
+            "vulkan-amd-radeon-rx-6800-radv-navi21"
+        );
+        assert_eq!(named("", wgpu::Backend::Metal), "metal");
+    }
 }

@@ -94,9 +94,9 @@ impl InkTargets {
 }
 
 /// The properties for which ink targets are created.
-type InkKind = (TexelLayout, (u32, u32), bool, bool, Option<std::mem::Discriminant<GBufferTarget>>);
+pub(crate) type InkKind = (TexelLayout, (u32, u32), bool, bool, Option<std::mem::Discriminant<GBufferTarget>>);
 
-fn ink_kind(image: &ImagePlan) -> InkKind {
+pub(crate) fn ink_kind(image: &ImagePlan) -> InkKind {
     let target = image.gbuffer.as_ref().map(|plan| std::mem::discriminant(&plan.gbuffer.target));
     (image.ink.layout, image.size, image.has_dilation(), image.own_surfaces, target)
 }

@@ -13,6 +13,7 @@ use glam::{DMat4, DVec2, DVec3, DVec4};
 use npr_outline::shadow_mask::{MASK_FORMAT, ShadowMaskPass};
 use npr_outline::shadow_pass::{CastersOnDevice, PlacedCasters, ShadowPass};
 use std::cell::{OnceCell, RefCell};
+use std::collections::HashMap;
 use std::ops::Range;
 
 /// `SurfaceShadow` of `shadow.wgsl`.
@@ -107,7 +108,8 @@ pub(crate) struct ShadowPasses {
     volumes: [OnceCell<ShadowPass>; 2],
     mask: OnceCell<ShadowMaskPass>,
     map: OnceCell<MapPass>,
-    map_texture: RefCell<Option<wgpu::Texture>>,
+    /// By side: the textures of shadow maps.
+    maps: RefCell<HashMap<u32, wgpu::Texture>>,
 }
 
 /// The inputs of the shadow passes, for a picture or for the geometry pass of its ink.
@@ -269,11 +271,9 @@ impl ShadowPasses {
 
     fn draw_map(&self, encoder: &mut wgpu::CommandEncoder, frame: &ShadowFrame<'_>, side: u32) -> wgpu::TextureView {
         let device = &frame.context.device;
-        let mut kept = self.map_texture.borrow_mut();
-        if kept.as_ref().is_none_or(|texture| texture.width() != side) {
-            *kept = Some(texture(device, "shadow map", MAP_FORMAT, (side, side)));
-        }
-        let view = kept.as_ref().expect("it was just made").create_view(&Default::default());
+        let mut maps = self.maps.borrow_mut();
+        let map = maps.entry(side).or_insert_with(|| texture(device, "shadow map", MAP_FORMAT, (side, side)));
+        let view = map.create_view(&Default::default());
         let pass = self.map.get_or_init(|| MapPass::new(device));
         let clip_from_world = map_camera(frame.scene, frame.plan.light).clip_from_world(1.0);
         pass.record(encoder, frame, clip_from_world, &view);

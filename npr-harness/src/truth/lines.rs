@@ -27,6 +27,7 @@ mod intersections;
 pub use intersections::{MOST_FACES_INTERSECTED, true_intersections};
 
 use crate::camera::Camera;
+use crate::picture::Image;
 use crate::rays::Hit;
 use crate::scene::Scene;
 use glam::{DVec2, DVec3, DVec4};
@@ -421,6 +422,11 @@ impl<'a> Visibility<'a> {
                 own != NO_FACE && self.same_polygon(own, face) && self.folded_faces.binary_search(&face).is_err()
             })
     }
+}
+
+/// The darkness of each pixel of black lines on white, in rows from the top: 0 paper, 1 ink.
+pub fn darkness(image: &Image) -> Vec<f64> {
+    image.rgba8.chunks_exact(4).map(|p| 1.0 - f64::from(p[1]) / 255.0).collect()
 }
 
 /// The centreline of antialiased lines 1 px wide: the centres of the pixels that are at least half dark.

@@ -1,0 +1,109 @@
+//! Thick lines: dilation by a disc, and by repeated steps of small kernels, against the Euclidean disc.
+//!
+//! The truth is made from the picture of the same lines undilated: a pixel is ink if a line pixel lies within the radius.
+
+use super::frames::{Candidate, Drawn, part_of, rows};
+use super::{Chart, Lab, Row, on_white};
+use crate::error::HarnessError;
+use crate::image_lines::ImageInk;
+use crate::image_lines::gbuffer::style::{GBuffer, GBufferTarget, InkStep, MOST_STEPS, SeparateTargets, StepKind};
+use crate::picture::Image;
+use crate::style::Lines;
+use crate::truth::lines::darkness;
+use crate::variant::Setup;
+use npr_imagespace::filter::separate::SeparateFilter;
+use npr_imagespace::format::depth::DepthFormat;
+use npr_imagespace::morphology::disc::Disc;
+use npr_imagespace::morphology::{Kernel, Operation};
+
+pub(super) const CHART: Chart = Chart {
+    name: "dilation",
+    title: "Dilation",
+    error: SHARE,
+    about: "Lines widened by 1, 4 and 16 px: pixels that differ from the Euclidean disc, as a share of the disc's ink.",
+    choices: &["Kernel::Cross", "Kernel::Square", "Kernel::Diagonal", "Operation::Dilate"],
+    run,
+};
+
+const SHARE: &str = "wrong pixels, share of the ink";
+const RADII_PX: [u32; 3] = [1, 4, 16];
+
+fn run(lab: &Lab<'_>) -> Result<Vec<Row>, HarnessError> {
+    let mut candidates = Vec::new();
+    for radius_px in RADII_PX {
+        let disc = |antialias| ink(Some(Disc { radius_px: radius_px as f32, antialias }), None);
+        let steps =
+            |kernel| ink(None, Some(InkStep { kind: StepKind::Hard(Operation::Dilate, kernel), times: radius_px }));
+        candidates.extend(
+            [
+                (format!("disc of {radius_px} px"), disc(false)),
+                (format!("antialiased disc of {radius_px} px"), disc(true)),
+                (format!("cross, {radius_px} times"), steps(Kernel::Cross)),
+                (format!("square, {radius_px} times"), steps(Kernel::Square)),
+                (format!("diagonals, {radius_px} times"), steps(Kernel::Diagonal)),
+            ]
+            .map(|(name, setup)| (radius_px, Candidate { name, historical: false, setup })),
+        );
+    }
+    let (radii, candidates): (Vec<u32>, Vec<Candidate>) = candidates.into_iter().unzip();
+    let thin = Candidate { name: String::new(), historical: false, setup: ink(None, None) };
+    let mut all = Vec::new();
+    for (number, subject) in lab.subjects.iter().enumerate() {
+        let mut judge = |drawn: &Drawn<'_>| {
+            let at = candidates.iter().position(|candidate| candidate.name == drawn.candidate.name);
+            let Some(radius_px) = at.map(|at| radii[at]) else { return Ok(None) };
+            let undilated = Drawn { candidate: &thin, ..*drawn }.image(drawn.view)?;
+            Ok(Some(errors(&drawn.image(drawn.view)?, &undilated, radius_px)))
+        };
+        let progress = part_of(lab, number, lab.subjects.len());
+        all.extend(rows(CHART.name, lab, subject, &candidates, &mut judge, &progress)?);
+    }
+    Ok(all)
+}
+
+/// Lines from separate targets, dilated.
+fn ink(dilation: Option<Disc>, step: Option<InkStep>) -> Setup {
+    let filter = SeparateFilter::default();
+    let targets = SeparateTargets { filter, normals: None, depth: DepthFormat::Float, region_sums: false };
+    let mut steps = [None; MOST_STEPS];
+    steps[0] = step;
+    let gbuffer = Some(GBuffer { target: GBufferTarget::Separate(targets), steps, ..GBuffer::default() });
+    Setup { style: on_white(Lines::image(ImageInk { gbuffer, dilation, ..ImageInk::default() })), samples: 1 }
+}
+
+fn errors(image: &Image, undilated: &Image, radius_px: u32) -> Vec<(String, f64)> {
+    let truth = dilated(undilated, radius_px);
+    let (mut wrong, mut ink, mut coverage) = (0u32, 0u32, 0.0);
+    for (dark, &is_ink) in darkness(image).into_iter().zip(&truth) {
+        wrong += u32::from((dark >= 0.999) != is_ink);
+        ink += u32::from(is_ink);
+        coverage += (dark - f64::from(u8::from(is_ink))).abs();
+    }
+    let of_ink = f64::from(ink.max(1));
+    [(SHARE, f64::from(wrong) / of_ink), ("difference in coverage, share of the ink", coverage / of_ink)]
+        .map(|(name, value)| (name.to_owned(), value))
+        .into()
+}
+
+/// Whether a line pixel lies within a radius of each pixel, by its definition.
+fn dilated(image: &Image, radius_px: u32) -> Vec<bool> {
+    let (width, height) = (image.width as i32, image.height as i32);
+    let radius = radius_px as i32;
+    let mut ink = vec![false; (width * height) as usize];
+    // Per row of the disc: half its width.
+    let half = |dy: i32| f64::from(radius * radius - dy * dy).sqrt() as i32;
+    for (at, dark) in (0i32..).zip(darkness(image)) {
+        if dark < 0.5 {
+            continue;
+        }
+        let (x, y) = (at % width, at / width);
+        for dy in -radius..=radius {
+            if (0..height).contains(&(y + dy)) {
+                let (from, to) = ((x - half(dy)).max(0), (x + half(dy)).min(width - 1));
+                let row = (y + dy) * width;
+                ink[(row + from) as usize..=(row + to) as usize].fill(true);
+            }
+        }
+    }
+    ink
+}
