@@ -501,6 +501,37 @@ pub enum HarnessError {
         /// The file.
         path: std::path::PathBuf,
     },
+    /// A table that could not be read.
+    #[error("{}:{line}: column {column:?}: {message}", path.display())]
+    Csv {
+        /// The file.
+        path: std::path::PathBuf,
+        /// The line, from 1.
+        line: u64,
+        /// The name of the column; empty if the whole line is meant.
+        column: String,
+        /// What is wrong.
+        message: String,
+    },
+    /// A diagram that could not be made a picture.
+    #[cfg(feature = "laboratory")]
+    #[error(transparent)]
+    Plot(#[from] crate::plot::PngError),
+    /// A result of the report that cannot be written as TOML.
+    #[error("a result could not be kept: {0}")]
+    StageWrite(toml::ser::Error),
+    /// A sweep or chart that does not exist.
+    #[error("no {kind} is called {name:?} ({}there are: {known})", did_you_mean(nearest))]
+    UnknownMeasurement {
+        /// "sweep" or "chart".
+        kind: &'static str,
+        /// The value requested.
+        name: String,
+        /// One with a similar name, if there is one.
+        nearest: Option<String>,
+        /// The existing names.
+        known: String,
+    },
     /// Data that could not be written as JSON.
     #[error("could not write JSON: {0}")]
     Json(#[from] serde_json::Error),

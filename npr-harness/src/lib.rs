@@ -70,6 +70,8 @@ pub mod plan;
 pub mod plot;
 pub mod printed_fins;
 pub mod rays;
+#[cfg(feature = "laboratory")]
+pub mod report;
 pub mod scene;
 mod schema;
 #[cfg_attr(not(feature = "gpu"), allow(dead_code, unused_imports, reason = "what shades give to a device"))]

@@ -11,6 +11,7 @@ mod scale;
 mod scatter;
 
 pub use curves::{Curve, Curves, curves};
+pub use scale::number;
 pub use scatter::{Point, Scatter, mark_positions, scatter};
 
 use resvg::tiny_skia::{Pixmap, Transform};
