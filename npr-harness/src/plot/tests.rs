@@ -79,7 +79,7 @@ fn curves_example() -> Curves {
 
 /// The boxes of all texts of an SVG, and its size.
 fn texts(svg: &str) -> (Vec<(String, Box2)>, (f64, f64)) {
-    fn walk(group: &resvg::usvg::Group, found: &mut Vec<(String, Box2)>) {
+    fn walk(group: &usvg::Group, found: &mut Vec<(String, Box2)>) {
         for node in group.children() {
             match node {
                 Node::Group(group) => walk(group, found),
