@@ -3,7 +3,8 @@ use npr_harness::executor::*;
 use npr_harness::measure::*;
 fn main() {
     let size = (640, 360);
-    let ex = Executor::all().unwrap();
+    let mut ex = Executor::all().unwrap();
+    ex.rotate_left(1);
     let quick = std::env::args().nth(2).is_some();
     let size = if quick { (320, 180) } else { size };
     let subjects = built_in_subjects(size, if quick { 1 } else { 3 });
@@ -14,11 +15,18 @@ fn main() {
                 continue;
             }
         }
-        let lab = Lab { executors: &ex, subjects: &subjects, size, rounds, progress: &|_| {} };
+        let lab = Lab {
+            executors: &ex,
+            skipped: &|s| println!("skip {s}"),
+            subjects: &subjects,
+            size,
+            rounds,
+            progress: &|_| {},
+        };
         let t = std::time::Instant::now();
         match (c.run)(&lab) {
             Ok(rows) => {
-                let table = Table { machine: vec![], rows };
+                let table = Table { machine: vec![], skipped: vec![], rows };
                 let ps = table.points(c.name);
                 let f = front::front(&ps);
                 println!("{} {} s", c.name, t.elapsed().as_secs_f64());

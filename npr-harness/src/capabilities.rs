@@ -42,6 +42,8 @@ pub struct Capabilities {
     /// Whether depths are stored as computed. OpenGL maps them from 0..=1 to −1..=1 and back, which rounds them to
     /// multiples of 2⁻²⁴ at any distance.
     pub exact_depth: bool,
+    /// Whether four 32-bit floats can be rendered to, which a style's own G-buffer of separate targets needs.
+    pub float_targets: bool,
     /// The longest side of a texture, px.
     pub texture_px: u32,
     /// The largest storage buffer, bytes.
@@ -61,6 +63,7 @@ impl Capabilities {
         unclipped_depth: true,
         float_stencil: true,
         exact_depth: true,
+        float_targets: true,
         texture_px: u32::MAX,
         storage_bytes: u64::MAX,
         memory_bytes: MEMORY_BYTES,

@@ -93,6 +93,8 @@ pub struct Lab<'a> {
     pub size: (u32, u32),
     /// How often.
     pub rounds: Rounds,
+    /// Told of each variant that an executor cannot make, and why.
+    pub skipped: &'a dyn Fn(&str),
     /// Told the share that is done, 0..=1.
     pub progress: &'a (dyn Fn(f64) + Sync),
 }

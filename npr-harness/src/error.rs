@@ -249,6 +249,9 @@ pub enum HarnessError {
         /// The limit.
         limit: usize,
     },
+    /// A G-buffer of separate targets on a device that cannot render to 32-bit floats.
+    #[error("this device cannot render to the 32-bit floats of a G-buffer of separate targets (the CPU can)")]
+    FloatTargets,
     /// Shadow volumes in a parallel view, which has a far plane, on a device that cannot disable depth clipping.
     #[error("this device cannot draw shadow volumes in a parallel view (a shadow map, or the CPU, can)")]
     ParallelVolumes,
@@ -558,6 +561,7 @@ impl HarnessError {
             | Self::RampTooLarge { .. }
             | Self::BufferTooLarge { .. }
             | Self::TooManyDraws { .. }
+            | Self::FloatTargets
             | Self::ParallelVolumes => true,
             Self::Outline(error) => matches!(error, OutlineError::TooManyEdges { .. }),
             #[cfg(feature = "gpu")]

@@ -14,6 +14,7 @@ use crate::error::HarnessError;
 use crate::facets::{Facet, facets};
 use crate::hatch::{HatchMapping, HatchPlan};
 use crate::hull_lines::HullPlan;
+use crate::image_lines::gbuffer::style::GBufferTarget;
 use crate::image_lines::{ImagePlan, InkScale};
 use crate::lights::{LightPair, casting_light, light_pairs, lights_in_world};
 use crate::picture_limits::check_picture;
@@ -115,7 +116,7 @@ impl Plan {
     /// Errors of the style ([`Style::validate`]), of its lines and of its tonal art map;
     /// [`HarnessError::ClippedEdges`], [`HarnessError::ShadowMapLight`], [`HarnessError::ObjectLights`]; [`HarnessError::Size`] and
     /// [`HarnessError::PictureMemory`]; and if the adapter lacks a capability: [`HarnessError::TextureTooLarge`],
-    /// [`HarnessError::ParallelVolumes`].
+    /// [`HarnessError::ParallelVolumes`], [`HarnessError::FloatTargets`].
     pub fn new(scene: &Scene, style: &Style, view: &View, capabilities: &Capabilities) -> Result<Self, HarnessError> {
         style.validate()?;
         let view = View { samples: view.samples.max(1), ..*view };
@@ -208,6 +209,10 @@ impl Plan {
         }
         if let Some(image) = &self.image {
             capabilities.check_size("the ink", image.size)?;
+            let target = image.gbuffer.as_ref().map(|plan| &plan.gbuffer.target);
+            if matches!(target, Some(GBufferTarget::Separate(_))) && !capabilities.float_targets {
+                return Err(HarnessError::FloatTargets);
+            }
         }
         match self.shadow.as_ref().map(|shadow| &shadow.technique) {
             Some(ShadowTechnique::Volumes { float_depth, .. }) => {

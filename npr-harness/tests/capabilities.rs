@@ -158,6 +158,7 @@ fn lines_are_found_on_the_cpu_for_the_reason_that_is_there() {
         unclipped_depth: true,
         float_stencil: true,
         exact_depth: true,
+        float_targets: true,
         texture_px: 2048,
         storage_bytes: 1 << 27,
         memory_bytes: 1 << 31,

@@ -6,13 +6,11 @@ use super::frames::{Candidate, Drawn, part_of, rows};
 use super::{Chart, Lab, Row, on_white};
 use crate::error::HarnessError;
 use crate::image_lines::ImageInk;
-use crate::image_lines::gbuffer::style::{GBuffer, GBufferTarget, InkStep, MOST_STEPS, SeparateTargets, StepKind};
+use crate::image_lines::gbuffer::style::{GBuffer, InkStep, MOST_STEPS, StepKind};
 use crate::picture::Image;
 use crate::style::Lines;
 use crate::truth::lines::darkness;
 use crate::variant::Setup;
-use npr_imagespace::filter::separate::SeparateFilter;
-use npr_imagespace::format::depth::DepthFormat;
 use npr_imagespace::morphology::disc::Disc;
 use npr_imagespace::morphology::{Kernel, Operation};
 
@@ -21,7 +19,7 @@ pub(super) const CHART: Chart = Chart {
     title: "Dilation",
     error: SHARE,
     about: "Lines widened by 1, 4 and 16 px: pixels that differ from the Euclidean disc, as a share of the disc's ink.",
-    choices: &["Kernel::Cross", "Kernel::Square", "Kernel::Diagonal", "Operation::Dilate"],
+    choices: &["Kernel::Cross", "Kernel::Square", "Kernel::Diagonal"],
     run,
 };
 
@@ -61,13 +59,11 @@ fn run(lab: &Lab<'_>) -> Result<Vec<Row>, HarnessError> {
     Ok(all)
 }
 
-/// Lines from separate targets, dilated.
+/// Lines from the target of 2002, which every device can render to, dilated.
 fn ink(dilation: Option<Disc>, step: Option<InkStep>) -> Setup {
-    let filter = SeparateFilter::default();
-    let targets = SeparateTargets { filter, normals: None, depth: DepthFormat::Float, region_sums: false };
     let mut steps = [None; MOST_STEPS];
     steps[0] = step;
-    let gbuffer = Some(GBuffer { target: GBufferTarget::Separate(targets), steps, ..GBuffer::default() });
+    let gbuffer = Some(GBuffer { steps, ..GBuffer::default() });
     Setup { style: on_white(Lines::image(ImageInk { gbuffer, dilation, ..ImageInk::default() })), samples: 1 }
 }
 

@@ -3,7 +3,8 @@
 //! The gap is the smallest by which two depths must differ so that they have different codes wherever they lie, over the
 //! subject's range of depths, as a share of the range: found by bisection of the encoder, not from its formula. The
 //! angle is the largest between a direction and what the format makes of it, over directions evenly spread. Times are
-//! those of frames with lines from a G-buffer of the format.
+//! those of frames with lines from a G-buffer of the format; devices keep the codes in targets of 32-bit floats whatever
+//! the format, so that times differ by the work of encoding alone, and bytes are those that the format itself takes.
 
 use super::frames::{Drawn, candidates, part_of, rows};
 use super::lines::asked;
@@ -47,7 +48,13 @@ fn run(lab: &Lab<'_>) -> Result<Vec<Row>, HarnessError> {
             Ok(Some(errors.map(|(name, value)| (name.to_owned(), value)).into()))
         };
         let progress = part_of(lab, number, lab.subjects.len());
-        all.extend(rows(CHART.name, lab, subject, &candidates, &mut judge, &progress)?);
+        let mut of_subject = rows(CHART.name, lab, subject, &candidates, &mut judge, &progress)?;
+        for row in &mut of_subject {
+            let of = candidates.iter().find(|candidate| candidate.name == row.variant);
+            let formats = of.and_then(|candidate| formats(&candidate.setup.style)).expect("a row is of a candidate");
+            row.bytes = formats.texel_bytes() * u64::from(lab.size.0) * u64::from(lab.size.1);
+        }
+        all.extend(of_subject);
     }
     Ok(all)
 }
@@ -58,6 +65,11 @@ struct Formats {
 }
 
 impl Formats {
+    fn texel_bytes(&self) -> u64 {
+        let normal_bits = self.normals.map_or(96, NormalFormat::bits);
+        u64::from(normal_bits.div_ceil(8)) + self.depth.bytes() as u64
+    }
+
     /// Whether at most one of the two is other than floats of 32 bits.
     fn is_compared(&self) -> bool {
         self.normals.is_none() || self.depth == DepthFormat::Float

@@ -74,9 +74,18 @@ pub(super) fn rows(
     for (number, executor) in lab.executors.iter().enumerate() {
         for (index, candidate) in candidates.iter().enumerate() {
             let drawn = Drawn { executor, candidate, view, scene };
-            if let Some(errors) = judge(&drawn)? {
-                plans.push((executor, plan(executor, &candidate.setup)?));
-                judged.push((number, candidate, errors));
+            let found =
+                plan(executor, &candidate.setup).and_then(|plan| Ok(judge(&drawn)?.map(|errors| (plan, errors))));
+            match found {
+                Ok(Some((plan, errors))) => {
+                    plans.push((executor, plan));
+                    judged.push((number, candidate, errors));
+                }
+                Ok(None) => {}
+                Err(error) if error.is_device_limit() => {
+                    (lab.skipped)(&format!("{chart}: {} on {}: {error}", candidate.name, executor.name()));
+                }
+                Err(error) => return Err(error),
             }
             progress(0.5 * (number * candidates.len() + index + 1) as f64 / total);
         }

@@ -54,9 +54,10 @@ fn run(lab: &Lab<'_>) -> Result<Vec<Row>, HarnessError> {
             let truth = truth(subject, &base, lab.size)?;
             let mut of_shade: Vec<Candidate> = Vec::new();
             for candidate in candidates(Part::Light, &base) {
-                for samples in candidates_of_samples(&candidate) {
-                    of_shade.push(Candidate { name: format!("{name} {}", samples.name), ..samples });
-                }
+                // The other ways would not be more accurate with more samples.
+                let is_sampled = [NormalUse::PerPixel, NormalUse::PerVertex].contains(&candidate.setup.style.normals);
+                let all = if is_sampled { candidates_of_samples(&candidate) } else { vec![candidate] };
+                of_shade.extend(all.into_iter().map(|c| Candidate { name: format!("{name}, {}", c.name), ..c }));
             }
             let mut judge = |drawn: &Drawn<'_>| errors(&drawn.image(drawn.view)?, &truth).map(Some);
             let progress = part_of(lab, number * shades().len() + which, lab.subjects.len() * shades().len());

@@ -44,6 +44,8 @@ pub struct Time {
 pub struct Table {
     /// The machine and the adapters, a line each.
     pub machine: Vec<String>,
+    /// The variants that an executor could not make, and why.
+    pub skipped: Vec<String>,
     /// The rows.
     pub rows: Vec<Row>,
 }

@@ -130,6 +130,10 @@ fn capabilities(adapter: &wgpu::Adapter, device: &wgpu::Device) -> Capabilities 
         unclipped_depth: features.contains(wgpu::Features::DEPTH_CLIP_CONTROL),
         float_stencil: features.contains(wgpu::Features::DEPTH32FLOAT_STENCIL8),
         exact_depth: info.backend != wgpu::Backend::Gl,
+        float_targets: adapter
+            .get_texture_format_features(wgpu::TextureFormat::Rgba32Float)
+            .allowed_usages
+            .contains(wgpu::TextureUsages::RENDER_ATTACHMENT),
         texture_px: limits.max_texture_dimension_2d,
         storage_bytes: limits.max_storage_buffer_binding_size.min(limits.max_buffer_size),
         memory_bytes: MEMORY_BYTES,

@@ -11,7 +11,7 @@ use npr_toon::normal::NormalUse;
 pub(crate) const VARIANTS: &[Variant] = &[
     Variant {
         name: "six tones",
-        choices: &["HatchEncoding::SixTones", "TamChannels::Tones", "NormalUse::PerPixel"],
+        choices: &["HatchEncoding::SixTones"],
         historical: false,
         apply: |setup| strokes(setup, HatchEncoding::SixTones, NormalUse::PerPixel),
     },

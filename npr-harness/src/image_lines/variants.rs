@@ -109,11 +109,9 @@ const fn historical(
 
 /// Ways to draw lines.
 pub(crate) const VARIANTS: &[Variant] = &[
-    way(
-        "image, 64 bits",
-        &["TexelLayout::Bits64", "InkScale::One", "Regions::Patch", "Taps::Diagonal", "ShadowTest::NoStates"],
-        |setup| fused(setup, FusedFilter::default()),
-    ),
+    way("image, 64 bits", &["TexelLayout::Bits64", "InkScale::One", "Regions::Patch", "Taps::Diagonal"], |setup| {
+        fused(setup, FusedFilter::default())
+    }),
     way("image, 32 bits", &["TexelLayout::Bits32"], |setup| {
         found(setup, ImageInk { layout: TexelLayout::Bits32, ..ImageInk::default() })
     }),
@@ -161,11 +159,9 @@ pub(crate) const VARIANTS: &[Variant] = &[
     }),
     historical("inker, instruction added", &["InkerForm::Corrected"], |setup| inker(setup, InkerForm::Corrected)),
     way("inker, two thresholds", &["InkerForm::Explicit"], |setup| inker(setup, InkerForm::Explicit)),
-    way(
-        "separate, floats",
-        &["GBufferTarget::Separate", "DepthFormat::Float", "SeparateDepthTest::Bend", "DepthSource::Linear"],
-        |setup| separate(setup, None, DepthFormat::Float),
-    ),
+    way("separate, floats", &["GBufferTarget::Separate", "DepthFormat::Float", "SeparateDepthTest::Bend"], |setup| {
+        separate(setup, None, DepthFormat::Float)
+    }),
     way("separate, normals of 3 bytes", &["npr_imagespace::NormalFormat::Biased8"], |setup| {
         separate(setup, Some(NormalFormat::Biased8), DepthFormat::Float)
     }),
