@@ -100,7 +100,9 @@ pub fn curves(diagram: &Curves) -> String {
                 }
             }
         }
-        // The values of the limits, at the upper ends of their lines.
+        // The values of the limits, at the upper ends of their lines. The rightmost comes first and is put to the right,
+        // so that of two near each other each is on its own side.
+        labels.sort_by(|a, b| b.1.total_cmp(&a.1));
         let wanted: Vec<_> = labels
             .iter()
             .map(|(text, x, _)| Label {

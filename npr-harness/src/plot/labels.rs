@@ -68,7 +68,7 @@ const DIRECTIONS: usize = 16;
 /// The cost of a direction other than to the right, of covering a segment, and of a leader that crosses a mark or a
 /// label, in px of distance.
 const AWAY_COST: f64 = 2.0;
-const SEGMENT_COST: f64 = 14.0;
+const SEGMENT_COST: f64 = 30.0;
 const CROSSING_COST: f64 = 40.0;
 
 /// Places labels within `bounds`: none overlaps another or a mark. `None` for a label that there is no room for.

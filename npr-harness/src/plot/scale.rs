@@ -143,18 +143,7 @@ pub fn number(value: f64) -> String {
     }
     let power = (magnitude.log10() + 1e-9).floor() as i32;
     let factor = format!("{:.2}", value / 10f64.powi(power));
-    let factor = factor.trim_end_matches('0').trim_end_matches('.').replace('-', "−");
-    let power: String = power.to_string().chars().map(superscript).collect();
-    match factor.as_str() {
-        "1" => format!("10{power}"),
-        "−1" => format!("−10{power}"),
-        _ => format!("{factor}×10{power}"),
-    }
-}
-
-fn superscript(c: char) -> char {
-    match c {
-        '-' => '⁻',
-        _ => c.to_digit(10).map_or(c, |digit| ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'][digit as usize]),
-    }
+    // The font has no superscript minus.
+    let factor = factor.trim_end_matches('0').trim_end_matches('.');
+    format!("{factor}e{power}").replace('-', "−")
 }

@@ -104,7 +104,10 @@ fn assert_legible(svg: &str, what: &str) {
     let (texts, (width, height)) = texts(svg);
     assert!(texts.len() > 5, "{what}: {} texts", texts.len());
     let picture = Box2 { left: 0.0, top: 0.0, right: width, bottom: height };
+    let font = skrifa::FontRef::new(notosans::REGULAR_TTF).expect("a font");
     for (n, (text, area)) in texts.iter().enumerate() {
+        let missing = text.chars().find(|&c| skrifa::MetadataProvider::charmap(&font).map(c).is_none());
+        assert_eq!(missing, None, "{what}: the font has no such character, of {text:?}");
         assert!(picture.contains(area), "{what}: {text:?} leaves the picture: {area:?}");
         for (other, other_area) in &texts[..n] {
             // The height of a box includes the font's ascent and descent, which no letter fills.
@@ -236,9 +239,9 @@ fn numbers_are_short() {
         (0.05, "0.05"),
         (-2.5, "−2.5"),
         (1234.0, "1234"),
-        (1e-4, "10⁻⁴"),
-        (2.5e-7, "2.5×10⁻⁷"),
-        (1e5, "10⁵"),
+        (1e-4, "1e−4"),
+        (2.5e-7, "2.5e−7"),
+        (1e5, "1e5"),
         (0.1 + 0.2, "0.3"),
     ];
     for (value, text) in cases {
