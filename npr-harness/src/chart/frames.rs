@@ -1,14 +1,14 @@
 //! Rows of a chart from frames: each variant drawn, judged and timed on each executor.
 
 use super::table::{Row, Time};
-use super::{Lab, Subject, plain};
+use super::{Lab, Subject};
 use crate::error::HarnessError;
 use crate::executor::{Executor, Picture};
 use crate::measure::{Case, Timed, time};
 use crate::picture::Image;
 use crate::plan::Plan;
 use crate::scene::Scene;
-use crate::variant::{Part, Setup};
+use crate::variant::{Part, Setup, plain};
 use crate::view::View;
 
 /// A variant of a chart.

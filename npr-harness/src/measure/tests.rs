@@ -3,8 +3,8 @@ use crate::camera::{Camera, Framing};
 use crate::capabilities::Capabilities;
 use crate::style::style;
 use crate::view::View;
-use approx::assert_relative_eq;
 use std::cell::{Cell, RefCell};
+use std::convert::Infallible;
 
 fn samples(times_ms: impl IntoIterator<Item = f64>) -> Samples {
     Samples::new(times_ms.into_iter().collect())
