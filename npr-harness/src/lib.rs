@@ -54,6 +54,7 @@ pub mod executor;
 pub mod facets;
 pub mod figures;
 pub mod gallery;
+mod geometry;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod hatch;

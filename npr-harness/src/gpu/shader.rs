@@ -7,6 +7,7 @@ use crate::hatch::gpu::{HATCH_ENTRY_WGSL, HATCH_FACETS_WGSL, HATCH_WGSL, HatchVa
 use crate::plan::{PaintPlan, Plan};
 use crate::shade::{Shade, ShadeOnDevice, ShadeView, flag};
 use crate::shadow::gpu::SHADOW_WGSL;
+use npr_outline::filled_buffer::filled_buffer;
 use npr_toon::normal::NormalUse;
 use npr_toon::painter::PainterUniform;
 use npr_toon::source::{Light, LightKind};
@@ -114,8 +115,7 @@ impl LightOnDevice {
         let at_vertices = paint.is_some_and(|paint| paint.normals == NormalUse::PerVertex);
         // Unchecked, because two lights that cancel out have no direction, which is not an error here.
         let placed = |lights: &[Light]| PainterUniform::unchecked(lights, shade.light_scale);
-        let stride = (size_of::<PainterUniform>() as u32)
-            .next_multiple_of(context.device.limits().min_uniform_buffer_offset_alignment);
+        let stride = (size_of::<PainterUniform>() as u32).next_multiple_of(context.capabilities.uniform_alignment);
         let pairs = paint.map_or(&[][..], |paint| &paint.light_pairs);
         let mut placed_lights = bytemuck::bytes_of(&placed(lights)).to_vec();
         for (number, pair) in pairs.iter().enumerate() {
@@ -131,7 +131,7 @@ impl LightOnDevice {
                 at_vertices,
                 lights_faces,
             },
-            lights: uniform(&placed_lights),
+            lights: filled_buffer(&context.device, "lights", &placed_lights, wgpu::BufferUsages::UNIFORM),
             stride,
             shade: (!shade.uniform.is_empty()).then(|| uniform(&shade.uniform)),
             image,
