@@ -178,6 +178,11 @@ pub(crate) fn blended_faces(scene: &Scene) -> Vec<[u32; 2]> {
     (0u32..).zip(scene.placed_objects()).flat_map(of_object).filter(is_blended).collect()
 }
 
+/// The size of an index, bytes: 2 if all vertices have numbers of 16 bits.
+pub(crate) const fn index_bytes(vertices: usize) -> u64 {
+    if vertices <= 1 << 16 { 2 } else { 4 }
+}
+
 /// The number of indices of all unblended faces.
 pub(crate) fn index_count(scene: &Scene, splits: &[Option<Split>], duplicates: &[usize]) -> u64 {
     let mut indices = Vec::new();

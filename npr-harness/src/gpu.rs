@@ -8,7 +8,7 @@ pub(crate) mod context;
 pub(crate) mod instances;
 mod materials;
 mod resolve;
-mod scene;
+pub(crate) mod scene;
 pub(crate) mod shader;
 mod surface;
 pub(crate) mod targets;
@@ -233,6 +233,7 @@ impl<'a> GpuRenderer<'a> {
             casting: frame.uploaded.casting.as_ref(),
             positions: &frame.uploaded.positions,
             indices: frame.uploaded.indices.as_ref(),
+            index_format: frame.uploaded.index_format,
             instances: &frame.uploaded.instances.borrow(),
             solid: &frame.uploaded.solid,
         };

@@ -4,7 +4,7 @@ use super::context::GpuContext;
 use super::instances::Instances;
 use super::materials::{Materials, buffer};
 use crate::error::HarnessError;
-use crate::geometry::{Batch, Split, Streams, add_batches, blended_faces, sources, splits};
+use crate::geometry::{Batch, Split, Streams, add_batches, blended_faces, index_bytes, sources, splits};
 use crate::hatch::HatchVertex;
 use crate::hatch::gpu::HatchTextures;
 use crate::plan::{PaintPlan, Plan, corner_texture_size};
@@ -37,6 +37,8 @@ pub struct GpuScene {
     pub(super) streams: VertexStreams,
     /// The indices of unblended faces, sorted by mesh and material.
     pub(crate) indices: Option<wgpu::Buffer>,
+    /// The format of all indices.
+    pub(crate) index_format: IndexFormat,
     /// Per mesh: its batches.
     pub(super) batches: Vec<Vec<Batch>>,
     /// Per mesh: its range in the index buffer.
@@ -68,6 +70,29 @@ pub struct GpuScene {
     pub(super) hatch: Option<HatchTextures>,
 }
 
+/// The format of indices.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct IndexFormat {
+    /// Whether they have 16 bits, not 32.
+    is_short: bool,
+}
+
+impl IndexFormat {
+    /// Indices in this format.
+    pub(crate) fn bytes(self, indices: &[u32]) -> Vec<u8> {
+        if self.is_short {
+            indices.iter().flat_map(|&index| (index as u16).to_ne_bytes()).collect()
+        } else {
+            bytemuck::cast_slice(indices).to_vec()
+        }
+    }
+
+    /// The format of wgpu.
+    pub(crate) fn on_device(self) -> wgpu::IndexFormat {
+        if self.is_short { wgpu::IndexFormat::Uint16 } else { wgpu::IndexFormat::Uint32 }
+    }
+}
+
 /// The attributes of vertices that a plan reads, a buffer each.
 pub(super) struct VertexStreams {
     /// Which there are.
@@ -93,6 +118,7 @@ impl GpuScene {
             first_vertices.push(positions.len() as u32);
             positions.extend(sources(model, split).map(|i| model.positions[i]));
         }
+        let index_format = IndexFormat { is_short: index_bytes(positions.len()) == 2 };
         let vertex = wgpu::BufferUsages::VERTEX;
         let positions = buffer("positions", bytemuck::cast_slice(&positions), vertex)?;
         let streams = VertexStreams {
@@ -132,12 +158,13 @@ impl GpuScene {
         let indices = if indices.is_empty() {
             None
         } else {
-            Some(buffer("faces", bytemuck::cast_slice(&indices), wgpu::BufferUsages::INDEX)?)
+            Some(buffer("faces", &index_format.bytes(&indices), wgpu::BufferUsages::INDEX)?)
         };
         Ok(Self {
             positions,
             streams,
             indices,
+            index_format,
             batches,
             solid,
             first_vertices,

@@ -176,16 +176,16 @@ fn upload_image(
     let texture = context.device.create_texture_with_data(
         &context.queue,
         // Display-referred, like all colours of a style.
-        &image_texture(width, height),
+        &image_texture("image of the shade", width, height),
         wgpu::util::TextureDataOrder::LayerMajor,
         bytemuck::cast_slice(texels),
     );
     Ok(texture.create_view(&Default::default()))
 }
 
-fn image_texture(width: u32, height: u32) -> wgpu::TextureDescriptor<'static> {
+fn image_texture(label: &'static str, width: u32, height: u32) -> wgpu::TextureDescriptor<'static> {
     wgpu::TextureDescriptor {
-        label: Some("image of the shade"),
+        label: Some(label),
         size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
         mip_level_count: 1,
         sample_count: 1,
@@ -206,7 +206,7 @@ impl Blank {
     pub(super) fn new(device: &wgpu::Device) -> Self {
         Self {
             uniform: uniform_buffer(device, &[0; 16]),
-            image: device.create_texture(&image_texture(1, 1)).create_view(&Default::default()),
+            image: device.create_texture(&image_texture("no image", 1, 1)).create_view(&Default::default()),
         }
     }
 }

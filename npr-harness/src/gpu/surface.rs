@@ -387,7 +387,8 @@ impl SurfacePass {
         }
         let blended_indices = (!blended.is_empty()).then(|| {
             let faces: Vec<_> = blended.iter().map(|&face| uploaded.face_vertices(scene, face)).collect();
-            filled_buffer(device, "blended faces", bytemuck::cast_slice(&faces), wgpu::BufferUsages::INDEX)
+            let indices = uploaded.index_format.bytes(faces.as_flattened());
+            filled_buffer(device, "blended faces", &indices, wgpu::BufferUsages::INDEX)
         });
         let paper = paper(plan);
         let bound = (&view_group, uploaded, targets.depth);
@@ -433,7 +434,7 @@ impl SurfacePass {
             if set != Some(variant) {
                 let mut pipelines = self.pipelines.borrow_mut();
                 pass.set_pipeline(pipelines.entry(variant).or_insert_with(|| self.pipeline(device, variant)));
-                pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
+                pass.set_index_buffer(indices.slice(..), uploaded.index_format.on_device());
                 set = Some(variant);
             }
             if paired {

@@ -6,7 +6,7 @@ use crate::edge_lines::EdgeLineMethod;
 use crate::error::HarnessError;
 use crate::geometry::{
     COLOR_BYTES, DIRECTION_BYTES, NORMAL_BYTES, OCTAVE_BYTES, POSITION_BYTES, REGION_BYTES, Streams, UV_BYTES,
-    blended_faces, index_count, material_table, sources, splits,
+    blended_faces, index_bytes, index_count, material_table, sources, splits,
 };
 use crate::image_lines::InkScale;
 use crate::scene::Scene;
@@ -360,11 +360,12 @@ impl Plan {
                 list.buffer(name, vertices * bytes);
             }
         }
+        let index_bytes = index_bytes(vertices as usize);
         let stride = capabilities.uniform_alignment as usize;
         let materials = material_table(scene, self, stride);
-        list.buffer("faces", 4 * index_count(scene, &splits, &materials.duplicates));
+        list.buffer("faces", index_bytes * index_count(scene, &splits, &materials.duplicates));
         if self.blended {
-            list.buffer("blended faces", 12 * blended_faces(scene).len() as u64);
+            list.buffer("blended faces", 3 * index_bytes * blended_faces(scene).len() as u64);
         }
         list.buffer("objects", INSTANCE_BYTES * scene.objects().len().max(1) as u64);
         list.buffer("materials", materials.uniforms.len() as u64);

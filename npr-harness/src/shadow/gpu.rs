@@ -7,6 +7,7 @@ use crate::error::HarnessError;
 use crate::geometry::POSITION_BYTES;
 use crate::gpu::context::GpuContext;
 use crate::gpu::instances::{INSTANCE_ATTRIBUTES, Instances, instance_layout};
+use crate::gpu::scene::IndexFormat;
 use crate::gpu::uniform::uniform_buffer;
 use crate::plan::resources;
 use crate::scene::{Object, Scene};
@@ -126,6 +127,7 @@ pub(crate) struct ShadowFrame<'a> {
     /// The casters of a shadow map: vertex positions, faces, and instances.
     pub(crate) positions: &'a wgpu::Buffer,
     pub(crate) indices: Option<&'a wgpu::Buffer>,
+    pub(crate) index_format: IndexFormat,
     pub(crate) instances: &'a Instances,
     /// Per mesh: the range of its faces in [`Self::indices`].
     pub(crate) solid: &'a [Range<u32>],
@@ -383,7 +385,7 @@ impl MapPass {
             pass.set_pipeline(&self.pipeline);
             pass.set_bind_group(0, &group, &[]);
             pass.set_vertex_buffer(0, frame.positions.slice(..));
-            pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
+            pass.set_index_buffer(indices.slice(..), frame.index_format.on_device());
             for run in frame.instances.runs() {
                 pass.set_vertex_buffer(1, frame.instances.slice(run));
                 pass.draw_indexed(frame.solid[run.mesh].clone(), 0, 0..run.objects.len() as u32);
