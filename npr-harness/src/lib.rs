@@ -56,6 +56,7 @@ pub mod executor;
 pub mod facets;
 pub mod figures;
 pub mod gallery;
+mod geometry;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod hatch;

@@ -1,4 +1,4 @@
-use super::super::materials::MaterialUniform;
+use crate::geometry::MaterialUniform;
 use super::super::shader::surface_wgsl;
 use super::*;
 use crate::shade::Shade;
