@@ -471,7 +471,7 @@ impl Checker<'_> {
 }
 
 /// Only lines, black on white.
-fn one_px_style(lines: Lines) -> Style {
+pub(crate) fn one_px_style(lines: Lines) -> Style {
     Style {
         name: "one-px".into(),
         about: String::new(),
@@ -487,6 +487,6 @@ fn one_px_style(lines: Lines) -> Style {
 }
 
 /// Per pixel: the darkness, 0 (white) to 1.
-fn darkness(image: &Image) -> Vec<f64> {
+pub(crate) fn darkness(image: &Image) -> Vec<f64> {
     image.rgba8.chunks_exact(4).map(|p| 1.0 - f64::from(p[1]) / 255.0).collect()
 }
