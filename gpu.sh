@@ -64,7 +64,7 @@ find_programs() {
     elif [ -x "$here/bin/npr" ]; then
         bin="$here/bin"
     elif command -v cargo >/dev/null 2>&1 && [ -f "$here/Cargo.toml" ]; then
-        build
+        (build) || exit 1
         bin="$built"
     else
         fail "no programs: set NPR_BIN, or run this in a checkout with cargo"
@@ -101,7 +101,7 @@ pack)
     exit
     ;;
 -h | --help)
-    sed -n '2,/^set -u/p' "$0" | sed -n 's/^# \{0,1\}//p'
+    sed -n '1d; /^set -u$/q; s/^# \{0,1\}//p' "$0"
     exit
     ;;
 -*) fail "$1: no such option" ;;
@@ -153,7 +153,7 @@ adapter="$(XDG_CACHE_HOME="$scratch/first" MESA_SHADER_CACHE_DIR="$scratch/first
     limited 60 "$bin/npr" render "$torus" -o "$scratch/small.png" --size 64x36 --backend gpu 2>&1)"
 adapter_status=$?
 line="$(printf '%s\n' "$adapter" | sed -n 's/.* to render, on //p' | tail -n 1)"
-device="$(printf '%s' "${line:-no device}" | sed 's/ (LLVM.*//; s/, .*//' | tr '[:upper:]' '[:lower:]' |
+device="$(printf '%s' "${line:-no device}" | sed 's/ (LLVM[^)]*)//; s/, .*//' | tr '[:upper:]' '[:lower:]' |
     tr -cs 'a-z0-9' '-' | sed 's/^-//; s/-$//')"
 out="$all/$device"
 rm -rf "$out"

@@ -48,6 +48,8 @@ pub struct Capabilities {
     pub texture_px: u32,
     /// The largest storage buffer, bytes.
     pub storage_bytes: u64,
+    /// Uniforms in one buffer lie at multiples of this, bytes.
+    pub uniform_alignment: u32,
     /// The memory that a picture may use in addition to its scene, bytes.
     pub memory_bytes: u64,
 }
@@ -66,6 +68,7 @@ impl Capabilities {
         float_targets: true,
         texture_px: u32::MAX,
         storage_bytes: u64::MAX,
+        uniform_alignment: 256,
         memory_bytes: MEMORY_BYTES,
     };
 

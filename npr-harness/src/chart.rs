@@ -1,7 +1,7 @@
 //! Accuracy against speed: every variant of every technique, measured on the same scenes in one run.
 //!
 //! A chart has one point for a variant on an executor. Its error is defined in each chart's module, against the truth.
-//! Its time is a ratio to a plain pass, [`plain`], of the same scene and size, both measured in the same interleaved
+//! Its time is a ratio to a [plain pass](crate::variant::plain) of the same scene and size, both measured in the same interleaved
 //! rounds, so that charts from different machines can be laid side by side.
 //!
 //! Variants come from [`crate::variant`], so a new one is in the charts by being declared.
@@ -27,9 +27,7 @@ use crate::executor::Executor;
 use crate::measure::Rounds;
 use crate::scene::Scene;
 use crate::shade::Shade;
-use crate::shade::lambert::Lambert;
 use crate::style::{Lines, Style, style};
-use crate::variant::Setup;
 use glam::Vec3;
 use std::path::Path;
 
@@ -133,12 +131,6 @@ pub fn subject_of_file(
     let scene = Scene::from(npr_mesh::load(path, loading)?);
     let name = path.file_stem().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     Ok(Subject::framed(&name, scene, size, &Framing::default()))
-}
-
-/// The plain pass: light without bands, no lines, one sample.
-pub fn plain() -> Setup {
-    let base = style("cartoon").expect("a style of this crate");
-    Setup { style: Style { shade: Shade::Lambert(Lambert { ambient: 0.25 }), lines: Lines::NONE, ..base }, samples: 1 }
 }
 
 /// White paper and surfaces that are not painted, for measurements of lines alone.

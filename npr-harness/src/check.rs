@@ -471,7 +471,7 @@ impl Checker<'_> {
 }
 
 /// Only lines, black on white.
-fn one_px_style(lines: Lines) -> Style {
+pub(crate) fn one_px_style(lines: Lines) -> Style {
     Style {
         name: "one-px".into(),
         about: String::new(),

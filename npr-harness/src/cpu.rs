@@ -23,7 +23,6 @@ use crate::printed_fins::cpu::draw_printed;
 use crate::rays::Hit;
 use crate::scene::Scene;
 use crate::shadow::cpu::ShadowAt;
-use crate::texture::MipMapped;
 use crate::view::{View, size_px};
 use glam::{DVec2, DVec3, DVec4};
 use primary_hits::Hits;
@@ -38,7 +37,6 @@ pub(crate) struct FrameContext<'a> {
     size: (u32, u32),
     /// Generates rays through its points.
     rays: PictureRays,
-    textures: &'a [MipMapped],
     shift_px: DVec2,
     /// The strokes that surfaces are hatched with.
     strokes: Option<Strokes<'a>>,
@@ -150,7 +148,6 @@ impl<'a> FrameContext<'a> {
             plan,
             size: plan.view.sampled_size(),
             rays: camera.rays(plan.view.sampled_size_px()),
-            textures: if plan.looks_up { scene.mip_mapped() } else { &[] },
             shift_px: options.shift_px * f64::from(*samples),
             strokes: plan.hatch().map(|hatch| Strokes::new(hatch, *samples)),
             boundary_inset_px: options.boundary_inset_px * f64::from(*samples),

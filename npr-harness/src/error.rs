@@ -498,6 +498,44 @@ pub enum HarnessError {
         /// The cause.
         source: std::io::Error,
     },
+    /// No way to make a picture is in the cost table.
+    #[error("the cost table knows no way to make this picture: npr calibrate measures this machine anew")]
+    NoConfiguration,
+    /// No way to make a picture is as fast as a budget asks.
+    #[error(
+        "the fastest way to make this picture takes {least_plain:.2} plain passes ({least_ms:.1} ms when this machine was calibrated), and {asked_plain:.2} are asked for"
+    )]
+    NoSuchSpeed {
+        /// What the budget allows, in plain passes.
+        asked_plain: f64,
+        /// What the fastest way is expected to take, in plain passes.
+        least_plain: f64,
+        /// The same in ms.
+        least_ms: f64,
+    },
+    /// No way to make a picture is as accurate as a budget asks.
+    #[error(
+        "no way to make this picture{} keeps {measure} to {asked}: the best one found errs by {least:.4}",
+        if *in_time { " in the time" } else { "" }
+    )]
+    NoSuchAccuracy {
+        /// The measure that is not kept to.
+        measure: &'static str,
+        /// What the budget allows.
+        asked: f64,
+        /// The least error that was measured.
+        least: f64,
+        /// Whether only ways within a time were tried.
+        in_time: bool,
+    },
+    /// A calibration that cannot be used.
+    #[error("{}: {what}", path.display())]
+    Calibration {
+        /// The file.
+        path: std::path::PathBuf,
+        /// What is wrong with it.
+        what: String,
+    },
     /// A picture that would overwrite one of its inputs.
     #[error("{}: it is read for the picture, and would be overwritten by it", path.display())]
     Overwrites {

@@ -8,7 +8,7 @@ pub(crate) mod context;
 pub(crate) mod instances;
 mod materials;
 mod resolve;
-mod scene;
+pub(crate) mod scene;
 pub(crate) mod shader;
 mod surface;
 pub(crate) mod targets;
@@ -27,7 +27,7 @@ use crate::hull_lines::gpu::{self as hull_lines, HullLinePass, HullTargets};
 use crate::image_lines::gpu::{InkFrame, InkPasses};
 use crate::picture::Image;
 use crate::plan::Plan;
-use crate::scene::{Mesh, Object, ObjectLines, Scene};
+use crate::scene::{Object, ObjectLines, Scene};
 use crate::shadow::gpu::{ShadowFrame, ShadowOnDevice, ShadowPasses, StencilTarget};
 use crate::style::Style;
 use crate::view::{View, size_px};
@@ -43,7 +43,7 @@ use resolve::ResolvePass;
 use shader::LightOnDevice;
 use std::cell::{OnceCell, RefCell};
 use std::sync::Arc;
-use surface::{SurfaceFrame, SurfacePass, SurfaceTargets};
+use surface::{SurfaceFrame, SurfacePass, SurfaceTargets, clear};
 
 /// Panic message for passes that fail only for formats other than Unorm.
 const UNORM: &str = "the pictures' format is Unorm";
@@ -96,11 +96,8 @@ impl<'a> GpuRenderer<'a> {
         let mut uploaded = GpuScene::new(self.context, self.surface.material_layout(), scene, plan)?;
         if let Some(EdgeLinePlan { contours, method: EdgeLineMethod::OnDevice, .. }) = &plan.edge_lines {
             let pass = self.lines(EdgeLineMethod::OnDevice);
-            let upload = |((_, mesh), contours): ((&Object, &Mesh), &Arc<ContourEdges>)| {
-                let edges = pass.upload_edges(device, contours, &mesh.model().positions)?;
-                Ok::<_, HarnessError>((Arc::clone(contours), edges))
-            };
-            let edges = scene.placed_objects().zip(contours).map(upload).collect::<Result<_, _>>()?;
+            let mut edges = contours.iter().map(|_| None).collect::<Vec<_>>();
+            upload_edges(pass, device, scene, contours, &mut edges)?;
             uploaded.edges = Some(RefCell::new(edges));
         }
         if let Some(shadow) = &plan.shadow {
@@ -167,8 +164,7 @@ impl<'a> GpuRenderer<'a> {
             return Err(HarnessError::StaleUpload);
         }
         let light = LightOnDevice::new(self.context, plan)?;
-        let regions = plan.image.as_ref().map(|image| &image.regions);
-        uploaded.instances.borrow_mut().update(self.context, scene, regions, plan.object_pairs());
+        uploaded.instances.borrow_mut().update(self.context, scene, plan.regions(), plan.object_pairs());
         let frame = SurfaceFrame { device, scene, uploaded, plan, light: &light };
         targets.begin();
         let mut encoder = device.create_command_encoder(&Default::default());
@@ -180,16 +176,20 @@ impl<'a> GpuRenderer<'a> {
         let size = (canvas.width, canvas.height);
         let in_picture = plan.shadow.as_ref().is_some_and(|shadow| shadow.in_picture);
         let shadow = if in_picture { self.shadow(&mut encoder, &frame, size, &canvas.stencil)? } else { None };
-        let drawn = SurfaceTargets {
-            color: Some(&canvas.color_view),
-            texels: beside_picture.map(|(_, ink)| &ink.texels),
-            depth: &canvas.depth_view,
-            size_px: size_px(size),
-            samples: view.samples,
-        };
-        self.surface.record(&mut encoder, &frame, shadow.as_ref(), &drawn)?;
+        if plan.draws_surfaces {
+            let drawn = SurfaceTargets {
+                color: Some(&canvas.color_view),
+                texels: beside_picture.map(|(_, ink)| &ink.texels),
+                depth: canvas.depth_view(device),
+                size_px: size_px(size),
+                samples: view.samples,
+            };
+            self.surface.record(&mut encoder, &frame, shadow.as_ref(), &drawn)?;
+        } else {
+            clear(&mut encoder, plan, &canvas.color_view);
+        }
         if let (Some(plan), Some(hulls)) = (&plan.hulls, &uploaded.hulls) {
-            let over = HullTargets { color: &canvas.color_view, depth: &canvas.depth_view, size };
+            let over = HullTargets { color: &canvas.color_view, depth: canvas.depth_view(device), size };
             self.hulls.record(device, &mut encoder, (plan, hulls), scene, view, &over)?;
         }
         let scale = f64::from(view.samples);
@@ -198,7 +198,7 @@ impl<'a> GpuRenderer<'a> {
                 let fin_view = printed.view(scene, object, &view.camera, size_px(size), scale);
                 let Some(fin_view) = fin_view else { continue };
                 let ink = printed.style.ink.extend(1.0).to_array();
-                let (fins, color, depth) = (&fins[object.mesh()], &canvas.color_view, &canvas.depth_view);
+                let (fins, color, depth) = (&fins[object.mesh()], &canvas.color_view, canvas.depth_view(device));
                 self.printed().record(device, &mut encoder, fins, &fin_view, ink, color, depth)?;
             }
         }
@@ -247,8 +247,9 @@ impl<'a> GpuRenderer<'a> {
             camera: &frame.plan.view.camera,
             size,
             casting: frame.uploaded.casting.as_ref(),
-            vertices: &frame.uploaded.vertices,
+            positions: &frame.uploaded.positions,
             indices: frame.uploaded.indices.as_ref(),
+            index_format: frame.uploaded.index_format,
             instances: &frame.uploaded.instances.borrow(),
             solid: &frame.uploaded.solid,
         };
@@ -271,17 +272,22 @@ impl<'a> GpuRenderer<'a> {
         let (scene, scale) = (frame.scene, *samples as f32);
         let view = camera.line_view(size_px((canvas.width, canvas.height)));
         let eye = camera.homogeneous_eye();
+        let groups = edges.groups(scene);
+        if groups.is_empty() {
+            return Ok(());
+        }
+        let targets = canvas.begin_ink(frame.device, encoder);
         let line_targets = LineTargets {
             painted: &canvas.color_view,
-            depth: &canvas.depth_view,
-            inked: &canvas.inked_view,
-            coverage: &canvas.coverage_view,
+            depth: canvas.depth_view(frame.device),
+            inked: &targets.inked_view,
+            coverage: &targets.coverage_view,
         };
-        canvas.begin_ink(encoder);
         // The uploaded data decide the method; they belong to the same plan.
         let uploaded = match &frame.uploaded.edges {
             Some(uploaded) => {
-                self.refresh_edges(scene, edges, &mut uploaded.borrow_mut())?;
+                let pass = self.lines(EdgeLineMethod::OnDevice);
+                upload_edges(pass, frame.device, scene, &edges.contours, &mut uploaded.borrow_mut())?;
                 Some(uploaded.borrow())
             }
             None => None,
@@ -289,7 +295,7 @@ impl<'a> GpuRenderer<'a> {
         let method = if uploaded.is_some() { EdgeLineMethod::OnDevice } else { EdgeLineMethod::OnCpu };
         let mut scratch = self.scratch.borrow_mut();
         let (lines, records) = &mut *scratch;
-        for (number, (style, objects)) in edges.groups(scene).into_iter().enumerate() {
+        for (number, (style, objects)) in groups.into_iter().enumerate() {
             if number > 0 {
                 canvas.continue_ink(encoder);
             }
@@ -298,13 +304,14 @@ impl<'a> GpuRenderer<'a> {
                     let group = |&number: &u32| {
                         let object = &scene.objects()[number as usize];
                         let clip_from_mesh = view.clip_from_world * DMat4::from(*object.scene_from_mesh());
-                        LineGroup {
-                            source: LineSource::OnDevice(&uploaded[number as usize].1),
+                        let (_, edges) = uploaded[number as usize].as_ref()?;
+                        Some(LineGroup {
+                            source: LineSource::OnDevice(edges),
                             view: LineView { clip_from_world: clip_from_mesh, ..view },
                             eye: object.homogeneous(eye),
-                        }
+                        })
                     };
-                    objects.iter().map(group).collect()
+                    objects.iter().filter_map(group).collect()
                 }
                 None => {
                     records.clear();
@@ -325,23 +332,6 @@ impl<'a> GpuRenderer<'a> {
         Ok(())
     }
 
-    /// Uploads the edges of objects whose transforms have changed the angles between their faces.
-    fn refresh_edges(
-        &self,
-        scene: &Scene,
-        plan: &EdgeLinePlan,
-        uploaded: &mut [ObjectEdges],
-    ) -> Result<(), HarnessError> {
-        let pass = self.lines(EdgeLineMethod::OnDevice);
-        for (((_, mesh), contours), uploaded) in scene.placed_objects().zip(&plan.contours).zip(uploaded) {
-            if !Arc::ptr_eq(contours, &uploaded.0) {
-                let edges = pass.upload_edges(&self.context.device, contours, &mesh.model().positions)?;
-                *uploaded = (Arc::clone(contours), edges);
-            }
-        }
-        Ok(())
-    }
-
     /// The lines that the GPU found for the last frame of this upload, unordered, as (object, edge); `None` if they
     /// were found on the CPU.
     ///
@@ -350,7 +340,8 @@ impl<'a> GpuRenderer<'a> {
     pub(crate) fn found_lines(&self, uploaded: &GpuScene) -> Result<Option<Vec<[u32; 2]>>, HarnessError> {
         let Some(edges) = &uploaded.edges else { return Ok(None) };
         let mut found = Vec::new();
-        for (object, (_, edges)) in (0u32..).zip(&*edges.borrow()) {
+        for (object, edges) in (0u32..).zip(&*edges.borrow()) {
+            let Some((_, edges)) = edges else { continue };
             let arguments: Vec<u32> = bytemuck::pod_collect_to_vec(&self.context.read_buffer(edges.arguments())?);
             let lines: Vec<u32> = bytemuck::pod_collect_to_vec(&self.context.read_buffer(edges.lines())?);
             // The second argument of the draw call is how many instances it has.
@@ -375,6 +366,33 @@ impl<'a> GpuRenderer<'a> {
     pub fn read(&self, targets: &Targets) -> Result<Image, HarnessError> {
         targets.read(self.context)
     }
+}
+
+/// Uploads the edges of objects that have lines, where they are not uploaded yet or their transforms have changed the
+/// angles between faces. Objects with the same contours share what is read.
+fn upload_edges(
+    pass: &LinePass,
+    device: &wgpu::Device,
+    scene: &Scene,
+    contours: &[Arc<ContourEdges>],
+    uploaded: &mut [Option<ObjectEdges>],
+) -> Result<(), HarnessError> {
+    for (number, ((object, mesh), contours)) in scene.placed_objects().zip(contours).enumerate() {
+        if object.lines == ObjectLines::None {
+            uploaded[number] = None;
+            continue;
+        }
+        let is_same = |known: &ObjectEdges| Arc::ptr_eq(contours, &known.0);
+        if uploaded[number].as_ref().is_some_and(is_same) {
+            continue;
+        }
+        let edges = match uploaded.iter().flatten().find(|known| is_same(known)) {
+            Some((_, edges)) => pass.share_edges(device, edges, contours),
+            None => pass.upload_edges(device, contours, &mesh.model().positions)?,
+        };
+        uploaded[number] = Some((Arc::clone(contours), edges));
+    }
+    Ok(())
 }
 
 /// Transforms a line record from mesh space to scene space.

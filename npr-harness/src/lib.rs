@@ -19,7 +19,7 @@
 //! | --- | --- |
 //! | what is shown | [`scene`], [`camera`], [`view`], [`lights`], [`facets`], [`texture`], [`color`] |
 //! | how it looks | [`style`], and a module for each technique: [`shade`], [`hatch`], [`edge_lines`], [`printed_fins`], [`hull_lines`], [`image_lines`], [`shadow`] |
-//! | rendering | [`plan`], [`capabilities`], [`picture_limits`], [`executor`], [`gpu`], [`cpu`], [`rays`], [`picture`] |
+//! | rendering | [`plan`], [`variant`], [`budget`], [`capabilities`], [`picture_limits`], [`executor`], [`gpu`], [`cpu`], [`rays`], [`picture`] |
 //! | measuring | [`truth`], what is exactly right; [`compare`]; [`check`]; [`chart`], accuracy against speed; [`measure`], times of frames; [`stability`], where methods fail |
 //! | the command | [`gallery`], [`inspect`], [`suggest`], [`error`] |
 //!
@@ -41,6 +41,7 @@
 //!   picture back from a device, would block until the browser has answered, and panic; [`executor::Backend::Cpu`] does not.
 #![warn(missing_docs)]
 
+pub mod budget;
 pub mod camera;
 pub mod capabilities;
 pub mod chart;
@@ -55,6 +56,7 @@ pub mod executor;
 pub mod facets;
 pub mod figures;
 pub mod gallery;
+mod geometry;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod hatch;

@@ -4,6 +4,11 @@
 //! never reads the style. Data that depend on the scene alone are computed once and shared, so planning another view of
 //! the same scene is cheap.
 
+mod explain;
+pub mod resources;
+
+pub use resources::{Resource, ResourceKind, TexelFormat};
+
 use crate::camera::Camera;
 use crate::capabilities::Capabilities;
 #[cfg(feature = "gpu")]
@@ -12,10 +17,11 @@ use crate::edge_lines::EdgeLinePlan;
 use crate::edge_lines::plan::device_bytes;
 use crate::error::HarnessError;
 use crate::facets::{Facet, facets};
-use crate::hatch::{HatchMapping, HatchPlan};
+use crate::hatch::{HatchGround, HatchPlan};
 use crate::hull_lines::HullPlan;
-use crate::image_lines::gbuffer::style::GBufferTarget;
-use crate::image_lines::{ImagePlan, InkScale};
+use crate::image_lines::ImagePlan;
+#[cfg(feature = "gpu")]
+use crate::image_lines::plan::RegionPlan;
 use crate::lights::{LightPair, casting_light, light_pairs, lights_in_world};
 use crate::picture_limits::check_picture;
 use crate::printed_fins::PrintedFinPlan;
@@ -30,7 +36,6 @@ use npr_mesh::AlphaMode;
 use npr_outline::LineKind;
 use npr_toon::normal::NormalUse;
 use npr_toon::source::{Light, LightKind, combined_color};
-use std::fmt;
 use std::sync::Arc;
 
 /// A pass or a method, and why it is used or left out.
@@ -81,6 +86,8 @@ pub struct Plan {
     pub draws_surfaces: bool,
     /// Whether texture coordinates, textures or vertex colours are read.
     pub looks_up: bool,
+    /// Per texture of the scene: whether it is read.
+    pub textures: Vec<bool>,
     /// Whether any material is alpha-tested.
     pub cut_out: bool,
     /// Whether normals are used untransformed, [`Style::mesh_normals`].
@@ -146,8 +153,11 @@ impl Plan {
         let printed_fins = lines.printed.map(|printed| PrintedFinPlan::new(scene, printed));
         let cut_out = used(&|m| matches!(m.alpha_mode, AlphaMode::Mask { .. }));
         let colored = || scene.meshes().iter().any(|mesh| !mesh.model().colors.is_empty());
-        let textured = paint.is_some() && (used(&|m| m.texture.is_some()) || colored());
+        let shows_colors = paint.as_ref().is_some_and(PaintPlan::shows_surface_color);
+        let blended = paint.is_some() && scene.has_blend();
+        let textured = (shows_colors || blended) && (used(&|m| m.texture.is_some()) || colored());
         let says_lines = |image: &ImagePlan| image.line_kinds.iter().any(|&kind| kind != InnerLines::Normals);
+        let textures = textures(scene, shows_colors, blended, image.as_ref());
         let beside_picture = image.as_ref().is_some_and(|image| !image.own_surfaces);
         let mut plan = Self {
             view,
@@ -158,9 +168,10 @@ impl Plan {
                 || hulls.is_some()
                 || beside_picture,
             looks_up: textured || cut_out || image.as_ref().is_some_and(says_lines),
+            textures,
             cut_out,
             mesh_normals: style.mesh_normals,
-            blended: paint.is_some() && scene.has_blend(),
+            blended,
             cull_back: scene.is_closed() && scene.clip.is_none() && !sees_the_inside(scene, &view.camera),
             shadow: None,
             half_float_maps: capabilities.half_float_maps().0,
@@ -209,8 +220,9 @@ impl Plan {
         }
         if let Some(image) = &self.image {
             capabilities.check_size("the ink", image.size)?;
-            let target = image.gbuffer.as_ref().map(|plan| &plan.gbuffer.target);
-            if matches!(target, Some(GBufferTarget::Separate(_))) && !capabilities.float_targets {
+            let targets = image.gbuffer.as_ref().map(|plan| plan.gbuffer.encoded());
+            let is_float = |format: &TexelFormat| [TexelFormat::Rgba32Float, TexelFormat::R32Float].contains(format);
+            if targets.into_iter().flatten().flatten().any(|format| is_float(&format)) && !capabilities.float_targets {
                 return Err(HarnessError::FloatTargets);
             }
         }
@@ -245,7 +257,7 @@ impl Plan {
             add("light of faces", "corners of faces in a texture, which vertex shaders read");
         }
         if self.looks_up {
-            for texture in scene.textures() {
+            for (texture, _) in scene.textures().iter().zip(&self.textures).filter(|(_, used)| **used) {
                 capabilities.check_size("a texture of the model", (texture.width, texture.height))?;
             }
         }
@@ -280,6 +292,12 @@ impl Plan {
         self.paint.as_ref().map_or(&[], |paint| &paint.object_pairs)
     }
 
+    /// The regions of faces, if lines are found in the image.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn regions(&self) -> Option<&RegionPlan> {
+        self.image.as_ref().map(|image| &image.regions)
+    }
+
     /// The data for strokes, if surfaces are hatched.
     pub fn hatch(&self) -> Option<&HatchPlan> {
         self.paint.as_ref().and_then(|paint| paint.hatch.as_ref())
@@ -289,181 +307,6 @@ impl Plan {
     pub fn lines(&self, scene: &Scene) -> (Vec<[u32; 2]>, [usize; LineKind::ALL.len()]) {
         let eye = self.view.camera.homogeneous_eye();
         self.edge_lines.as_ref().map_or_else(Default::default, |lines| lines.lines(scene, eye))
-    }
-
-    /// Lists the passes that are used and those that are left out, with reasons.
-    fn explain(&mut self, style: &Style, textured: bool) {
-        let (mut passes, mut left_out) = (Vec::new(), Vec::new());
-        let mut add = |taken: bool, pass, why: &str, why_not: &str| {
-            let (list, why) = if taken { (&mut passes, why) } else { (&mut left_out, why_not) };
-            list.push(Reason { pass, why: why.to_owned() });
-        };
-        let technique = self.shadow.as_ref().map(|shadow| &shadow.technique);
-        let volumes = matches!(technique, Some(ShadowTechnique::Volumes { .. }));
-        let map = matches!(technique, Some(ShadowTechnique::Map { .. }));
-        let no_shadow = if style.shadow.is_some() { "the style shows nothing of it" } else { "no light casts shadows" };
-        let rays = matches!(technique, Some(ShadowTechnique::Rays));
-        let by_rays = "the CPU follows rays to the light";
-        let no_volumes = match (rays, map) {
-            (true, _) => by_rays,
-            (_, true) => "the style asks for a map",
-            _ => no_shadow,
-        };
-        add(rays, "shadow rays", by_rays, if technique.is_some() { "a device has other means" } else { no_shadow });
-        add(volumes, "geometry: depth, before all", "shadows fall on what is seen", no_volumes);
-        add(volumes, "shadow volumes into a stencil", "a light casts shadows", no_volumes);
-        let no_map = match (rays, volumes) {
-            (true, _) => by_rays,
-            (_, true) => "volumes are exact",
-            _ => no_shadow,
-        };
-        add(map, "shadow map", "a light casts shadows, and the style asks for a map", no_map);
-
-        let painted = self.paint.is_some();
-        add(painted, "geometry: colour and depth", "surfaces are painted", "the style paints no surface");
-        add(
-            !painted && self.draws_surfaces,
-            "geometry: depth alone",
-            "lines are hidden behind surfaces",
-            if painted { "colour is drawn with it" } else { "nothing in the picture itself needs it" },
-        );
-        add(textured, "texture and vertex colour lookups", "materials have them", "no material needs them");
-        add(self.cut_out, "alpha test", "materials have a cutoff", "no material has a cutoff");
-        add(self.blended, "blended surfaces, back to front", "materials are blended", "no material is blended");
-        add(
-            !self.cull_back,
-            "back faces",
-            "the model is open, cut, or seen from inside",
-            "the model is closed: they are hidden",
-        );
-        add(
-            self.hulls.is_some(),
-            "inverted hull: displaced back faces",
-            "the style asks for it",
-            "no outline is made of back faces",
-        );
-        add(
-            self.printed_fins.is_some(),
-            "printed fins, all edges",
-            "the style asks for the printed form",
-            "only edges that are lines are sent",
-        );
-        add(
-            self.edge_lines.is_some(),
-            "line coverage and ink",
-            "the style draws lines along edges",
-            "the style draws no line along an edge",
-        );
-
-        let image = self.image.as_ref();
-        let no_lines = "no line is found in the image";
-        let own = image.filter(|image| image.own_surfaces);
-        let (other_size, why_own) = match own {
-            Some(own) if own.ink.scale == InkScale::One => (false, "the picture has several samples a pixel"),
-            Some(_) => (true, "the ink has another size than the picture"),
-            None => (false, ""),
-        };
-        add(
-            image.is_some() && own.is_none(),
-            "normal, region, depth beside colour",
-            "lines are found in the image",
-            if own.is_some() { "they are drawn by themselves" } else { no_lines },
-        );
-        add(
-            own.is_some(),
-            "geometry: normal, region, depth",
-            why_own,
-            if image.is_some() { "they are drawn beside the picture" } else { no_lines },
-        );
-        let gbuffer = image.and_then(|image| image.gbuffer.as_ref()).map(|plan| &plan.gbuffer);
-        add(
-            gbuffer.is_some(),
-            "G-buffer in the style's formats",
-            "the style names them",
-            if image.is_some() { "the filter reads packed texels" } else { no_lines },
-        );
-        add(
-            gbuffer.is_some_and(|gbuffer| gbuffer.steps.iter().any(Option::is_some)),
-            "steps of morphology",
-            "the style asks for them",
-            if gbuffer.is_some() { "the style has none" } else { "lines come from packed texels, or there are none" },
-        );
-        let stored = image.is_some_and(|image| image.passes().any(|lines| image.is_stored(lines)));
-        let not_stored = if image.is_some() { "the ink is needed by itself" } else { no_lines };
-        add(image.is_some() && !stored, "filter and composite in one", "nothing needs the ink in between", not_stored);
-        let shadow_lines = image.is_some_and(|image| image.shadow_lines.is_some());
-        let drawn = image.is_some_and(|image| image.ink.shadows != ShadowLines::None);
-        add(
-            shadow_lines,
-            "filter for shadows",
-            "their lines look different",
-            if drawn { "the pass of the objects' lines finds them" } else { "shadows have no lines" },
-        );
-        add(
-            stored,
-            "filter",
-            "the ink is worked on before it is composited",
-            "it is part of the composite, or not needed",
-        );
-        let thick = image.is_some_and(ImagePlan::has_dilation);
-        add(thick, "dilation by a disc", "the style widens lines", "lines are as wide as they are found");
-        add(
-            other_size,
-            "composite",
-            "the ink has another size than the picture",
-            "the pass before composites the ink, or there is none",
-        );
-
-        let paint = self.paint.as_ref();
-        let two = style.lights.len() > 1;
-        add(
-            paint.is_some_and(|paint| paint.lights.len() > 1),
-            "second light",
-            "the ramp has an axis for it",
-            if painted && two { "the shade knows one: all are taken together" } else { "there is one light" },
-        );
-        add(
-            paint.is_some_and(|paint| !paint.light_pairs.is_empty()),
-            "two lights for each object",
-            "the style has more than two, or objects name theirs",
-            "all objects have the same lights",
-        );
-        add(
-            paint.is_some_and(|paint| paint.interpolates_light),
-            "positions or light between vertices",
-            "a light is near, strokes lie on surfaces, or the style asks for vertices' or faces' light",
-            "the light comes from far away, and meets normals at pixels",
-        );
-        add(
-            paint.is_some_and(PaintPlan::lights_faces),
-            "one light for a face or a piece of one",
-            "the style asks for it",
-            "light varies over a face",
-        );
-        let mapping = self.hatch().map(|hatch| hatch.shade.mapping);
-        add(
-            mapping.is_some(),
-            "tonal art map",
-            match mapping {
-                Some(HatchMapping::Coordinates) => "surfaces are hatched, by texture coordinates",
-                Some(HatchMapping::Form) => "surfaces are hatched, along their form",
-                _ => "surfaces are hatched, by three planes",
-            },
-            "no surface is hatched",
-        );
-        add(
-            mapping == Some(HatchMapping::Form),
-            "a field of directions",
-            "strokes follow the form",
-            "no stroke follows the form",
-        );
-        add(
-            self.view.samples > 1,
-            "resolve",
-            "the picture has several samples a pixel",
-            "lines and band borders carry their own coverage",
-        );
-        (self.passes, self.left_out) = (passes, left_out);
     }
 }
 
@@ -512,6 +355,14 @@ impl PaintPlan {
         }
     }
 
+    /// Whether the surfaces' own colours are part of the picture.
+    pub fn shows_surface_color(&self) -> bool {
+        match &self.hatch {
+            Some(hatch) => hatch.shade.ground == HatchGround::Surface,
+            None => self.shade.model().shows_surface_color(),
+        }
+    }
+
     /// Whether light is constant over faces or pieces of faces.
     pub fn lights_faces(&self) -> bool {
         self.interpolates_light && self.normals.is_constant()
@@ -523,6 +374,21 @@ impl PaintPlan {
         let per_face = if self.normals == NormalUse::PerFace { 2 } else { 6 };
         scene.meshes().iter().map(|mesh| per_face * mesh.model().faces.len()).sum()
     }
+}
+
+/// Per texture of a scene: whether a picture depends on it. It does by a colour that is shown, by alpha, or by lines that
+/// an artist drew.
+fn textures(scene: &Scene, shows_colors: bool, blended: bool, image: Option<&ImagePlan>) -> Vec<bool> {
+    let mut used = vec![false; scene.textures().len()];
+    for (number, material) in scene.materials().iter().enumerate() {
+        let Some(texture) = material.texture else { continue };
+        let line_kind = image.map(|image| image.line_kinds[number]);
+        used[texture as usize] |= shows_colors
+            || matches!(material.alpha_mode, AlphaMode::Mask { .. })
+            || blended && material.alpha_mode == AlphaMode::Blend
+            || matches!(line_kind, Some(InnerLines::Texture | InnerLines::Regions));
+    }
+    used
 }
 
 /// The size of a texture for these texels, in rows of up to 4096.
@@ -543,19 +409,4 @@ fn sees_the_inside(scene: &Scene, camera: &Camera) -> bool {
     let margin = scene.radius() * 1e-3 + 2.0 * camera.near;
     let (low, high) = (low.as_dvec3() - margin, high.as_dvec3() + margin);
     camera.eye.cmpge(low).all() && camera.eye.cmple(high).all()
-}
-
-impl fmt::Display for Plan {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for reason in &self.passes {
-            writeln!(f, "  with    {:<36} {}", reason.pass, reason.why)?;
-        }
-        for reason in &self.left_out {
-            writeln!(f, "  without {:<36} {}", reason.pass, reason.why)?;
-        }
-        for reason in &self.methods {
-            writeln!(f, "  method  {:<36} {}", reason.pass, reason.why)?;
-        }
-        Ok(())
-    }
 }

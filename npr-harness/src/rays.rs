@@ -65,6 +65,14 @@ pub struct Hit {
 const REACH: f64 = 1.75;
 
 impl RayCaster {
+    /// The memory of its hierarchy and triangles, bytes, without what rays build on demand.
+    pub(crate) fn bytes(&self) -> u64 {
+        let Tree { bvh, triangles, .. } = &self.tree;
+        let of_tree =
+            size_of_val(&bvh.nodes[..]) + size_of_val(&bvh.primitive_indices[..]) + size_of_val(&triangles[..]);
+        (of_tree + size_of_val(&self.whole.triangles[..])) as u64
+    }
+
     /// Builds the hierarchy.
     ///
     /// - `positions`: in any unit, within the range of f32.

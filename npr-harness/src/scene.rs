@@ -63,7 +63,7 @@ pub struct Scene {
     materials_version: u64,
     /// The hierarchy over the objects' boxes; unused with a single object.
     hierarchy: OnceLock<BoxHierarchy>,
-    mip_mapped: OnceLock<Vec<MipMapped>>,
+    mip_mapped: OnceLock<Vec<OnceLock<MipMapped>>>,
 }
 
 impl From<Loaded> for Scene {
@@ -461,6 +461,12 @@ impl Scene {
         })
     }
 
+    /// The memory of the ray-casting hierarchies, bytes, without what rays build later where faces overlap too much. They
+    /// are built if they are not built yet.
+    pub(crate) fn ray_bytes(&self) -> u64 {
+        self.hierarchy().bytes() + self.meshes.iter().map(|mesh| mesh.rays().bytes()).sum::<u64>()
+    }
+
     fn hierarchy(&self) -> &BoxHierarchy {
         self.hierarchy.get_or_init(|| {
             let around =
@@ -557,9 +563,10 @@ impl Scene {
         found
     }
 
-    /// The textures with their mip levels.
-    pub(crate) fn mip_mapped(&self) -> &[MipMapped] {
-        self.mip_mapped.get_or_init(|| self.textures.iter().map(MipMapped::new).collect())
+    /// A texture with its mip levels, which are made when it is first read.
+    pub(crate) fn mip_mapped(&self, texture: u32) -> &MipMapped {
+        let made = self.mip_mapped.get_or_init(|| self.textures.iter().map(|_| OnceLock::new()).collect());
+        made[texture as usize].get_or_init(|| MipMapped::new(&self.textures[texture as usize]))
     }
 
     /// Whether any face is blended over what is behind it.

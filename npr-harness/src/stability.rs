@@ -8,6 +8,7 @@
 
 mod hatch;
 mod image_space;
+mod ink;
 mod light;
 mod mesh;
 mod outline;

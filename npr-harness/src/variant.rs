@@ -4,8 +4,10 @@
 //! variants beside its own code, in a list `VARIANTS`; a variant changes a [`Setup`] so that the part is made that way.
 //! Charts show all of them, and a plan by budget chooses among them.
 
+use crate::shade::Shade;
+use crate::shade::lambert::Lambert;
 use crate::shadow::ShadowLines;
-use crate::style::{Lines, Style};
+use crate::style::{Lines, Style, style};
 use crate::{edge_lines, hatch, hull_lines, image_lines, printed_fins, shade, shadow};
 use glam::Vec3;
 use npr_imagespace::composite::Composite;
@@ -89,6 +91,12 @@ const SAMPLES: &[Variant] = &[
         apply: |setup| Some(Setup { samples: 4, ..setup.clone() }),
     },
 ];
+
+/// The plain pass, which is the unit of time of charts and budgets: light without bands, no lines, one sample.
+pub fn plain() -> Setup {
+    let base = style("cartoon").expect("a style of this crate");
+    Setup { style: Style { shade: Shade::Lambert(Lambert { ambient: 0.25 }), lines: Lines::NONE, ..base }, samples: 1 }
+}
 
 /// The lines that a style asks for, whatever draws them.
 #[derive(Clone, Copy, Debug, PartialEq)]

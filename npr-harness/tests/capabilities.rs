@@ -161,6 +161,7 @@ fn lines_are_found_on_the_cpu_for_the_reason_that_is_there() {
         float_targets: true,
         texture_px: 2048,
         storage_bytes: 1 << 27,
+        uniform_alignment: 256,
         memory_bytes: 1 << 31,
     };
     assert_eq!(all.edge_lines(1 << 27, 1), (EdgeLineMethod::OnDevice, "found and drawn on the device".to_owned()));

@@ -99,22 +99,36 @@ impl ContourEdge {
     }
 }
 
-/// Which edges are lines besides silhouettes and boundaries.
+/// Which edges are lines.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContourOptions {
     /// An edge with a larger angle between its faces is a crease; radians, 0..=π.
     pub crease_angle_rad: f32,
     /// Whether edges between two materials are lines.
     pub material_borders: bool,
+    /// Whether creases are lines. Without them no angle is computed, and an edge of more than two faces is a line where its
+    /// first two make it a silhouette.
+    pub creases: bool,
+    /// Whether boundaries are lines; if not, they have no records.
+    pub boundaries: bool,
+    /// Whether silhouettes are lines; if not, edges that can be no other line have no records.
+    pub silhouettes: bool,
     /// The inverse transpose of the matrix that places the model, where angles between faces are those of the placed
     /// model: shear and non-uniform scale change them. Any factor; the identity for the model's own angles.
     pub world_from_normal: DMat3,
 }
 
 impl Default for ContourOptions {
-    /// Creases over 45°, no material borders, the model's own angles.
+    /// Silhouettes, boundaries, creases over 45°, no material borders, the model's own angles.
     fn default() -> Self {
-        Self { crease_angle_rad: 45f32.to_radians(), material_borders: false, world_from_normal: DMat3::IDENTITY }
+        Self {
+            crease_angle_rad: 45f32.to_radians(),
+            material_borders: false,
+            creases: true,
+            boundaries: true,
+            silhouettes: true,
+            world_from_normal: DMat3::IDENTITY,
+        }
     }
 }
 
@@ -192,11 +206,14 @@ pub fn contour_edges(model: &Model, edges: &Edges, options: &ContourOptions) -> 
     };
     let line_of = |edge: &Edge| match edge.kind() {
         EdgeKind::Boundary => Some(LineKind::Boundary),
-        EdgeKind::NonManifold => Some(LineKind::Crease),
+        EdgeKind::NonManifold => options.creases.then_some(LineKind::Crease),
         EdgeKind::TwoFace => {
-            let [n0, n1] = edge.faces().map(|face| placed(wound_normal(face)));
-            let cos = if fits(edge) { n0.dot(n1) } else { -n0.dot(n1) };
-            if cos < cos_crease && n0 != Vec3::ZERO && n1 != Vec3::ZERO {
+            let is_crease = || {
+                let [n0, n1] = edge.faces().map(|face| placed(wound_normal(face)));
+                let cos = if fits(edge) { n0.dot(n1) } else { -n0.dot(n1) };
+                cos < cos_crease && n0 != Vec3::ZERO && n1 != Vec3::ZERO
+            };
+            if options.creases && is_crease() {
                 Some(LineKind::Crease)
             } else if options.material_borders && edge.joins_two_materials() {
                 Some(LineKind::MaterialBorder)
@@ -207,14 +224,22 @@ pub fn contour_edges(model: &Model, edges: &Edges, options: &ContourOptions) -> 
     };
     let lines: Vec<u8> = edges.edges.iter().map(|edge| line_of(edge).unwrap_or(LineKind::Silhouette) as u8).collect();
     let is_always = |line: u8| line != LineKind::Silhouette as u8;
-    let always = lines.iter().filter(|&&line| is_always(line)).count();
-    let mut contour_edges: Vec<ContourEdge> = bytemuck::zeroed_vec(edges.edges.len() + edges.folds.len());
+    let is_kept = |line: u8| match options.silhouettes {
+        _ if line == LineKind::Boundary as u8 => options.boundaries,
+        true => true,
+        false => is_always(line),
+    };
+    let always = lines.iter().filter(|&&line| is_always(line) && is_kept(line)).count();
+    let folds = if options.silhouettes { &edges.folds[..] } else { &[] };
+    let kept = lines.iter().filter(|&&line| is_kept(line)).count();
+    let mut contour_edges: Vec<ContourEdge> = bytemuck::zeroed_vec(kept + folds.len());
     let is_cut_out = |face: u32| face == NO_FACE || cut_out[model.face_material[face as usize] as usize];
     // Faces without material are opaque.
     let any_cut_out = !model.face_material.is_empty() && cut_out.contains(&true);
-    let of_edges = edges.edges.iter().zip(lines).map(|(edge, line)| (edge, line, fits(edge)));
+    let of_edges = edges.edges.iter().zip(lines).filter(|&(_, line)| is_kept(line));
+    let of_edges = of_edges.map(|(edge, line)| (edge, line, fits(edge)));
     // A polygon's triangles are wound consistently, and a fold is a line only where it is a silhouette.
-    let of_folds = edges.folds.iter().map(|fold| (fold, LineKind::Silhouette as u8, true));
+    let of_folds = folds.iter().map(|fold| (fold, LineKind::Silhouette as u8, true));
     let (mut next_always, mut next) = (0, always);
     for (edge, line, fits) in of_edges.chain(of_folds) {
         let position = if is_always(line) { &mut next_always } else { &mut next };

@@ -108,6 +108,8 @@ pub fn line_records(
 pub struct EdgesOnDevice {
     compaction_group: wgpu::BindGroup,
     pulled_group: wgpu::BindGroup,
+    /// Planes, edges and positions.
+    read: [wgpu::Buffer; 3],
     lines: wgpu::Buffer,
     arguments: wgpu::Buffer,
     edge_count: u32,
@@ -287,6 +289,26 @@ impl LinePass {
         let planes = buffer("outline planes", bytemuck::cast_slice(&contours.planes), storage);
         let edges = buffer("outline edges", bytemuck::cast_slice(&contours.edges), storage);
         let positions = buffer("outline positions", bytemuck::cast_slice(positions), storage);
+        Ok(Self::edges_on_device(device, pipelines, [planes, edges, positions], contours))
+    }
+
+    /// The edges of another placement of the same model: what it reads is `edges`', what is found is its own. `contours`
+    /// are those that `edges` were uploaded from.
+    ///
+    /// # Panics
+    /// If the pass was made without `on_device`.
+    pub fn share_edges(&self, device: &wgpu::Device, edges: &EdgesOnDevice, contours: &ContourEdges) -> EdgesOnDevice {
+        let pipelines = self.on_device.as_ref().expect("the pass was made for lines found on the device");
+        Self::edges_on_device(device, pipelines, edges.read.clone(), contours)
+    }
+
+    fn edges_on_device(
+        device: &wgpu::Device,
+        pipelines: &OnDevicePipelines,
+        read: [wgpu::Buffer; 3],
+        contours: &ContourEdges,
+    ) -> EdgesOnDevice {
+        let storage = wgpu::BufferUsages::STORAGE;
         let lines = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("outline lines"),
             size: 4 * contours.edges.len().max(1) as u64,
@@ -295,7 +317,8 @@ impl LinePass {
         });
         // Four vertices; the compute pass counts the instances.
         let copied = wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
-        let arguments = buffer(
+        let arguments = filled_buffer(
+            device,
             "outline draw arguments",
             bytemuck::cast_slice(&[4u32, 0, 0, 0]),
             storage | wgpu::BufferUsages::INDIRECT | copied,
@@ -304,15 +327,17 @@ impl LinePass {
             let resources: Vec<_> = buffers.iter().map(|buffer| buffer.as_entire_binding()).collect();
             bind_group(device, "outline edges", layout, &resources)
         };
-        Ok(EdgesOnDevice {
-            compaction_group: group(&pipelines.compaction_layout, &[&planes, &edges, &lines, &arguments]),
-            pulled_group: group(&pipelines.pulled_layout, &[&planes, &edges, &positions]),
+        let [planes, edges, positions] = &read;
+        EdgesOnDevice {
+            compaction_group: group(&pipelines.compaction_layout, &[planes, edges, &lines, &arguments]),
+            pulled_group: group(&pipelines.pulled_layout, &[planes, edges, positions]),
+            read,
             lines,
             arguments,
             edge_count: contours.edges.len() as u32,
             always_count: contours.always as u32,
             local_origin: contours.origin,
-        })
+        }
     }
 
     /// Records finding and drawing a frame's lines, those of all groups in one style.

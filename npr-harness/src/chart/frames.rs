@@ -1,14 +1,15 @@
 //! Rows of a chart from frames: each variant drawn, judged and timed on each executor.
 
 use super::table::{Row, Time};
-use super::{Lab, Subject, plain};
+use super::{Lab, Subject};
 use crate::error::HarnessError;
 use crate::executor::{Executor, Picture};
 use crate::measure::{Case, Timed, time};
 use crate::picture::Image;
 use crate::plan::Plan;
+use crate::plan::resources::total_bytes;
 use crate::scene::Scene;
-use crate::variant::{Part, Setup};
+use crate::variant::{Part, Setup, plain};
 use crate::view::View;
 
 /// A variant of a chart.
@@ -93,19 +94,22 @@ pub(super) fn rows(
     let mut cases: Vec<Case<'_>> = plans.iter().map(|(executor, plan)| Case::Frame { executor, scene, plan }).collect();
     let timed = time(&mut cases, &lab.rounds, &|share| progress(0.5 + 0.5 * share))?;
     let (plains, timed) = timed.split_at(lab.executors.len());
-    let rows = judged.into_iter().zip(timed);
-    Ok(rows
-        .map(|((number, candidate, errors), timed)| Row {
+    let rows = judged.into_iter().zip(timed).zip(&plans[lab.executors.len()..]);
+    let mut found = Vec::new();
+    for (((number, candidate, errors), timed), (executor, plan)) in rows {
+        let resources = plan.resources(scene, &executor.capabilities())?;
+        found.push(Row {
             chart: chart.to_owned(),
             variant: candidate.name.clone(),
             historical: candidate.historical,
-            executor: lab.executors[number].name(),
+            executor: executor.name(),
             scene: name.clone(),
             errors,
             time: time_of(timed, &plains[number], &plains[0]),
-            bytes: 0,
-        })
-        .collect())
+            bytes: total_bytes(&resources),
+        });
+    }
+    Ok(found)
 }
 
 /// Work on the CPU that a chart measures, apart from frames.

@@ -5,6 +5,7 @@ use crate::color::encode_rgb;
 use crate::image_lines::ImagePlan;
 use crate::image_lines::cpu::{InkSample, gbuffer_texel, texel};
 use crate::image_lines::gbuffer::texel::GBufferTexel;
+use crate::plan::PaintPlan;
 use crate::rays::Hit;
 use crate::scene::Object;
 use crate::shadow::cpu::{ShadowAt, shadow_at};
@@ -154,7 +155,7 @@ impl FrameContext<'_> {
     /// The linear filtered texture colour; white if there is none.
     pub(super) fn texture_color(&self, hit: &Hit, x: u32, y: u32) -> DVec4 {
         let Some(texture) = self.material(hit).texture else { return DVec4::ONE };
-        let texture = &self.textures[texture as usize];
+        let texture = self.scene.mip_mapped(texture);
         let Footprint { along_x, dx, along_y, dy } = self.footprint(hit, x, y);
         let uv = self.interpolate_uv(hit, hit.barycentric);
         let uv_dx = (self.interpolate_uv(hit, along_x) - uv) * dx;
@@ -172,7 +173,10 @@ impl FrameContext<'_> {
     pub(super) fn paint(&self, hit: &Hit, x: u32, y: u32) -> DVec4 {
         let number = self.scene.material_number(hit.object, hit.face);
         let material = &self.scene.materials()[number];
-        let plain = self.scene.placed(hit.object).1.model().colors.is_empty() && material.texture.is_none();
+        let is_shown = material.alpha_mode == AlphaMode::Blend
+            || self.plan.paint.as_ref().is_some_and(PaintPlan::shows_surface_color);
+        let has_colors = || !self.scene.placed(hit.object).1.model().colors.is_empty();
+        let plain = !is_shown || material.texture.is_none() && !has_colors();
         let (base, alpha) = if plain {
             (self.scene.material_colors[number], f64::from(material.base_color.w))
         } else {
@@ -218,7 +222,7 @@ impl FrameContext<'_> {
         let Some(hit) = hit else { return texel(image, None) };
         let texture_bytes = || {
             let texture = self.material(hit).texture?;
-            Some(self.textures[texture as usize].nearest_bytes(self.interpolate_uv(hit, hit.barycentric)))
+            Some(self.scene.mip_mapped(texture).nearest_bytes(self.interpolate_uv(hit, hit.barycentric)))
         };
         let camera = &self.plan.view.camera;
         let eye = camera.homogeneous_eye();

@@ -15,7 +15,8 @@ pub const INK: [f32; 4] = [0.10, 0.09, 0.11, 1.0];
 /// The edge lines of a picture.
 #[derive(Clone, Debug)]
 pub struct EdgeLinePlan {
-    /// Per object: the edges that can be lines. Objects whose transforms preserve angles share them.
+    /// Per object: the edges that can be lines of a kind that is drawn; none if the object has no lines. Objects whose
+    /// transforms preserve angles share them.
     pub contours: Vec<Arc<ContourEdges>>,
     /// The widths in px of the picture, and the ink.
     pub style: LineStyle,
@@ -32,9 +33,9 @@ pub enum EdgeLineMethod {
     OnDevice,
 }
 
-/// The cache key of the contours: the crease angle, and whether edges between two materials are lines.
+/// The cache key of the contours: the crease angle, if creases are drawn, and per [`LineKind`] whether it is drawn.
 #[derive(PartialEq)]
-struct ContoursKey(f32, bool);
+struct ContoursKey(Option<f32>, [bool; 4]);
 
 impl EdgeLinePlan {
     /// `method` selects a method from the size in bytes of the edges on the GPU.
@@ -50,13 +51,22 @@ impl EdgeLinePlan {
                 validate(own)?;
             }
         }
-        let has_borders = |style: &LineStyle| style.width_px[LineKind::MaterialBorder as usize] > 0.0;
-        let of_objects = |object: &Object| matches!(&object.lines, ObjectLines::Own(own) if has_borders(own));
-        let material_borders = has_borders(style) || scene.objects().iter().any(of_objects);
+        let drawn = drawn_kinds(scene, style);
+        let [silhouettes, boundaries, creases, material_borders] = drawn;
         let of_object = |(object, mesh): (&Object, &Mesh)| {
+            if object.lines == ObjectLines::None {
+                return Ok(Arc::default());
+            }
             let (derived, world_from_normal) = object.derived(mesh);
-            let options = ContourOptions { crease_angle_rad, material_borders, world_from_normal };
-            derived.get(ContoursKey(crease_angle_rad, material_borders), || {
+            let options = ContourOptions {
+                crease_angle_rad,
+                material_borders,
+                creases,
+                boundaries,
+                silhouettes,
+                world_from_normal,
+            };
+            derived.get(ContoursKey(creases.then_some(crease_angle_rad), drawn), || {
                 contour_edges(mesh.model(), mesh.edges(), &options)
             })
         };
@@ -99,6 +109,18 @@ impl EdgeLinePlan {
         }
         (lines, counts)
     }
+}
+
+/// Per [`LineKind`]: whether any object has such lines, of the picture's style or of its own.
+fn drawn_kinds(scene: &Scene, style: &LineStyle) -> [bool; LineKind::ALL.len()] {
+    LineKind::ALL.map(|kind| {
+        let is_drawn = |object: &Object| match &object.lines {
+            ObjectLines::OfStyle => style.width_px[kind as usize] > 0.0,
+            ObjectLines::Own(own) => own.width_px[kind as usize] > 0.0,
+            ObjectLines::None => false,
+        };
+        scene.objects().iter().any(is_drawn)
+    })
 }
 
 /// The size of the largest buffer for finding lines on the GPU, bytes.

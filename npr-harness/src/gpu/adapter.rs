@@ -136,6 +136,7 @@ fn capabilities(adapter: &wgpu::Adapter, device: &wgpu::Device) -> Capabilities 
             .contains(wgpu::TextureUsages::RENDER_ATTACHMENT),
         texture_px: limits.max_texture_dimension_2d,
         storage_bytes: limits.max_storage_buffer_binding_size.min(limits.max_buffer_size),
+        uniform_alignment: limits.min_uniform_buffer_offset_alignment,
         memory_bytes: MEMORY_BYTES,
     }
 }

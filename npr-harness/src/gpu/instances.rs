@@ -6,7 +6,7 @@ use crate::image_lines::plan::RegionPlan;
 use crate::scene::Scene;
 use npr_outline::shadow_pass::affine_rows;
 
-/// `Instance` of `surface.wgsl`: 76 bytes per object.
+/// `Instance` of `surface.wgsl`, and constants for attributes of vertices that have no buffer: 84 bytes per object.
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 struct Instance {
@@ -18,15 +18,44 @@ struct Instance {
     scale: [f32; 2],
     /// The middle of the object's box, in scene space.
     middle: [f32; 3],
+    /// Ones, as bytes of the format Unorm.
+    ones: [u8; 4],
+    /// Zeros, as such or as an integer.
+    zeros: [u8; 4],
 }
 
-pub(crate) const INSTANCE_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
-    array_stride: size_of::<Instance>() as u64,
-    step_mode: wgpu::VertexStepMode::Instance,
-    attributes: &wgpu::vertex_attr_array![
-        8 => Float32x4, 9 => Float32x4, 10 => Float32x4, 11 => Uint32x2, 12 => Float32x2, 13 => Float32x3
-    ],
-};
+/// The size of an object's data, bytes.
+pub(crate) const INSTANCE_BYTES: u64 = crate::plan::resources::INSTANCE_BYTES;
+const _: () = assert!(size_of::<Instance>() as u64 == INSTANCE_BYTES);
+
+/// The attributes of objects.
+pub(crate) const INSTANCE_ATTRIBUTES: [wgpu::VertexAttribute; 6] = wgpu::vertex_attr_array![
+    8 => Float32x4, 9 => Float32x4, 10 => Float32x4, 11 => Uint32x2, 12 => Float32x2, 13 => Float32x3
+];
+
+/// The layout of objects' data for `attributes`: [`INSTANCE_ATTRIBUTES`] and [`constant`] ones.
+pub(crate) fn instance_layout(attributes: &[wgpu::VertexAttribute]) -> wgpu::VertexBufferLayout<'_> {
+    wgpu::VertexBufferLayout { array_stride: INSTANCE_BYTES, step_mode: wgpu::VertexStepMode::Instance, attributes }
+}
+
+/// What an attribute of vertices without a buffer is at every vertex.
+#[derive(Clone, Copy)]
+pub(crate) enum Constant {
+    Zero,
+    One,
+    /// The integer 0.
+    NoRegion,
+}
+
+/// An attribute that is constant, from the data of objects.
+pub(crate) fn constant(shader_location: u32, value: Constant) -> wgpu::VertexAttribute {
+    let (format, offset) = match value {
+        Constant::One => (wgpu::VertexFormat::Unorm8x4, std::mem::offset_of!(Instance, ones)),
+        Constant::Zero => (wgpu::VertexFormat::Unorm8x4, std::mem::offset_of!(Instance, zeros)),
+        Constant::NoRegion => (wgpu::VertexFormat::Uint32, std::mem::offset_of!(Instance, zeros)),
+    };
+    wgpu::VertexAttribute { format, offset: offset as u64, shader_location }
+}
 
 /// Objects drawn by one call: same mesh, same material, same handedness and same lights.
 #[derive(Clone, Debug, PartialEq)]
@@ -86,13 +115,15 @@ impl Instances {
         };
         let instance = |&number: &u32| {
             let object = &objects[number as usize];
-            let (first, is_all) = regions.map_or((0, false), |regions| regions.of_objects[number as usize]);
+            let (first, factor) = regions.map_or((0, 1), |regions| regions.of_instance(scene, number));
             let scale = object.scale();
             Instance {
                 rows: affine_rows(object.scene_from_mesh()),
-                regions: [first, u32::from(!is_all)],
+                regions: [first, factor],
                 scale: [scale as f32, scale.log2() as f32],
                 middle: scene.middle_of(number).as_vec3().to_array(),
+                ones: [255; 4],
+                zeros: [0; 4],
             }
         };
         let now: Vec<Instance> = scene.drawing_order().iter().map(instance).collect();

@@ -2,26 +2,14 @@
 
 use super::context::GpuContext;
 use crate::error::HarnessError;
+use crate::geometry::{MaterialTable, MaterialUniform, material_table};
 use crate::plan::Plan;
 use crate::scene::Scene;
 use crate::texture::MipMapped;
-use npr_mesh::{AlphaMode, Texture, Wrap};
+use npr_mesh::{Texture, Wrap};
 use npr_outline::filled_buffer::filled_buffer;
-use std::collections::HashMap;
 use std::sync::Arc;
 use wgpu::util::DeviceExt;
-
-/// `SurfaceMaterial` of `surface.wgsl`.
-#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(C)]
-pub(super) struct MaterialUniform {
-    pub(super) base_color: [f32; 4],
-    pub(super) texture_size: [f32; 2],
-    pub(super) last_level: f32,
-    pub(super) cutoff: f32,
-    pub(super) wrap: [u32; 2],
-    pub(super) padding: [u32; 2],
-}
 
 /// The material uniforms and textures. They share one bind group per texture and use dynamic offsets: with one bind
 /// group per material, the driver's own memory would reach gigabytes for 40,000 materials.
@@ -49,13 +37,6 @@ impl Materials {
         let (group, offset) = self.places[material];
         pass.set_bind_group(1, &self.groups[group], &[offset]);
     }
-}
-
-/// Whether a material's colour varies over a face or its alpha is tested.
-pub(super) fn is_looked_up(scene: &Scene, material: usize) -> bool {
-    let m = &scene.materials()[material];
-    let colored = || scene.meshes().iter().any(|mesh| !mesh.model().colors.is_empty());
-    m.texture.is_some() || matches!(m.alpha_mode, AlphaMode::Mask { .. }) || colored()
 }
 
 /// `uniforms` holds the uniforms of all materials; the dynamic offset selects one.
@@ -107,62 +88,23 @@ fn materials(
         wrap: [Wrap::Clamp; 2],
         smooth: true,
     };
-    let of_model: &[Texture] = if plan.looks_up { scene.textures() } else { &[] };
+    let read = scene.textures().iter().zip(&plan.textures).filter_map(|(texture, &used)| used.then_some(texture));
     let upload = |texture| upload_texture(context, texture);
-    let textures: Vec<_> = of_model.iter().chain([&white]).map(upload).collect::<Result<_, _>>()?;
+    let textures: Vec<_> = read.chain([&white]).map(upload).collect::<Result<_, _>>()?;
     // Dynamic offsets must be multiples of the device's alignment.
-    let stride = size_of::<MaterialUniform>()
-        .next_multiple_of(context.device.limits().min_uniform_buffer_offset_alignment as usize);
-    let mut uniforms: Vec<u8> = Vec::new();
-    let mut first: HashMap<_, usize> = HashMap::new();
-    let (mut duplicates, mut places) = (Vec::new(), Vec::new());
-    for (number, material) in scene.materials().iter().enumerate() {
-        let group = material.texture.map(|t| t as usize).filter(|&t| t < of_model.len()).unwrap_or(of_model.len());
-        let (_, _, size, levels) = &textures[group];
-        let cutoff = if let AlphaMode::Mask { cutoff } = material.alpha_mode { cutoff } else { f32::MIN };
-        let base_color = if is_looked_up(scene, number) {
-            material.base_color
-        } else {
-            scene.material_colors[number].as_vec3().extend(material.base_color.w)
-        };
-        let uniform = MaterialUniform {
-            base_color: base_color.to_array(),
-            texture_size: *size,
-            last_level: (*levels - 1) as f32,
-            cutoff,
-            wrap: material.texture.map_or([0; 2], |t| scene.textures()[t as usize].wrap.map(|wrap| wrap as u32)),
-            padding: [0; 2],
-        };
-        let bytes: [u8; size_of::<MaterialUniform>()] = bytemuck::cast(uniform);
-        // Further properties on which the pipeline of a draw depends.
-        let line_kind = plan.image.as_ref().and_then(|image| image.line_kinds.get(number)).map(|&kind| kind as u32);
-        let is_blended = material.alpha_mode == AlphaMode::Blend;
-        let key = (bytes, material.texture, material.double_sided, is_looked_up(scene, number), is_blended, line_kind);
-        let same = *first.entry(key).or_insert(number);
-        duplicates.push(same);
-        if same == number {
-            let offset = u32::try_from(uniforms.len()).map_err(|_| HarnessError::BufferTooLarge {
-                what: "materials",
-                bytes: uniforms.len() as u64,
-                limit: u32::MAX.into(),
-            })?;
-            places.push((group, offset));
-            uniforms.extend(bytes);
-            uniforms.resize(uniforms.len().next_multiple_of(stride), 0);
-        } else {
-            places.push(places[same]);
-        }
-    }
-    if uniforms.is_empty() {
-        uniforms.resize(stride, 0);
+    let MaterialTable { duplicates, places, uniforms } =
+        material_table(scene, plan, context.capabilities.uniform_alignment as usize);
+    if u32::try_from(uniforms.len()).is_err() {
+        let bytes = uniforms.len() as u64;
+        return Err(HarnessError::BufferTooLarge { what: "materials", bytes, limit: u32::MAX.into() });
     }
     let uniforms = buffer(context, "materials", &uniforms, wgpu::BufferUsages::UNIFORM)?;
-    let group = |(view, sampler, _, _): &_| material_group(&context.device, layout, &uniforms, view, sampler);
+    let group = |(view, sampler): &_| material_group(&context.device, layout, &uniforms, view, sampler);
     Ok(Materials { duplicates, groups: textures.iter().map(group).collect(), places })
 }
 
-/// A texture with its mip levels, its sampler, its size and its number of levels.
-type Uploaded = (wgpu::TextureView, wgpu::Sampler, [f32; 2], u32);
+/// A texture with its mip levels, and its sampler.
+type Uploaded = (wgpu::TextureView, wgpu::Sampler);
 
 fn upload_texture(context: &GpuContext, texture: &Texture) -> Result<Uploaded, HarnessError> {
     let levels = MipMapped::new(texture).levels;
@@ -202,5 +144,5 @@ fn upload_texture(context: &GpuContext, texture: &Texture) -> Result<Uploaded, H
         mipmap_filter: wgpu::MipmapFilterMode::Linear,
         ..Default::default()
     });
-    Ok((uploaded.create_view(&Default::default()), sampler, [width as f32, height as f32], levels.len() as u32))
+    Ok((uploaded.create_view(&Default::default()), sampler))
 }

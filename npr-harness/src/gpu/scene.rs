@@ -4,21 +4,21 @@ use super::context::GpuContext;
 use super::instances::Instances;
 use super::materials::{Materials, buffer};
 use crate::error::HarnessError;
+use crate::geometry::{Batch, Split, Streams, add_batches, blended_faces, index_bytes, sources, splits};
 use crate::hatch::HatchVertex;
 use crate::hatch::gpu::HatchTextures;
 use crate::plan::{PaintPlan, Plan, corner_texture_size};
-use crate::scene::{Mesh, Object, Scene};
+use crate::scene::Scene;
 use crate::shadow::gpu::ShadowCasting;
 use bytemuck::Zeroable;
 use glam::{Vec3, Vec4};
 use npr_hatch::upload::TamChannels;
-use npr_mesh::{AlphaMode, Model};
+use npr_mesh::Model;
 use npr_outline::ContourEdges;
 use npr_outline::fin_pass::FinsOnDevice;
 use npr_outline::hull_pass::HullOnDevice;
 use npr_outline::line_pass::EdgesOnDevice;
 use std::cell::RefCell;
-use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 use std::sync::Arc;
 use wgpu::util::DeviceExt;
@@ -29,23 +29,16 @@ const SOFTWARE_DRAWS: usize = 2048;
 /// The edges of an object, and the contours that they were made from.
 pub(super) type ObjectEdges = (Arc<ContourEdges>, EdgesOnDevice);
 
-/// Faces of a mesh that have the same material, or materials of the same appearance, drawn by one call.
-pub(super) struct Batch {
-    /// The index in the mesh of the first of these materials.
-    pub(super) material: usize,
-    pub(super) indices: Range<u32>,
-}
-
 /// The GPU data of a scene that do not change from frame to frame.
 pub struct GpuScene {
-    /// Interleaved positions and normals, mesh by mesh.
-    pub(crate) vertices: wgpu::Buffer,
-    /// Texture coordinates and vertex colours, if any surface reads them.
-    pub(super) lookups: Option<wgpu::Buffer>,
-    /// Per vertex: its region, if lines are found in the image.
-    pub(super) regions: Option<wgpu::Buffer>,
+    /// Positions, mesh by mesh.
+    pub(crate) positions: wgpu::Buffer,
+    /// The other attributes of vertices, those of [`Streams`].
+    pub(super) streams: VertexStreams,
     /// The indices of unblended faces, sorted by mesh and material.
     pub(crate) indices: Option<wgpu::Buffer>,
+    /// The format of all indices.
+    pub(crate) index_format: IndexFormat,
     /// Per mesh: its batches.
     pub(super) batches: Vec<Vec<Batch>>,
     /// Per mesh: its range in the index buffer.
@@ -59,8 +52,9 @@ pub struct GpuScene {
     pub(super) materials: Materials,
     /// The maximum number of draws per pass.
     pub(super) most_draws: usize,
-    /// The edges of each object, with the contours that they were made from, if lines are found on the device.
-    pub(super) edges: Option<RefCell<Vec<ObjectEdges>>>,
+    /// The edges of each object that has lines, with the contours that they were made from, if lines are found on the
+    /// device.
+    pub(super) edges: Option<RefCell<Vec<Option<ObjectEdges>>>>,
     /// The version of the scene's materials that was uploaded.
     pub(super) materials_version: u64,
     /// Per mesh: its hull, if inverted hulls are drawn.
@@ -72,8 +66,39 @@ pub struct GpuScene {
     /// The corners of all faces, if light is constant over faces or pieces of faces. Each face then has vertices of its own,
     /// in the order of the faces.
     pub(super) facets: Option<wgpu::TextureView>,
-    /// The per-vertex data that position strokes, and the tonal art map, if surfaces are hatched.
-    pub(super) hatch: Option<(wgpu::Buffer, HatchTextures)>,
+    /// The tonal art map, if surfaces are hatched.
+    pub(super) hatch: Option<HatchTextures>,
+}
+
+/// The format of indices.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct IndexFormat {
+    /// Whether they have 16 bits, not 32.
+    is_short: bool,
+}
+
+impl IndexFormat {
+    /// Indices in this format.
+    pub(crate) fn bytes(self, indices: &[u32]) -> Vec<u8> {
+        if self.is_short {
+            indices.iter().flat_map(|&index| (index as u16).to_ne_bytes()).collect()
+        } else {
+            bytemuck::cast_slice(indices).to_vec()
+        }
+    }
+
+    /// The format of wgpu.
+    pub(crate) fn on_device(self) -> wgpu::IndexFormat {
+        if self.is_short { wgpu::IndexFormat::Uint16 } else { wgpu::IndexFormat::Uint32 }
+    }
+}
+
+/// The attributes of vertices that a plan reads, a buffer each.
+pub(super) struct VertexStreams {
+    /// Which there are.
+    pub(super) present: Streams,
+    /// In the order of the slots: normals, texture coordinates, colours, regions, directions and octaves of strokes.
+    pub(super) buffers: [Option<wgpu::Buffer>; 6],
 }
 
 impl GpuScene {
@@ -83,63 +108,43 @@ impl GpuScene {
         scene: &Scene,
         plan: &Plan,
     ) -> Result<Self, HarnessError> {
-        let interpolates_light = plan.paint.as_ref().is_some_and(|paint| paint.interpolates_light);
         let buffer = |what, contents: &[u8], usage| buffer(context, what, contents, usage);
-        let regions_of = plan.image.as_ref().map(|image| &image.regions);
         let lights_faces = plan.paint.as_ref().is_some_and(PaintPlan::lights_faces);
-        let split = |(number, mesh): (usize, &Arc<Mesh>)| {
-            let model = mesh.model();
-            let regions = regions_of.map(|of| of.of_meshes[number].as_slice());
-            if lights_faces {
-                return Some(split_all(&model.faces, regions));
-            }
-            regions.map(|regions| split_by_region(&model.faces, regions, model.positions.len()))
-        };
-        let splits: Vec<Option<Split>> = scene.meshes().iter().enumerate().map(split).collect();
+        let present = Streams::new(scene, plan);
+        let splits = splits(scene, plan, present);
         let meshes = || scene.meshes().iter().map(|mesh| mesh.model()).zip(&splits);
-        let (mut vertices, mut first_vertices) = (Vec::<[f32; 6]>::new(), Vec::new());
+        let (mut positions, mut first_vertices) = (Vec::<Vec3>::new(), Vec::new());
         for (model, split) in meshes() {
-            first_vertices.push(vertices.len() as u32);
-            vertices.extend(sources(model, split).map(|i| {
-                let (p, n) = (model.positions[i], model.normals[i]);
-                [p.x, p.y, p.z, n.x, n.y, n.z]
-            }));
+            first_vertices.push(positions.len() as u32);
+            positions.extend(sources(model, split).map(|i| model.positions[i]));
         }
-        let count = vertices.len();
-        let vertices = buffer("vertices", bytemuck::cast_slice(&vertices), wgpu::BufferUsages::VERTEX)?;
-        let lookups = if plan.looks_up || interpolates_light {
-            let mut lookups = Vec::<[f32; 6]>::with_capacity(count);
-            for (model, split) in meshes() {
-                lookups.extend(sources(model, split).map(|i| {
-                    let uv = model.uvs.get(i).copied().unwrap_or_default();
-                    let color = model.colors.get(i).copied().unwrap_or(Vec4::ONE);
-                    [uv.x, uv.y, color.x, color.y, color.z, color.w]
-                }));
-            }
-            Some(buffer("texture coordinates and colours", bytemuck::cast_slice(&lookups), wgpu::BufferUsages::VERTEX)?)
-        } else {
-            None
+        let index_format = IndexFormat { is_short: index_bytes(positions.len()) == 2 };
+        let vertex = wgpu::BufferUsages::VERTEX;
+        let positions = buffer("positions", bytemuck::cast_slice(&positions), vertex)?;
+        let streams = VertexStreams {
+            present,
+            buffers: [
+                stream(context, present.normals, "normals", meshes(), |model, i| model.normals[i])?,
+                stream(context, present.uvs, "texture coordinates", meshes(), |model, i| {
+                    model.uvs.get(i).copied().unwrap_or_default()
+                })?,
+                stream(context, present.colors, "vertex colours", meshes(), |model, i| {
+                    model.colors.get(i).copied().unwrap_or(Vec4::ONE)
+                })?,
+                if present.regions {
+                    let regions: Vec<u32> = splits.iter().flatten().flat_map(|split| &split.regions).copied().collect();
+                    Some(buffer("regions", bytemuck::cast_slice(&regions), vertex)?)
+                } else {
+                    None
+                },
+                stroke_stream(context, present.directions, "directions of strokes", plan, meshes(), |vertex| {
+                    [vertex.diagonal, vertex.others]
+                })?,
+                stroke_stream(context, present.octaves, "octaves of strokes", plan, meshes(), |vertex| vertex.octave)?,
+            ],
         };
-        let regions = if regions_of.is_some() || interpolates_light {
-            let mut regions: Vec<u32> = splits.iter().flatten().flat_map(|split| &split.regions).copied().collect();
-            regions.resize(count, 0);
-            Some(buffer("regions", bytemuck::cast_slice(&regions), wgpu::BufferUsages::VERTEX)?)
-        } else {
-            None
-        };
-        let hatch = match plan.hatch() {
-            Some(hatch) => {
-                let mut vertices = Vec::<HatchVertex>::with_capacity(count);
-                for ((model, split), of_mesh) in meshes().zip(&hatch.vertices) {
-                    let vertex = |i: usize| of_mesh.get(i).copied().unwrap_or(HatchVertex::zeroed());
-                    vertices.extend(sources(model, split).map(vertex));
-                }
-                let channels = if plan.half_float_maps { TamChannels::HalfFloats } else { TamChannels::Bytes };
-                let vertices = buffer("strokes", bytemuck::cast_slice(&vertices), wgpu::BufferUsages::VERTEX)?;
-                Some((vertices, HatchTextures::new(context, hatch, channels)?))
-            }
-            None => None,
-        };
+        let channels = if plan.half_float_maps { TamChannels::HalfFloats } else { TamChannels::Bytes };
+        let hatch = plan.hatch().map(|hatch| HatchTextures::new(context, hatch, channels)).transpose()?;
         let materials = Materials::new(context, material_layout, scene, plan)?;
         let (mut indices, mut batches, mut solid) = (Vec::new(), Vec::new(), Vec::new());
         for (number, mesh) in scene.meshes().iter().enumerate() {
@@ -153,18 +158,18 @@ impl GpuScene {
         let indices = if indices.is_empty() {
             None
         } else {
-            Some(buffer("faces", bytemuck::cast_slice(&indices), wgpu::BufferUsages::INDEX)?)
+            Some(buffer("faces", &index_format.bytes(&indices), wgpu::BufferUsages::INDEX)?)
         };
         Ok(Self {
-            vertices,
-            lookups,
-            regions,
+            positions,
+            streams,
             indices,
+            index_format,
             batches,
             solid,
             first_vertices,
             blended_faces,
-            instances: RefCell::new(Instances::new(context, scene, regions_of, plan.object_pairs())?),
+            instances: RefCell::new(Instances::new(context, scene, plan.regions(), plan.object_pairs())?),
             materials,
             most_draws: if context.is_software() { SOFTWARE_DRAWS } else { usize::MAX },
             edges: None,
@@ -192,10 +197,43 @@ impl GpuScene {
     }
 }
 
-/// The vertices of a mesh that its vertices on the device are copies of.
-fn sources<'a>(model: &Model, split: &'a Option<Split>) -> impl Iterator<Item = usize> + use<'a> {
-    let copied = split.as_ref().map(|split| split.sources.as_slice());
-    (0..copied.map_or(model.positions.len(), <[u32]>::len)).map(move |i| copied.map_or(i, |of| of[i] as usize))
+/// The meshes' models and their splits.
+type Meshes<'a> = (&'a Model, &'a Option<Split>);
+
+/// Uploads an attribute of all vertices, if it is `needed`.
+fn stream<'a, T: bytemuck::Pod>(
+    context: &GpuContext,
+    needed: bool,
+    what: &'static str,
+    meshes: impl Iterator<Item = Meshes<'a>>,
+    attribute: impl Fn(&Model, usize) -> T,
+) -> Result<Option<wgpu::Buffer>, HarnessError> {
+    if !needed {
+        return Ok(None);
+    }
+    let mut values = Vec::new();
+    for (model, split) in meshes {
+        values.extend(sources(model, split).map(|i| attribute(model, i)));
+    }
+    buffer(context, what, bytemuck::cast_slice(&values), wgpu::BufferUsages::VERTEX).map(Some)
+}
+
+/// As [`stream`], of the vertices' data for strokes.
+fn stroke_stream<'a, T: bytemuck::Pod>(
+    context: &GpuContext,
+    needed: bool,
+    what: &'static str,
+    plan: &Plan,
+    meshes: impl Iterator<Item = Meshes<'a>>,
+    attribute: impl Fn(&HatchVertex) -> T,
+) -> Result<Option<wgpu::Buffer>, HarnessError> {
+    let Some(hatch) = plan.hatch().filter(|_| needed) else { return Ok(None) };
+    let mut values = Vec::new();
+    for ((model, split), of_mesh) in meshes.zip(&hatch.vertices) {
+        let none = HatchVertex::zeroed();
+        values.extend(sources(model, split).map(|i| attribute(of_mesh.get(i).unwrap_or(&none))));
+    }
+    buffer(context, what, bytemuck::cast_slice(&values), wgpu::BufferUsages::VERTEX).map(Some)
 }
 
 /// Uploads what `facets.wgsl` reads: a position and a normal per face, or per corner.
@@ -235,105 +273,4 @@ fn upload_facets(context: &GpuContext, scene: &Scene, paint: &PaintPlan) -> Resu
         bytemuck::cast_slice(&texels),
     );
     Ok(texture.create_view(&Default::default()))
-}
-
-/// A vertex list in which each vertex belongs to one region, or to one face.
-struct Split {
-    /// Per vertex: the vertex of the model that it is a copy of.
-    sources: Vec<u32>,
-    /// Per vertex: its region; empty if there are no regions.
-    regions: Vec<u32>,
-    faces: Vec<[u32; 3]>,
-}
-
-/// Gives each face vertices of its own, in the order of the faces.
-fn split_all(faces: &[[u32; 3]], face_region: Option<&[u32]>) -> Split {
-    let of_corners = |regions: &[u32]| regions.iter().flat_map(|&region| [region; 3]).collect();
-    Split {
-        sources: faces.as_flattened().to_vec(),
-        regions: face_region.map_or_else(Vec::new, of_corners),
-        faces: (0..faces.len() as u32).map(|face| [0, 1, 2].map(|corner| 3 * face + corner)).collect(),
-    }
-}
-
-/// Assigns each vertex the region of its first face, and duplicates it for faces of other regions.
-fn split_by_region(faces: &[[u32; 3]], face_region: &[u32], vertices: usize) -> Split {
-    let mut split = Split {
-        sources: (0..vertices as u32).collect(),
-        regions: vec![0; vertices],
-        faces: Vec::with_capacity(faces.len()),
-    };
-    let mut added = HashMap::new();
-    for (face, &region) in faces.iter().zip(face_region) {
-        split.faces.push(face.map(|vertex| {
-            let first = &mut split.regions[vertex as usize];
-            if *first == 0 {
-                *first = region;
-            }
-            if *first == region {
-                return vertex;
-            }
-            *added.entry((vertex, region)).or_insert_with(|| {
-                split.sources.push(vertex);
-                split.sources.len() as u32 - 1
-            })
-        }));
-    }
-    split.regions.resize(split.sources.len(), 0);
-    for ((_, region), vertex) in added {
-        split.regions[vertex as usize] = region;
-    }
-    split
-}
-
-/// Adds a mesh's unblended faces to the index buffer, sorted by material, and returns their batches.
-///
-/// - `faces`: their vertices, relative to the mesh's first;
-/// - `duplicates`: per material of the mesh, the scene index of the first material with the same appearance.
-fn add_batches(
-    mesh: &Mesh,
-    faces: &[[u32; 3]],
-    duplicates: &[usize],
-    first_vertex: u32,
-    indices: &mut Vec<u32>,
-) -> Vec<Batch> {
-    let (model, edges) = (mesh.model(), mesh.edges());
-    let material = |face: u32| model.face_material[face as usize] as usize;
-    let mut solid: Vec<u32> =
-        (0..faces.len() as u32).filter(|&f| model.materials[material(f)].alpha_mode != AlphaMode::Blend).collect();
-    // The sort is stable: the faces of a material keep the order of the file, in which neighbours share vertices.
-    solid.sort_by_key(|&face| duplicates[material(face)]);
-    // A duplicate face never passes the depth test after the face with the same corners, so it is dropped; some files
-    // have half a million of them. Alpha-tested duplicates are kept, because the first face may be discarded where the
-    // second is visible.
-    if !edges.further_faces.is_empty() || edges.skipped.iter().any(|&skipped| skipped) {
-        let mut seen = HashSet::new();
-        solid.retain(|&face| {
-            let corners = model.faces[face as usize].map(|v| edges.representative[v as usize]);
-            let material = material(face);
-            matches!(model.materials[material].alpha_mode, AlphaMode::Mask { .. })
-                || seen.insert((duplicates[material], corners))
-        });
-    }
-    let mut batches: Vec<Batch> = Vec::new();
-    indices.reserve(3 * solid.len());
-    for face in solid {
-        let start = indices.len() as u32;
-        indices.extend(faces[face as usize].map(|vertex| first_vertex + vertex));
-        match batches.last_mut() {
-            Some(batch) if duplicates[batch.material] == duplicates[material(face)] => batch.indices.end += 3,
-            _ => batches.push(Batch { material: material(face), indices: start..start + 3 }),
-        }
-    }
-    batches
-}
-
-/// The blended faces of all objects.
-fn blended_faces(scene: &Scene) -> Vec<[u32; 2]> {
-    let of_object = |(number, (_, mesh)): (u32, (&Object, &Mesh))| {
-        let faces = if mesh.has_blend() { mesh.model().faces.len() as u32 } else { 0 };
-        (0..faces).map(move |face| [number, face])
-    };
-    let is_blended = |&[object, face]: &[u32; 2]| scene.material(object, face).alpha_mode == AlphaMode::Blend;
-    (0u32..).zip(scene.placed_objects()).flat_map(of_object).filter(is_blended).collect()
 }

@@ -7,6 +7,7 @@ use crate::hatch::gpu::{HATCH_ENTRY_WGSL, HATCH_FACETS_WGSL, HATCH_WGSL, HatchVa
 use crate::plan::{PaintPlan, Plan};
 use crate::shade::{Shade, ShadeOnDevice, ShadeView, flag};
 use crate::shadow::gpu::SHADOW_WGSL;
+use npr_outline::filled_buffer::filled_buffer;
 use npr_toon::normal::NormalUse;
 use npr_toon::painter::PainterUniform;
 use npr_toon::source::{Light, LightKind};
@@ -114,8 +115,7 @@ impl LightOnDevice {
         let at_vertices = paint.is_some_and(|paint| paint.normals == NormalUse::PerVertex);
         // Unchecked, because two lights that cancel out have no direction, which is not an error here.
         let placed = |lights: &[Light]| PainterUniform::unchecked(lights, shade.light_scale);
-        let stride = (size_of::<PainterUniform>() as u32)
-            .next_multiple_of(context.device.limits().min_uniform_buffer_offset_alignment);
+        let stride = (size_of::<PainterUniform>() as u32).next_multiple_of(context.capabilities.uniform_alignment);
         let pairs = paint.map_or(&[][..], |paint| &paint.light_pairs);
         let mut placed_lights = bytemuck::bytes_of(&placed(lights)).to_vec();
         for (number, pair) in pairs.iter().enumerate() {
@@ -131,7 +131,7 @@ impl LightOnDevice {
                 at_vertices,
                 lights_faces,
             },
-            lights: uniform(&placed_lights),
+            lights: filled_buffer(&context.device, "lights", &placed_lights, wgpu::BufferUsages::UNIFORM),
             stride,
             shade: (!shade.uniform.is_empty()).then(|| uniform(&shade.uniform)),
             image,
@@ -176,16 +176,16 @@ fn upload_image(
     let texture = context.device.create_texture_with_data(
         &context.queue,
         // Display-referred, like all colours of a style.
-        &image_texture(width, height),
+        &image_texture("image of the shade", width, height),
         wgpu::util::TextureDataOrder::LayerMajor,
         bytemuck::cast_slice(texels),
     );
     Ok(texture.create_view(&Default::default()))
 }
 
-fn image_texture(width: u32, height: u32) -> wgpu::TextureDescriptor<'static> {
+fn image_texture(label: &'static str, width: u32, height: u32) -> wgpu::TextureDescriptor<'static> {
     wgpu::TextureDescriptor {
-        label: Some("image of the shade"),
+        label: Some(label),
         size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
         mip_level_count: 1,
         sample_count: 1,
@@ -206,7 +206,7 @@ impl Blank {
     pub(super) fn new(device: &wgpu::Device) -> Self {
         Self {
             uniform: uniform_buffer(device, &[0; 16]),
-            image: device.create_texture(&image_texture(1, 1)).create_view(&Default::default()),
+            image: device.create_texture(&image_texture("no image", 1, 1)).create_view(&Default::default()),
         }
     }
 }

@@ -1,17 +1,20 @@
 //! The geometry pass.
 
-use super::instances::INSTANCE_LAYOUT;
-use super::materials::is_looked_up;
+use super::instances::{Constant, INSTANCE_ATTRIBUTES, constant, instance_layout};
 use super::scene::GpuScene;
 use super::shader::{Blank, LightOnDevice, ShaderKey, assemble};
 use super::targets::COLOR_FORMAT;
 use super::uniform::uniform_buffer;
 use crate::camera::Camera;
 use crate::error::HarnessError;
+use crate::geometry::{
+    COLOR_BYTES, DIRECTION_BYTES, NORMAL_BYTES, OCTAVE_BYTES, POSITION_BYTES, REGION_BYTES, Streams, UV_BYTES,
+    is_looked_up,
+};
 use crate::hatch::gpu::{HatchTextures, HatchUniform};
 use crate::image_lines::gbuffer::targets::TEXEL_FORMAT;
 use crate::image_lines::plan::ImagePlan;
-use crate::plan::Plan;
+use crate::plan::{PaintPlan, Plan};
 use crate::scene::Scene;
 use crate::shade::flag;
 use crate::shadow::ShadowLines;
@@ -148,6 +151,8 @@ struct Variant {
     shadow: ShadowVariant,
     /// The format of the depth buffer.
     depth: wgpu::TextureFormat,
+    /// The attributes of vertices that have buffers.
+    streams: Streams,
     /// Whether there is a colour target, even if it is not written.
     colored: bool,
     clipped: bool,
@@ -323,7 +328,7 @@ impl SurfacePass {
             }
             None => None,
         };
-        let strokes = uploaded.hatch.as_ref().map_or(&self.no_strokes, |(_, textures)| textures);
+        let strokes = uploaded.hatch.as_ref().unwrap_or(&self.no_strokes);
         let bound = [
             view.as_entire_binding(),
             light.shade.as_ref().unwrap_or(&self.blank.uniform).as_entire_binding(),
@@ -364,6 +369,7 @@ impl SurfacePass {
             },
             _ => Paint::Nothing,
         };
+        let shows_colors = plan.paint.as_ref().is_some_and(PaintPlan::shows_surface_color);
         let by_alpha = plan.paint.as_ref().is_some_and(|paint| paint.shade.model().material_by_alpha());
         let blended = if plan.blended && paint != Paint::Nothing {
             back_to_front(scene, &uploaded.blended_faces, camera)
@@ -381,16 +387,10 @@ impl SurfacePass {
         }
         let blended_indices = (!blended.is_empty()).then(|| {
             let faces: Vec<_> = blended.iter().map(|&face| uploaded.face_vertices(scene, face)).collect();
-            filled_buffer(device, "blended faces", bytemuck::cast_slice(&faces), wgpu::BufferUsages::INDEX)
+            let indices = uploaded.index_format.bytes(faces.as_flattened());
+            filled_buffer(device, "blended faces", &indices, wgpu::BufferUsages::INDEX)
         });
-        let paper = plan.paper.as_dvec3();
-        let paper = wgpu::LoadOp::Clear(wgpu::Color { r: paper.x, g: paper.y, b: paper.z, a: 1.0 });
-        let attachment = |view, load| wgpu::RenderPassColorAttachment {
-            view,
-            depth_slice: None,
-            resolve_target: None,
-            ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
-        };
+        let paper = paper(plan);
         let bound = (&view_group, uploaded, targets.depth);
         let paired = !plan.object_pairs().is_empty();
         let mut set = None;
@@ -408,7 +408,7 @@ impl SurfacePass {
                     region_of_texture: line_kind == LineKind::Regions && material.texture.is_some(),
                 }
             });
-            let wanted = paint != Paint::Nothing
+            let wanted = paint != Paint::Nothing && (shows_colors || blended)
                 || plan.cut_out
                 || inking.is_some_and(|inking| inking.line_kind != LineKind::Normals);
             let variant = Variant {
@@ -422,6 +422,7 @@ impl SurfacePass {
                 // Blended surfaces receive no shadows: the stencil was counted against the surfaces behind them.
                 shadow: if blended { ShadowVariant::default() } else { ShadowVariant::new(plan, shadow) },
                 depth: targets.depth.texture().format(),
+                streams: uploaded.streams.present,
                 colored,
                 clipped: scene.clip.is_some(),
                 mesh_normals: plan.mesh_normals,
@@ -433,14 +434,14 @@ impl SurfacePass {
             if set != Some(variant) {
                 let mut pipelines = self.pipelines.borrow_mut();
                 pass.set_pipeline(pipelines.entry(variant).or_insert_with(|| self.pipeline(device, variant)));
-                pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
+                pass.set_index_buffer(indices.slice(..), uploaded.index_format.on_device());
                 set = Some(variant);
             }
             if paired {
                 pass.set_bind_group(0, &view_group, &[drawn.lights * light.stride]);
             }
             uploaded.materials.bind(pass, drawn.material);
-            pass.set_vertex_buffer(4, drawn.instances);
+            pass.set_vertex_buffer(INSTANCE_SLOT, drawn.instances);
             pass.draw_indexed(drawn.indices, 0, 0..drawn.count);
         };
         // WebGL2 has one write mask and one blend state for all targets of a pass. Therefore an unpainted picture is
@@ -450,17 +451,11 @@ impl SurfacePass {
         let color = targets.color.map(|view| attachment(view, paper));
         // Zero texels denote background.
         let texels = targets.texels.map(|view| attachment(view, wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT)));
-        if !colored && color.is_some() {
-            let color_attachments = std::slice::from_ref(&color);
-            drop(encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some("paper"),
-                color_attachments,
-                ..Default::default()
-            }));
+        if let Some(view) = targets.color.filter(|_| !colored) {
+            clear(encoder, plan, view);
         }
         let mut pass = begin(encoder, bound, [color.filter(|_| colored), texels], wgpu::LoadOp::Clear(0.0));
-        let needed = targets.color.is_none() || plan.draws_surfaces;
-        for run in instances.runs().iter().filter(|_| needed) {
+        for run in instances.runs() {
             let (first, is_one) = run.material;
             for batch in &uploaded.batches[run.mesh] {
                 let drawn = Drawn {
@@ -525,36 +520,21 @@ impl SurfacePass {
             (Paint::Hatched, _, false) => ("vs_hatched", "fs_hatched"),
             (Paint::Hatched, _, true) => ("vs_hatched", "fs_hatched_inked"),
         };
-        let geometry = wgpu::VertexBufferLayout {
-            array_stride: 24,
-            step_mode: wgpu::VertexStepMode::Vertex,
-            attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3],
-        };
-        let lookups = wgpu::VertexBufferLayout {
-            array_stride: 24,
-            step_mode: wgpu::VertexStepMode::Vertex,
-            attributes: &wgpu::vertex_attr_array![2 => Float32x2, 3 => Float32x4],
-        };
-        let regions = wgpu::VertexBufferLayout {
-            array_stride: 4,
-            step_mode: wgpu::VertexStepMode::Vertex,
-            attributes: &wgpu::vertex_attr_array![4 => Uint32],
-        };
-        let strokes = wgpu::VertexBufferLayout {
-            array_stride: 28,
-            step_mode: wgpu::VertexStepMode::Vertex,
-            attributes: &wgpu::vertex_attr_array![5 => Float32x3, 6 => Float32x3, 7 => Float32],
-        };
         let hatched = paint == Paint::Hatched;
         let everything = hatched || vertex == "vs_lit" || vertex == "vs_facet";
-        let (looks_up, has_regions) = (everything || looked_up, everything || inked);
-        let buffers = [
-            Some(geometry),
-            looks_up.then_some(lookups),
-            has_regions.then_some(regions),
-            hatched.then_some(strokes),
-            Some(INSTANCE_LAYOUT),
-        ];
+        // The attributes that the vertex shader declares.
+        let declared = Streams {
+            normals: vertex != "vs_depth",
+            uvs: everything || looked_up,
+            colors: everything || looked_up,
+            regions: everything || inked,
+            directions: hatched,
+            octaves: hatched,
+        };
+        let (streams, constants) = vertex_streams(declared, variant.streams);
+        let objects: Vec<_> = INSTANCE_ATTRIBUTES.into_iter().chain(constants).collect();
+        let mut buffers: Vec<_> = streams.iter().map(stream_layout).collect();
+        buffers.push(Some(instance_layout(&objects)));
         let target = wgpu::ColorTargetState {
             format: COLOR_FORMAT,
             blend: blended.then_some(wgpu::BlendState::ALPHA_BLENDING),
@@ -628,6 +608,86 @@ impl SurfacePass {
     }
 }
 
+/// The vertex buffer with the data of objects, after those of vertices.
+const INSTANCE_SLOT: u32 = 7;
+
+/// The layout of a vertex buffer of [`vertex_streams`], if it is bound.
+fn stream_layout((stride, attributes): &(u64, Vec<wgpu::VertexAttribute>)) -> Option<wgpu::VertexBufferLayout<'_>> {
+    let (array_stride, step_mode) = (*stride, wgpu::VertexStepMode::Vertex);
+    (!attributes.is_empty()).then_some(wgpu::VertexBufferLayout { array_stride, step_mode, attributes })
+}
+
+/// The stride and the attributes of each vertex buffer, without attributes where it is not bound; and the attributes that
+/// a shader declares but no buffer of vertices has.
+fn vertex_streams(
+    declared: Streams,
+    present: Streams,
+) -> ([(u64, Vec<wgpu::VertexAttribute>); INSTANCE_SLOT as usize], Vec<wgpu::VertexAttribute>) {
+    let mut constants = Vec::new();
+    let mut stream = |(declared, present): (bool, bool), bytes, attributes: &[wgpu::VertexAttribute], value| {
+        match (declared, present) {
+            (true, true) => return (bytes, attributes.to_vec()),
+            (true, false) => constants.extend(attributes.iter().map(|of| constant(of.shader_location, value))),
+            (false, _) => {}
+        }
+        (bytes, Vec::new())
+    };
+    let streams = [
+        stream((true, true), POSITION_BYTES, &wgpu::vertex_attr_array![0 => Float32x3], Constant::Zero),
+        stream(
+            (declared.normals, present.normals),
+            NORMAL_BYTES,
+            &wgpu::vertex_attr_array![1 => Float32x3],
+            Constant::Zero,
+        ),
+        stream((declared.uvs, present.uvs), UV_BYTES, &wgpu::vertex_attr_array![2 => Float32x2], Constant::Zero),
+        stream(
+            (declared.colors, present.colors),
+            COLOR_BYTES,
+            &wgpu::vertex_attr_array![3 => Float32x4],
+            Constant::One,
+        ),
+        stream(
+            (declared.regions, present.regions),
+            REGION_BYTES,
+            &wgpu::vertex_attr_array![4 => Uint32],
+            Constant::NoRegion,
+        ),
+        stream(
+            (declared.directions, present.directions),
+            DIRECTION_BYTES,
+            &wgpu::vertex_attr_array![5 => Float32x3, 6 => Float32x3],
+            Constant::Zero,
+        ),
+        stream(
+            (declared.octaves, present.octaves),
+            OCTAVE_BYTES,
+            &wgpu::vertex_attr_array![7 => Float32],
+            Constant::Zero,
+        ),
+    ];
+    (streams, constants)
+}
+
+fn paper(plan: &Plan) -> wgpu::LoadOp<wgpu::Color> {
+    let paper = plan.paper.as_dvec3();
+    wgpu::LoadOp::Clear(wgpu::Color { r: paper.x, g: paper.y, b: paper.z, a: 1.0 })
+}
+
+fn attachment(view: &wgpu::TextureView, load: wgpu::LoadOp<wgpu::Color>) -> wgpu::RenderPassColorAttachment<'_> {
+    let ops = wgpu::Operations { load, store: wgpu::StoreOp::Store };
+    wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops }
+}
+
+/// Records filling a picture with paper.
+pub(super) fn clear(encoder: &mut wgpu::CommandEncoder, plan: &Plan, color: &wgpu::TextureView) {
+    drop(encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some("paper"),
+        color_attachments: &[Some(attachment(color, paper(plan)))],
+        ..Default::default()
+    }));
+}
+
 /// Begins a pass over depth and, if present, colour and texels, and binds everything that does not depend on the
 /// material.
 fn begin<'a>(
@@ -648,15 +708,11 @@ fn begin<'a>(
         ..Default::default()
     });
     pass.set_bind_group(0, view_group, &[0]);
-    pass.set_vertex_buffer(0, uploaded.vertices.slice(..));
-    if let Some(lookups) = &uploaded.lookups {
-        pass.set_vertex_buffer(1, lookups.slice(..));
-    }
-    if let Some(regions) = &uploaded.regions {
-        pass.set_vertex_buffer(2, regions.slice(..));
-    }
-    if let Some((vertices, _)) = &uploaded.hatch {
-        pass.set_vertex_buffer(3, vertices.slice(..));
+    pass.set_vertex_buffer(0, uploaded.positions.slice(..));
+    for (slot, buffer) in (1..).zip(&uploaded.streams.buffers) {
+        if let Some(buffer) = buffer {
+            pass.set_vertex_buffer(slot, buffer.slice(..));
+        }
     }
     pass
 }

@@ -2,11 +2,11 @@
 
 use super::context::GpuContext;
 use crate::error::HarnessError;
-use crate::image_lines::gbuffer::style::GBufferTarget;
 use crate::image_lines::gbuffer::targets::{GBufferTargets, TEXEL_FORMAT};
 use crate::image_lines::plan::ImagePlan;
 use crate::image_lines::style::InkScale;
 use crate::picture::Image;
+use crate::plan::{TexelFormat, resources};
 use crate::shadow::gpu::StencilTarget;
 use crate::view::View;
 use npr_imagespace::format::texel::TexelLayout;
@@ -14,14 +14,18 @@ use npr_imagespace::pass::INK_FORMAT;
 use npr_imagespace::pass::disc::DiscScratch;
 use npr_imagespace::pass::fused::texel_format;
 use npr_outline::line_pass::COVERAGE_FORMAT;
-use std::cell::{Cell, Ref, RefCell};
+use std::cell::{Cell, OnceCell, Ref, RefCell};
 
 /// Without sRGB encoding on store, because values are display-referred.
-pub(crate) const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+pub(crate) const COLOR_FORMAT: wgpu::TextureFormat = resources::COLOR.on_device();
 /// Depth is reversed: 1 at the near plane.
-pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = resources::DEPTH.on_device();
 
-/// The colour, depth and line targets of a frame.
+/// The usages of targets that are read by later passes, and copied.
+const READ_AND_COPIED: wgpu::TextureUsages =
+    wgpu::TextureUsages::TEXTURE_BINDING.union(wgpu::TextureUsages::COPY_SRC).union(wgpu::TextureUsages::COPY_DST);
+
+/// The colour, depth and line targets of a frame; those besides colour are created when a frame first needs them.
 pub struct Targets {
     /// The width, px.
     pub width: u32,
@@ -33,11 +37,10 @@ pub struct Targets {
     fine: Option<Box<Targets>>,
     color: wgpu::Texture,
     pub(crate) color_view: wgpu::TextureView,
-    pub(crate) depth_view: wgpu::TextureView,
-    /// The picture with lines on it.
-    inked: wgpu::Texture,
-    pub(crate) inked_view: wgpu::TextureView,
-    pub(crate) coverage_view: wgpu::TextureView,
+    /// Created when surfaces are first drawn.
+    depth_view: OnceCell<wgpu::TextureView>,
+    /// Created when lines along edges are first drawn.
+    edge_lines: OnceCell<EdgeLineTargets>,
     /// Created on first use, and recreated for a style that needs others.
     ink: RefCell<Option<InkTargets>>,
     /// The stencil in which shadow volumes are counted.
@@ -46,9 +49,16 @@ pub struct Targets {
     is_inked: Cell<bool>,
 }
 
+/// The targets for lines along edges.
+pub(crate) struct EdgeLineTargets {
+    /// The picture with lines on it.
+    inked: wgpu::Texture,
+    pub(crate) inked_view: wgpu::TextureView,
+    pub(crate) coverage_view: wgpu::TextureView,
+}
+
 /// The targets for image-space lines.
 pub(crate) struct InkTargets {
-    /// Their layout, size, whether they include dilation, and whether the ink has its own geometry pass.
     kind: InkKind,
     pub(crate) size: (u32, u32),
     pub(crate) texels: wgpu::TextureView,
@@ -68,16 +78,16 @@ pub(crate) struct InkTargets {
 
 impl InkTargets {
     fn new(context: &GpuContext, image: &ImagePlan) -> Result<Self, HarnessError> {
-        let (ink, size, dilated) = (&image.ink, image.size, image.has_dilation());
+        let (ink, size) = (&image.ink, image.size);
+        let dilated = image.finds_lines() && image.has_dilation();
         context.capabilities.check_size("the ink", size)?;
-        let view = |label, format, usage| texture(context, label, format, usage, size).create_view(&Default::default());
+        let device = &context.device;
+        let view = |label, format, usage| texture(device, label, format, usage, size).create_view(&Default::default());
         let read = wgpu::TextureUsages::TEXTURE_BINDING;
         let scaled = ink.scale != InkScale::One;
         let texels = if ink.gbuffer.is_some() { TEXEL_FORMAT } else { texel_format(ink.layout) };
-        let of_gbuffer = |format| {
-            let copied = wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::COPY_DST;
-            view("G-buffer", format, if format == INK_FORMAT { read | copied } else { read })
-        };
+        let ink_of = |label| view(label, INK_FORMAT, READ_AND_COPIED);
+        let encoded = |format| view("G-buffer", format, read);
         let depth = || view("depth of the ink", DEPTH_FORMAT, wgpu::TextureUsages::empty());
         Ok(Self {
             kind: ink_kind(image),
@@ -85,30 +95,36 @@ impl InkTargets {
             texels: view("normal, region and depth", texels, read | wgpu::TextureUsages::COPY_SRC),
             depth: image.own_surfaces.then(depth),
             stencil: StencilTarget::default(),
-            found: image.passes().any(|lines| image.is_stored(lines)).then(|| of_gbuffer(INK_FORMAT)),
-            gbuffer: ink.gbuffer.as_ref().map(|gbuffer| GBufferTargets::new(gbuffer, of_gbuffer)),
-            dilation: dilated.then(|| DiscScratch::new(&context.device, size.into())),
+            found: image.stores_ink().then(|| ink_of("ink")),
+            gbuffer: ink
+                .gbuffer
+                .as_ref()
+                .filter(|_| image.finds_lines())
+                .map(|gbuffer| GBufferTargets::new(gbuffer, encoded, || ink_of("second ink"))),
+            dilation: dilated.then(|| DiscScratch::new(device, size.into())),
             thick: (scaled && dilated).then(|| view("thick ink", INK_FORMAT, read)),
         })
     }
 }
 
-/// The properties for which ink targets are created.
-pub(crate) type InkKind = (TexelLayout, (u32, u32), bool, bool, Option<std::mem::Discriminant<GBufferTarget>>);
+/// The properties for which ink targets are created: the layout of texels, the size, whether there is dilation, whether
+/// the ink has its own geometry pass, whether lines are found; and the encoded targets of a G-buffer and whether it has
+/// steps.
+pub(crate) type InkKind = (TexelLayout, (u32, u32), [bool; 3], Option<([Option<TexelFormat>; 3], bool)>);
 
 pub(crate) fn ink_kind(image: &ImagePlan) -> InkKind {
-    let target = image.gbuffer.as_ref().map(|plan| std::mem::discriminant(&plan.gbuffer.target));
-    (image.ink.layout, image.size, image.has_dilation(), image.own_surfaces, target)
+    let gbuffer = image.gbuffer.as_ref().map(|plan| (plan.gbuffer.encoded(), plan.gbuffer.has_steps()));
+    (image.ink.layout, image.size, [image.has_dilation(), image.own_surfaces, image.finds_lines()], gbuffer)
 }
 
 fn texture(
-    context: &GpuContext,
+    device: &wgpu::Device,
     label: &str,
     format: wgpu::TextureFormat,
     usage: wgpu::TextureUsages,
     (width, height): (u32, u32),
 ) -> wgpu::Texture {
-    context.device.create_texture(&wgpu::TextureDescriptor {
+    device.create_texture(&wgpu::TextureDescriptor {
         label: Some(label),
         size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
         mip_level_count: 1,
@@ -132,23 +148,16 @@ impl Targets {
                 Some(Box::new(Self::new(context, &View { size: view.sampled_size(), samples: 1, ..*view })?))
             }
         };
-        let texture = |label, format, usage| texture(context, label, format, usage, (width, height));
-        let view = |texture: &wgpu::Texture| texture.create_view(&Default::default());
-        let read = wgpu::TextureUsages::TEXTURE_BINDING;
-        let copied = wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::COPY_DST;
-        let color = texture("colour", COLOR_FORMAT, read | copied);
-        let inked = texture("colour and lines", COLOR_FORMAT, read | copied);
+        let color = texture(&context.device, "colour", COLOR_FORMAT, READ_AND_COPIED, (width, height));
         Ok(Self {
             width,
             height,
             samples,
             fine,
-            color_view: view(&color),
+            color_view: color.create_view(&Default::default()),
             color,
-            depth_view: view(&texture("depth", DEPTH_FORMAT, read)),
-            inked_view: view(&inked),
-            inked,
-            coverage_view: view(&texture("greatest coverage", COVERAGE_FORMAT, wgpu::TextureUsages::empty())),
+            depth_view: OnceCell::new(),
+            edge_lines: OnceCell::new(),
             ink: RefCell::default(),
             stencil: StencilTarget::default(),
             is_inked: Cell::new(false),
@@ -172,6 +181,36 @@ impl Targets {
         self.fine.as_deref().unwrap_or(self)
     }
 
+    /// The depth buffer.
+    pub(crate) fn depth_view(&self, device: &wgpu::Device) -> &wgpu::TextureView {
+        self.depth_view.get_or_init(|| {
+            let read = wgpu::TextureUsages::TEXTURE_BINDING;
+            texture(device, "depth", DEPTH_FORMAT, read, (self.width, self.height)).create_view(&Default::default())
+        })
+    }
+
+    /// The targets for lines along edges.
+    pub(crate) fn edge_lines(&self, device: &wgpu::Device) -> &EdgeLineTargets {
+        self.edge_lines.get_or_init(|| {
+            let texture = |label, format, usage| texture(device, label, format, usage, (self.width, self.height));
+            let inked = texture("colour and lines", COLOR_FORMAT, READ_AND_COPIED);
+            let coverage = texture("greatest coverage", COVERAGE_FORMAT, wgpu::TextureUsages::empty());
+            EdgeLineTargets {
+                inked_view: inked.create_view(&Default::default()),
+                inked,
+                coverage_view: coverage.create_view(&Default::default()),
+            }
+        })
+    }
+
+    /// The texture that holds the result of the frame.
+    fn result(&self) -> &wgpu::Texture {
+        match self.edge_lines.get() {
+            Some(lines) if self.is_inked.get() => &lines.inked,
+            _ => &self.color,
+        }
+    }
+
     /// Marks the painted picture as the result of the frame.
     pub(crate) fn begin(&self) {
         self.is_inked.set(false);
@@ -182,22 +221,27 @@ impl Targets {
 
     /// The view that holds the result of the frame.
     pub(crate) fn drawn(&self) -> &wgpu::TextureView {
-        if self.is_inked.get() { &self.inked_view } else { &self.color_view }
+        match self.edge_lines.get() {
+            Some(lines) if self.is_inked.get() => &lines.inked_view,
+            _ => &self.color_view,
+        }
     }
 
     /// Copies the painted picture to the target of lines, and marks that target as the result of the frame.
-    pub(crate) fn begin_ink(&self, encoder: &mut wgpu::CommandEncoder) {
-        encoder.copy_texture_to_texture(self.color.as_image_copy(), self.inked.as_image_copy(), self.color.size());
+    pub(crate) fn begin_ink(&self, device: &wgpu::Device, encoder: &mut wgpu::CommandEncoder) -> &EdgeLineTargets {
+        let lines = self.edge_lines(device);
+        encoder.copy_texture_to_texture(self.color.as_image_copy(), lines.inked.as_image_copy(), self.color.size());
         self.is_inked.set(true);
+        lines
     }
 
     /// Copies the picture with its lines back to the painted one, so that further lines can be drawn over it.
     pub(crate) fn continue_ink(&self, encoder: &mut wgpu::CommandEncoder) {
-        encoder.copy_texture_to_texture(self.inked.as_image_copy(), self.color.as_image_copy(), self.color.size());
+        encoder.copy_texture_to_texture(self.result().as_image_copy(), self.color.as_image_copy(), self.color.size());
     }
 
     pub(crate) fn read(&self, context: &GpuContext) -> Result<Image, HarnessError> {
-        let rgba8 = read_texture(context, if self.is_inked.get() { &self.inked } else { &self.color })?;
+        let rgba8 = read_texture(context, self.result())?;
         Ok(Image::new(self.width, self.height, rgba8).expect("four bytes a pixel"))
     }
 
@@ -205,7 +249,7 @@ impl Targets {
     /// styles with a G-buffer of their own.
     pub(crate) fn read_texels(&self, context: &GpuContext) -> Result<Option<Vec<[u32; 2]>>, HarnessError> {
         let ink = self.ink.borrow();
-        let Some(ink) = ink.as_ref().filter(|ink| ink.gbuffer.is_none()) else { return Ok(None) };
+        let Some(ink) = ink.as_ref().filter(|ink| ink.kind.3.is_none()) else { return Ok(None) };
         let words: Vec<u32> = bytemuck::pod_collect_to_vec(&read_texture(context, ink.texels.texture())?);
         Ok(Some(match ink.kind.0 {
             TexelLayout::Bits32 => words.into_iter().map(|word| [word, 0]).collect(),

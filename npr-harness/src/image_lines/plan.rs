@@ -1,6 +1,7 @@
 //! The part of a plan for image-space lines.
 
 use super::gbuffer::plan::GBufferPlan;
+use super::gbuffer::style::Show;
 use super::style::{ImageInk, InkScale, Regions};
 use crate::camera::{Camera, Projection};
 use crate::error::HarnessError;
@@ -48,6 +49,8 @@ pub struct ImagePlan {
 pub struct RegionPlan {
     /// Per mesh and face.
     pub of_meshes: Vec<Arc<Vec<u32>>>,
+    /// Per mesh: the region of all its faces, if they have one.
+    pub of_whole_meshes: Vec<Option<u32>>,
     /// Per object: the offset, and whether the whole object is one region.
     pub of_objects: Vec<(u32, bool)>,
     /// The largest region number that a texel holds; larger numbers are folded into the range.
@@ -60,6 +63,19 @@ impl RegionPlan {
         let (first, is_all) = self.of_objects[object as usize];
         let of_mesh = &self.of_meshes[scene.objects()[object as usize].mesh()];
         ink_fold_region(first + if is_all { 0 } else { of_mesh[face as usize] }, self.most)
+    }
+
+    /// The offset added to the region of an object's vertices, and the factor applied to it before. Where each mesh is one
+    /// region, the offset includes it.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn of_instance(&self, scene: &Scene, object: u32) -> (u32, u32) {
+        let (first, is_all) = self.of_objects[object as usize];
+        let of_mesh = self.of_whole_meshes[scene.objects()[object as usize].mesh()];
+        match of_mesh {
+            _ if is_all => (first, 0),
+            Some(region) if !self.of_whole_meshes.contains(&None) => (first.wrapping_add(region), 0),
+            _ => (first, 1),
+        }
     }
 
     fn new(
@@ -77,6 +93,11 @@ impl RegionPlan {
         let of_meshes = scene.meshes().iter().enumerate().map(of_mesh).collect::<Result<Vec<_>, _>>()?;
         let count = |regions: &Arc<Vec<u32>>| regions.iter().copied().max().unwrap_or(0);
         let counts: Vec<u32> = of_meshes.iter().map(count).collect();
+        let whole = |regions: &Arc<Vec<u32>>| match regions.first() {
+            Some(&first) => regions.iter().all(|&region| region == first).then_some(first),
+            None => Some(0),
+        };
+        let of_whole_meshes = of_meshes.iter().map(whole).collect();
         let mut next = 0u32;
         let of_object = |object: &Object| {
             let (material, is_one) = object.first_material();
@@ -92,7 +113,7 @@ impl RegionPlan {
             }
         };
         let of_objects = scene.objects().iter().map(of_object).collect();
-        Ok(Self { of_meshes, of_objects, most })
+        Ok(Self { of_meshes, of_whole_meshes, of_objects, most })
     }
 }
 
@@ -208,6 +229,16 @@ impl ImagePlan {
     /// The passes of lines, in the order in which they are composited.
     pub fn passes(&self) -> impl Iterator<Item = &ImageLines> {
         self.shadow_lines.iter().chain(std::iter::once(&self.lines))
+    }
+
+    /// Whether lines are found, not the G-buffer itself shown.
+    pub(crate) fn finds_lines(&self) -> bool {
+        self.gbuffer.as_ref().is_none_or(|plan| plan.gbuffer.show == Show::Lines)
+    }
+
+    /// Whether the ink of any pass is stored.
+    pub(crate) fn stores_ink(&self) -> bool {
+        self.finds_lines() && self.passes().any(|lines| self.is_stored(lines))
     }
 
     /// Whether any lines are dilated.

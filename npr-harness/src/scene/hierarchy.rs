@@ -19,6 +19,11 @@ struct Node {
 }
 
 impl BoxHierarchy {
+    /// Its memory, bytes.
+    pub(super) fn bytes(&self) -> u64 {
+        size_of_val(&self.nodes[..]) as u64
+    }
+
     /// `boxes`: the number and the two extreme corners of each box.
     pub(super) fn new(mut boxes: Vec<(u32, (DVec3, DVec3))>) -> Self {
         let mut hierarchy = Self { nodes: Vec::with_capacity(2 * boxes.len()) };

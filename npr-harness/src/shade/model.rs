@@ -86,6 +86,11 @@ pub(crate) trait ShadeModel {
         false
     }
 
+    /// Whether the colour of the surface itself is part of the picture.
+    fn shows_surface_color(&self) -> bool {
+        true
+    }
+
     /// The diffuse term.
     fn diffuse(&self, n_dot_l: f64, brightness: f64) -> f64 {
         toon_diffuse(n_dot_l, brightness)

@@ -15,6 +15,10 @@ impl ShadeModel for Normals {
         true
     }
 
+    fn shows_surface_color(&self) -> bool {
+        false
+    }
+
     fn color(&self, shading: &Shading<'_>) -> DVec3 {
         (shading.normal)() * 0.5 + 0.5
     }

@@ -96,6 +96,10 @@ impl ShadeModel for Bands {
         if has_highlight(self) { toon_n_dot_h_interpolated(normal, second) } else { 0.0 }
     }
 
+    fn shows_surface_color(&self) -> bool {
+        !self.absolute
+    }
+
     fn color(&self, shading: &Shading<'_>) -> DVec3 {
         let width = if self.antialias { (shading.widths)(&|light| light) } else { DVec2::ZERO };
         let light = shading.light;

@@ -4,9 +4,12 @@
 use super::plan::{ShadowPlan, ShadowTechnique, VolumeMethod};
 use crate::camera::{Camera, Projection};
 use crate::error::HarnessError;
+use crate::geometry::POSITION_BYTES;
 use crate::gpu::context::GpuContext;
-use crate::gpu::instances::{INSTANCE_LAYOUT, Instances};
+use crate::gpu::instances::{INSTANCE_ATTRIBUTES, Instances, instance_layout};
+use crate::gpu::scene::IndexFormat;
 use crate::gpu::uniform::uniform_buffer;
+use crate::plan::resources;
 use crate::scene::{Object, Scene};
 use crate::view::size_px;
 use glam::{DMat4, DVec2, DVec3, DVec4};
@@ -57,7 +60,7 @@ impl BlankShadow {
     }
 }
 
-const MAP_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+const MAP_FORMAT: wgpu::TextureFormat = resources::SHADOW_MAP.on_device();
 
 fn texture(device: &wgpu::Device, label: &str, format: wgpu::TextureFormat, size: (u32, u32)) -> wgpu::Texture {
     device.create_texture(&wgpu::TextureDescriptor {
@@ -123,9 +126,10 @@ pub(crate) struct ShadowFrame<'a> {
     pub(crate) size: (u32, u32),
     /// The shadow casters, if volumes are drawn.
     pub(crate) casting: Option<&'a ShadowCasting>,
-    /// The casters of a shadow map: vertex positions with a stride of 24 bytes, faces, and instances.
-    pub(crate) vertices: &'a wgpu::Buffer,
+    /// The casters of a shadow map: vertex positions, faces, and instances.
+    pub(crate) positions: &'a wgpu::Buffer,
     pub(crate) indices: Option<&'a wgpu::Buffer>,
+    pub(crate) index_format: IndexFormat,
     pub(crate) instances: &'a Instances,
     /// Per mesh: the range of its faces in [`Self::indices`].
     pub(crate) solid: &'a [Range<u32>],
@@ -221,7 +225,7 @@ impl ShadowPasses {
             // The plan was made for the CPU.
             ShadowTechnique::Rays => return Err(HarnessError::RayPlan),
         };
-        let format = stencil_format(float_depth);
+        let format = resources::stencil_format(float_depth).on_device();
         let (depth_stencil, mask) = target.views(device, format, frame.size);
         draw_depth(encoder, depth_stencil)?;
         let parallel = matches!(frame.camera.projection, Projection::Orthographic { .. });
@@ -284,11 +288,6 @@ impl ShadowPasses {
 /// Panic message for passes that fail only for formats without a stencil.
 const STENCIL: &str = "the format has a stencil";
 
-/// The depth-stencil format.
-fn stencil_format(float_depth: bool) -> wgpu::TextureFormat {
-    if float_depth { wgpu::TextureFormat::Depth32FloatStencil8 } else { wgpu::TextureFormat::Depth24PlusStencil8 }
-}
-
 /// The shader of shadows on surfaces.
 pub(crate) const SHADOW_WGSL: (&str, &str) = ("shadow.wgsl", include_str!("shadow.wgsl"));
 
@@ -332,11 +331,11 @@ impl MapPass {
                 compilation_options: Default::default(),
                 buffers: &[
                     Some(wgpu::VertexBufferLayout {
-                        array_stride: 24,
+                        array_stride: POSITION_BYTES,
                         step_mode: wgpu::VertexStepMode::Vertex,
                         attributes: &wgpu::vertex_attr_array![0 => Float32x3],
                     }),
-                    Some(INSTANCE_LAYOUT),
+                    Some(instance_layout(&INSTANCE_ATTRIBUTES)),
                 ],
             },
             primitive: Default::default(),
@@ -385,8 +384,8 @@ impl MapPass {
         if let Some(indices) = frame.indices {
             pass.set_pipeline(&self.pipeline);
             pass.set_bind_group(0, &group, &[]);
-            pass.set_vertex_buffer(0, frame.vertices.slice(..));
-            pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
+            pass.set_vertex_buffer(0, frame.positions.slice(..));
+            pass.set_index_buffer(indices.slice(..), frame.index_format.on_device());
             for run in frame.instances.runs() {
                 pass.set_vertex_buffer(1, frame.instances.slice(run));
                 pass.draw_indexed(frame.solid[run.mesh].clone(), 0, 0..run.objects.len() as u32);

@@ -1,5 +1,22 @@
 //! Sweeps of lines from edges, fins and hulls.
 
+mod flicker;
+mod fragments;
+mod hull_corners;
+mod normals;
+mod thin;
+mod widths;
+
 use super::Sweep;
 
-pub(super) const SWEEPS: &[Sweep] = &[];
+pub(super) const SWEEPS: &[Sweep] = &[
+    normals::SILHOUETTE_NORMALS,
+    normals::TORN_FINS,
+    widths::WIDTH_DISTANCE,
+    widths::WIDTH_TILT,
+    widths::NEAR_PLANE,
+    hull_corners::HULL_CORNERS,
+    thin::THIN_BARS,
+    fragments::CONTOUR_NOISE,
+    flicker::FLICKER,
+];

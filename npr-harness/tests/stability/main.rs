@@ -31,6 +31,14 @@ fn holds(sweep: &str, curves: &[&str]) -> Option<Finding> {
     Some(finding)
 }
 
+/// Asserts that what was measured on a curve is within a factor of what its formula predicts.
+fn predicts(finding: &Finding, curve: &str, factor: f64) {
+    let limit = &finding.curves.iter().find(|known| known.name == curve).expect("a curve of the sweep").limit;
+    let (predicted, _) = limit.predicted.as_ref().expect("a prediction");
+    let ratio = limit.measured / predicted;
+    assert!((1.0 / factor..=factor).contains(&ratio), "{curve}: {ratio} of what is predicted: {limit:?}");
+}
+
 /// A sweep that no test names would have bounds that nothing holds.
 #[test]
 fn every_sweep_has_a_test() {

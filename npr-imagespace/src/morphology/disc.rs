@@ -35,6 +35,11 @@ use crate::morphology::direct;
 use crate::picture::checked_len;
 use glam::UVec2;
 
+/// The number of line pixels in a texel of bits, 4 bytes, when a device dilates.
+pub const WORD_PX: u32 = 32;
+/// The number of pixels in a texel of steps to the nearest line pixel, 16 bytes, when a device dilates. There are two
+/// textures of them.
+pub const SITE_PX: u32 = 4;
 /// The largest integer part of a radius for which shifted rows are used.
 const DIRECT_MOST: usize = 5;
 /// The largest radius.

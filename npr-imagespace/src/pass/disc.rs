@@ -11,23 +11,20 @@
 //! paper is searched for, and there is none outside the picture, so that the picture's border removes no ink.
 
 use super::fullscreen::{Bound, Fullscreen, Output, uniform};
-use super::target::{INK_FORMAT, InkTarget, PassTarget, check_ink, check_view, texture_size_px};
+use super::target::{INK_FORMAT, InkTarget, PassTarget, check_ink, texture_size_px};
 use crate::ImageSpaceError;
 use crate::composite::Composite;
 use crate::morphology::Operation;
-use crate::morphology::disc::{Disc, RADIUS_MAX_PX};
+use crate::morphology::disc::{Disc, RADIUS_MAX_PX, SITE_PX, WORD_PX};
 use crate::morphology::flood::{FloodPlan, disc_plan};
 use bytemuck::{Pod, Zeroable};
+use std::sync::OnceLock;
 
 pub(super) const DISC: &[(&str, &str)] = &[("pass/disc.wgsl", include_str!("disc.wgsl"))];
 /// The format of line pixels as bits.
 const WORD_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
-/// Pixels in a texel of bits.
-const WORD_PX: u32 = 32;
 /// The format of steps to the nearest line pixel.
 const SITE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
-/// Pixels in a texel of steps.
-const SITE_PX: u32 = 4;
 /// `Pass` of the WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -41,37 +38,41 @@ struct PassUniform {
     padding: [u32; 2],
 }
 
-/// Intermediate textures of a disc, to be kept between frames: 9⅛ bytes a pixel.
+/// Intermediate textures of a disc, to be kept between frames: 8⅛ bytes a pixel, and 1 more once it is used for an opening
+/// or a closing.
 #[derive(Debug)]
 pub struct DiscScratch {
     words: wgpu::TextureView,
     sites: [wgpu::TextureView; 2],
-    /// Ink between the two halves of an opening or closing.
-    ink: wgpu::TextureView,
+    size: [u32; 2],
+    /// Ink between the two halves of an opening or closing, made when there is one.
+    ink: OnceLock<wgpu::TextureView>,
 }
 
 impl DiscScratch {
     /// For ink pictures of a size in px.
     pub fn new(device: &wgpu::Device, [width, height]: [u32; 2]) -> Self {
-        let view = |format, width| {
-            let texture = device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("disc"),
-                size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
-                view_formats: &[],
-            });
-            texture.create_view(&Default::default())
-        };
         Self {
-            words: view(WORD_FORMAT, width.div_ceil(WORD_PX)),
-            sites: [(); 2].map(|()| view(SITE_FORMAT, width.div_ceil(SITE_PX))),
-            ink: view(INK_FORMAT, width),
+            words: texture(device, WORD_FORMAT, [width.div_ceil(WORD_PX), height]),
+            sites: [(); 2].map(|()| texture(device, SITE_FORMAT, [width.div_ceil(SITE_PX), height])),
+            size: [width, height],
+            ink: OnceLock::new(),
         }
     }
+}
+
+fn texture(device: &wgpu::Device, format: wgpu::TextureFormat, [width, height]: [u32; 2]) -> wgpu::TextureView {
+    let texture = device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("disc"),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    });
+    texture.create_view(&Default::default())
 }
 
 /// The pipelines of a disc.
@@ -132,16 +133,20 @@ impl DiscPass {
         }
         let size = self.resolve.check(target)?;
         check_ink(ink, Some(size))?;
-        check_view("the scratch textures", &scratch.ink, INK_FORMAT, "R8Unorm", Some(size))?;
+        if scratch.size != size {
+            let what = "the scratch textures";
+            return Err(ImageSpaceError::ViewSize { what, size_px: scratch.size.into(), needed_px: size.into() });
+        }
         let plan = disc_plan(disc);
         let halves: Vec<_> = operation.halves().map(|eroding| Half { disc, plan: &plan, eroding }).collect();
         if let [first, second] = halves[..] {
             // The first half must be correct as far as the second half reads.
             let reach = plan.row_reach_px();
             let area = target.area.map(|area| grown(area, [reach, reach], size));
-            let between = PassTarget { view: &scratch.ink, composite: &Composite::Multiply, area };
-            self.record_half(device, encoder, &first, ink, &self.resolve_half, scratch, &between);
-            self.record_half(device, encoder, &second, &scratch.ink, &self.resolve, scratch, target);
+            let between = scratch.ink.get_or_init(|| texture(device, INK_FORMAT, scratch.size));
+            let target_between = PassTarget { view: between, composite: &Composite::Multiply, area };
+            self.record_half(device, encoder, &first, ink, &self.resolve_half, scratch, &target_between);
+            self.record_half(device, encoder, &second, between, &self.resolve, scratch, target);
         } else {
             self.record_half(device, encoder, &halves[0], ink, &self.resolve, scratch, target);
         }

@@ -22,6 +22,9 @@ fn smooth(crease_angle_rad: f32) -> ContourOptions {
 const NO_CREASES: ContourOptions = ContourOptions {
     crease_angle_rad: std::f32::consts::PI,
     material_borders: false,
+    creases: true,
+    boundaries: true,
+    silhouettes: true,
     world_from_normal: DMat3::IDENTITY,
 };
 

@@ -12,7 +12,8 @@ use npr_harness::capabilities::Capabilities;
 use npr_harness::error::HarnessError;
 use npr_harness::executor::{Backend, Candidates, Executor, Picture, Rendered, Work};
 use npr_harness::picture_limits::{MEMORY_BYTES, MOST_SAMPLES, check_picture};
-use npr_harness::plan::Reason;
+use npr_harness::plan::resources::total_bytes;
+use npr_harness::plan::{Reason, Resource, ResourceKind};
 use npr_harness::scene::{Mesh, Scene};
 use npr_harness::view::View;
 use npr_imagespace::artist::LineKind;
@@ -72,8 +73,8 @@ pub struct Options {
     /// Print what was done as JSON.
     #[arg(long)]
     json: bool,
-    /// Print the plan: each pass and why, each that was left out and why, and on an adapter by which method each is made
-    /// and why.
+    /// Print the plan: each pass and why, each that was left out and why, on an adapter by which method each is made and
+    /// why; and what all of it takes in memory.
     #[arg(long)]
     plan: bool,
     #[command(flatten)]
@@ -105,6 +106,31 @@ fn parse_line_kind(text: &str) -> Result<(String, LineKind), String> {
         other => return Err(format!("{other:?} is none of normals, vertex-colors, texture, regions, none")),
     };
     Ok((material.to_owned(), kind))
+}
+
+fn listed_resource(Resource { name, kind, count, bytes }: &Resource) -> serde_json::Value {
+    let mut listed = json!({"name": name, "count": count, "bytes": bytes});
+    let mut add = |key: &str, value: serde_json::Value| listed[key] = value;
+    match kind {
+        ResourceKind::Target { format, size, samples } => {
+            add("kind", json!("target"));
+            add("format", json!(format!("{format:?}")));
+            add("size", json!(size));
+            add("samples", json!(samples));
+        }
+        ResourceKind::Texture { format, size, levels } => {
+            add("kind", json!("texture"));
+            add("format", json!(format!("{format:?}")));
+            add("size", json!(size));
+            add("levels", json!(levels));
+        }
+        ResourceKind::Buffer { is_bound } => {
+            add("kind", json!("buffer"));
+            add("is_bound", json!(is_bound));
+        }
+        ResourceKind::Array => add("kind", json!("array")),
+    }
+    listed
 }
 
 fn elapsed_ms(start: Instant) -> f64 {
@@ -210,6 +236,8 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
     let placed = |count: fn(&Mesh) -> usize| -> usize {
         scene.objects().iter().map(|object| count(scene.mesh_of(object))).sum()
     };
+    let resources =
+        if options.json || options.plan { plan.resources(&scene, &executor.capabilities())? } else { Vec::new() };
     let (edges, folds) = (placed(|mesh| mesh.edges().edges.len()), placed(|mesh| mesh.edges().folds.len()));
     if options.json {
         let listed = |of: &[Reason]| of.iter().map(|r| json!({"pass": r.pass, "why": r.why})).collect::<Vec<_>>();
@@ -223,6 +251,8 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
                 "edges": edges, "folds": folds,
                 "lines": {"silhouette": counts[0], "boundary": counts[1], "crease": counts[2], "material_border": counts[3]},
                 "device_ms": device_ms, "load_ms": loaded_ms, "prepare_ms": prepared_ms, "render_ms": drawn_ms,
+                "bytes": total_bytes(&resources),
+                "resources": resources.iter().map(listed_resource).collect::<Vec<_>>(),
                 "passes": listed(&plan.passes), "left_out": listed(&plan.left_out), "methods": listed(&plan.methods),
                 "warnings": warnings,
             })
@@ -246,6 +276,10 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
         );
         if options.plan {
             summary.push_str(&plan.to_string());
+            summary.push_str(&format!("  memory  {:>12} bytes besides the scene\n", total_bytes(&resources)));
+            for resource in &resources {
+                summary.push_str(&format!("  memory  {resource}\n"));
+            }
         }
         destination.summarize(&summary)?;
     }

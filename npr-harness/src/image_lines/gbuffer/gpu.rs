@@ -2,11 +2,11 @@
 
 use super::plan::GBufferPlan;
 use super::style::{Background, GBufferTarget, InkStep, Show, StepKind};
-use super::targets::{RGBA8, SEPARATE};
 use crate::error::HarnessError;
 use crate::gpu::shader::assemble;
 use crate::gpu::targets::{COLOR_FORMAT, InkTargets};
 use crate::gpu::uniform::uniform_buffer;
+use crate::plan::TexelFormat;
 use npr_imagespace::composite::Composite;
 use npr_imagespace::format::depth::DepthFormat;
 use npr_imagespace::format::normal::NormalFormat;
@@ -67,11 +67,14 @@ enum FilterPass {
     Separate(SeparatePass),
 }
 
-/// The pipelines, created on first use: those that encode, each with its entry point; the filter of the last style; the
+/// The entry point of a pipeline that encodes, and the formats of those of its targets that are written.
+type EncoderKey = (&'static str, Vec<Option<wgpu::TextureFormat>>);
+
+/// The pipelines, created on first use: those that encode; the filter of the last style; the
 /// steps of morphology.
 #[derive(Default)]
 pub(crate) struct GBufferPasses {
-    encoders: RefCell<Vec<(&'static str, wgpu::RenderPipeline)>>,
+    encoders: RefCell<Vec<(EncoderKey, wgpu::RenderPipeline)>>,
     filter: RefCell<Option<(GBufferTarget, FilterPass)>>,
     soft_steps: RefCell<Vec<(Step, StepPass)>>,
     hard_steps: RefCell<Vec<(Kernel, PingPong)>>,
@@ -87,7 +90,8 @@ impl GBufferPasses {
         ink: &InkTargets,
     ) -> Result<(), HarnessError> {
         let (Some(targets), Some(found)) = (&ink.gbuffer, &ink.found) else { return Ok(()) };
-        let views: Vec<_> = targets.encoded.iter().collect();
+        let views = targets.encoded.each_ref().map(Option::as_ref);
+        let formats = plan.gbuffer.encoded().map(|format| format.map(TexelFormat::on_device));
         let black = Composite::default();
         let onto = |view| PassTarget { view, composite: &black, area: None };
         let mut kept = self.filter.borrow_mut();
@@ -102,18 +106,23 @@ impl GBufferPasses {
         }
         match kept.as_ref() {
             Some((GBufferTarget::Rgba8(filter), FilterPass::Printed(pass))) => {
-                self.encode(device, encoder, plan, ink, ("fs_rgba8", &RGBA8), &views);
-                pass.record(device, encoder, filter, views[0], &onto(found))?;
+                let [Some(encoded), ..] = views else { unreachable!("bytes are always encoded") };
+                self.encode(device, encoder, plan, ink, ("fs_rgba8", &formats), &views);
+                pass.record(device, encoder, filter, encoded, &onto(found))?;
             }
             Some((GBufferTarget::Separate(separate), FilterPass::Separate(pass))) => {
-                self.encode(device, encoder, plan, ink, ("fs_separate", &SEPARATE), &views);
-                let textures =
-                    SeparateTextures { normal: Some(views[0]), depth: Some(views[1]), region: Some(views[2]) };
+                // A filter without tests reads nothing.
+                if views.iter().any(Option::is_some) {
+                    self.encode(device, encoder, plan, ink, ("fs_separate", &formats), &views);
+                }
+                let [normal, depth, region] = views;
+                let textures = SeparateTextures { normal, depth, region };
                 pass.record(device, encoder, &separate.filter, &textures, &onto(found))?;
             }
             _ => unreachable!("a pass is kept with the target that it is for"),
         }
-        let mut pictures = [found, &targets.ink];
+        let Some(second) = &targets.ink else { return Ok(()) };
+        let mut pictures = [found, second];
         for step in plan.gbuffer.steps.iter().flatten() {
             if self.record_step(device, encoder, step, pictures)? == 1 {
                 pictures.reverse();
@@ -144,7 +153,7 @@ impl GBufferPasses {
             Show::Depth => "fs_show_depth",
             Show::Regions => "fs_show_regions",
         };
-        self.encode(device, encoder, plan, ink, (entry, &[COLOR_FORMAT]), &[picture]);
+        self.encode(device, encoder, plan, ink, (entry, &[Some(COLOR_FORMAT)]), &[Some(picture)]);
     }
 
     fn encode(
@@ -153,14 +162,15 @@ impl GBufferPasses {
         encoder: &mut wgpu::CommandEncoder,
         plan: &GBufferPlan,
         ink: &InkTargets,
-        (entry, formats): (&'static str, &[wgpu::TextureFormat]),
-        views: &[&wgpu::TextureView],
+        (entry, formats): (&'static str, &[Option<wgpu::TextureFormat>]),
+        views: &[Option<&wgpu::TextureView>],
     ) {
         let mut encoders = self.encoders.borrow_mut();
-        if !encoders.iter().any(|(known, _)| *known == entry) {
-            encoders.push((entry, pipeline(device, entry, formats)));
+        let is_known = |((of_entry, of_formats), _): &&(EncoderKey, _)| *of_entry == entry && of_formats == formats;
+        if !encoders.iter().any(|known| is_known(&known)) {
+            encoders.push(((entry, formats.to_vec()), pipeline(device, entry, formats)));
         }
-        let Some((_, pipeline)) = encoders.iter().find(|(known, _)| *known == entry) else { return };
+        let Some((_, pipeline)) = encoders.iter().find(is_known) else { return };
         let uniform = uniform_buffer(device, bytemuck::bytes_of(&EncodeUniform::new(plan)));
         let layout = pipeline.get_bind_group_layout(0);
         // The layout has what the entry point reads.
@@ -176,7 +186,7 @@ impl GBufferPasses {
         let attachments: Vec<_> = views
             .iter()
             .map(|view| {
-                Some(wgpu::RenderPassColorAttachment {
+                view.map(|view| wgpu::RenderPassColorAttachment {
                     view,
                     depth_slice: None,
                     resolve_target: None,
@@ -247,12 +257,12 @@ fn encode_wgsl() -> String {
     ])
 }
 
-fn pipeline(device: &wgpu::Device, entry: &str, formats: &[wgpu::TextureFormat]) -> wgpu::RenderPipeline {
+fn pipeline(device: &wgpu::Device, entry: &str, formats: &[Option<wgpu::TextureFormat>]) -> wgpu::RenderPipeline {
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some("encode"),
         source: wgpu::ShaderSource::Wgsl(encode_wgsl().into()),
     });
-    let targets: Vec<_> = formats.iter().map(|&format| Some(format.into())).collect();
+    let targets: Vec<_> = formats.iter().map(|format| format.map(Into::into)).collect();
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(entry),
         layout: None,

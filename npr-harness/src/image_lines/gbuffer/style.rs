@@ -1,6 +1,7 @@
 //! The settings of a G-buffer in a style.
 
 use crate::error::HarnessError;
+use crate::plan::TexelFormat;
 use crate::schema::within;
 use npr_imagespace::filter::depth::{DEPTH_SUM_CARD_MITCHELL, DepthPlain};
 use npr_imagespace::filter::inker::Inker;
@@ -135,6 +136,24 @@ impl GBuffer {
                 separate.filter.depth.is_some_and(|depth| matches!(depth.test, SeparateDepthTest::Plain { .. }))
             }
         }
+    }
+
+    /// The formats of the encoded targets that the filter reads: one of RGBA bytes, or those of normals, depths and
+    /// regions.
+    pub(crate) fn encoded(&self) -> [Option<TexelFormat>; 3] {
+        match &self.target {
+            GBufferTarget::Rgba8(_) => [Some(TexelFormat::Rgba8Unorm), None, None],
+            GBufferTarget::Separate(SeparateTargets { filter, .. }) => [
+                filter.normal.is_some().then_some(TexelFormat::Rgba32Float),
+                filter.depth.is_some().then_some(TexelFormat::R32Float),
+                filter.regions.then_some(TexelFormat::R32Uint),
+            ],
+        }
+    }
+
+    /// Whether there are steps of morphology.
+    pub(crate) fn has_steps(&self) -> bool {
+        self.steps.iter().any(Option::is_some)
     }
 
     /// Whether the inker finds lines.

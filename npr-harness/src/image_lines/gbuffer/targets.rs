@@ -1,28 +1,27 @@
 //! The textures of a G-buffer on the GPU.
 
-use super::style::{GBuffer, GBufferTarget};
-use npr_imagespace::pass::INK_FORMAT;
+use super::style::GBuffer;
 
 /// The format of unquantised texels.
-pub(crate) const TEXEL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
-pub(super) const RGBA8: [wgpu::TextureFormat; 1] = [wgpu::TextureFormat::Rgba8Unorm];
-/// Of normals, depths and regions as the filters read them.
-pub(super) const SEPARATE: [wgpu::TextureFormat; 3] =
-    [wgpu::TextureFormat::Rgba32Float, wgpu::TextureFormat::R32Float, wgpu::TextureFormat::R32Uint];
+pub(crate) const TEXEL_FORMAT: wgpu::TextureFormat = crate::plan::resources::UNQUANTISED.on_device();
 
 /// The encoded G-buffer, and a second ink picture for steps of morphology.
 pub(crate) struct GBufferTargets {
-    pub(super) encoded: Vec<wgpu::TextureView>,
-    pub(super) ink: wgpu::TextureView,
+    /// In the order of [`GBuffer::encoded`].
+    pub(super) encoded: [Option<wgpu::TextureView>; 3],
+    pub(super) ink: Option<wgpu::TextureView>,
 }
 
 impl GBufferTargets {
-    /// `texture` makes a texture of a format for rendering and reading.
-    pub(crate) fn new(gbuffer: &GBuffer, texture: impl Fn(wgpu::TextureFormat) -> wgpu::TextureView) -> Self {
-        let formats: &[_] = match gbuffer.target {
-            GBufferTarget::Rgba8(_) => &RGBA8,
-            GBufferTarget::Separate(_) => &SEPARATE,
-        };
-        Self { encoded: formats.iter().map(|&format| texture(format)).collect(), ink: texture(INK_FORMAT) }
+    /// `texture` makes a texture of a format for rendering and reading, `ink` a picture of ink.
+    pub(crate) fn new(
+        gbuffer: &GBuffer,
+        texture: impl Fn(wgpu::TextureFormat) -> wgpu::TextureView,
+        ink: impl FnOnce() -> wgpu::TextureView,
+    ) -> Self {
+        Self {
+            encoded: gbuffer.encoded().map(|format| format.map(|format| texture(format.on_device()))),
+            ink: gbuffer.has_steps().then(ink),
+        }
     }
 }
