@@ -17,6 +17,8 @@ pub enum PathRole {
     Map,
     /// An image of a stroke.
     StrokePicture,
+    /// A table of an earlier run.
+    Table,
     /// The output.
     Output,
 }
@@ -25,7 +27,7 @@ impl PathRole {
     fn kind(self) -> &'static str {
         match self {
             Self::AssetRoot => "directory",
-            Self::Model | Self::Style | Self::Map | Self::StrokePicture | Self::Output => "file",
+            Self::Model | Self::Style | Self::Map | Self::StrokePicture | Self::Table | Self::Output => "file",
         }
     }
 }
@@ -38,6 +40,7 @@ impl fmt::Display for PathRole {
             Self::AssetRoot => "asset root",
             Self::Map => "map",
             Self::StrokePicture => "stroke picture",
+            Self::Table => "table",
             Self::Output => "output",
         })
     }

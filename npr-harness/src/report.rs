@@ -5,9 +5,11 @@
 
 mod changes;
 mod html;
+pub mod make;
 mod page;
 mod stages;
 mod svg;
+pub mod tables;
 
 pub use changes::{Change, Changes, Direction, changes};
 pub use page::page;
