@@ -3,7 +3,6 @@ use crate::camera::{Camera, Framing};
 use crate::capabilities::Capabilities;
 use crate::style::style;
 use crate::view::View;
-use approx::assert_relative_eq;
 use std::cell::{Cell, RefCell};
 
 fn samples(times_ms: impl IntoIterator<Item = f64>) -> Samples {
