@@ -73,7 +73,8 @@ fn cases_of_different_styles_share_a_renderer() {
         let view = View { samples, ..View::new(camera, (64, 64)) };
         Plan::new(&scene, &style(name).expect("a style"), &view, &executor.capabilities()).expect("a good style")
     };
-    let plans = [plan("cartoon", 1), plan("ink-image", 1), plan("ink-thick", 2), plan("toon-shadow", 1), plan("hatch", 2)];
+    let plans =
+        [plan("cartoon", 1), plan("ink-image", 1), plan("ink-thick", 2), plan("toon-shadow", 1), plan("hatch", 2)];
     let cases = plans.each_ref().map(|plan| FrameCase { scene: &scene, plan });
     let rounds = Rounds { rounds: 2, frames_a_wait: Some(2), ..Rounds::default() };
     let timed = time_frames(&executor, &cases, &rounds, &|_| {}).expect("the frames are drawn");
