@@ -17,6 +17,8 @@ pub enum PathRole {
     Map,
     /// An image of a stroke.
     StrokePicture,
+    /// A table of an earlier run.
+    Table,
     /// The output.
     Output,
 }
@@ -25,7 +27,7 @@ impl PathRole {
     fn kind(self) -> &'static str {
         match self {
             Self::AssetRoot => "directory",
-            Self::Model | Self::Style | Self::Map | Self::StrokePicture | Self::Output => "file",
+            Self::Model | Self::Style | Self::Map | Self::StrokePicture | Self::Table | Self::Output => "file",
         }
     }
 }
@@ -38,6 +40,7 @@ impl fmt::Display for PathRole {
             Self::AssetRoot => "asset root",
             Self::Map => "map",
             Self::StrokePicture => "stroke picture",
+            Self::Table => "table",
             Self::Output => "output",
         })
     }
@@ -541,6 +544,37 @@ pub enum HarnessError {
     Overwrites {
         /// The file.
         path: std::path::PathBuf,
+    },
+    /// A table that could not be read.
+    #[error("{}:{line}: column {column:?}: {message}", path.display())]
+    Csv {
+        /// The file.
+        path: std::path::PathBuf,
+        /// The line, from 1.
+        line: u64,
+        /// The name of the column; empty if the whole line is meant.
+        column: String,
+        /// What is wrong.
+        message: String,
+    },
+    /// A diagram that could not be made a picture.
+    #[cfg(feature = "laboratory")]
+    #[error(transparent)]
+    Plot(#[from] crate::plot::PngError),
+    /// A result of the report that cannot be written as TOML.
+    #[error("a result could not be kept: {0}")]
+    StageWrite(toml::ser::Error),
+    /// A sweep or chart that does not exist.
+    #[error("no {kind} is called {name:?} ({}there are: {known})", did_you_mean(nearest))]
+    UnknownMeasurement {
+        /// "sweep" or "chart".
+        kind: &'static str,
+        /// The value requested.
+        name: String,
+        /// One with a similar name, if there is one.
+        nearest: Option<String>,
+        /// The existing names.
+        known: String,
     },
     /// Data that could not be written as JSON.
     #[error("could not write JSON: {0}")]

@@ -69,8 +69,12 @@ pub mod measure;
 pub mod picture;
 pub mod picture_limits;
 pub mod plan;
+#[cfg(feature = "laboratory")]
+pub mod plot;
 pub mod printed_fins;
 pub mod rays;
+#[cfg(feature = "laboratory")]
+pub mod report;
 pub mod scene;
 mod schema;
 #[cfg_attr(not(feature = "gpu"), allow(dead_code, unused_imports, reason = "what shades give to a device"))]

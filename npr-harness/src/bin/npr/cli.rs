@@ -1,6 +1,6 @@
 //! The command's arguments.
 
-use crate::{check, figures, inspect, render, tam};
+use crate::{chart, check, figures, inspect, render, report, stability, tam};
 use clap::{Parser, Subcommand};
 use clap_complete::Shell;
 
@@ -22,6 +22,13 @@ pub enum Command {
     Inspect(inspect::Options),
     /// GPU against CPU reference, lines against exact contours; exit status 1 when a limit is exceeded.
     Check(check::Options),
+    /// Accuracy against speed of every variant of every technique: a table and diagrams.
+    Chart(chart::Options),
+    /// Where each method stops working: diagrams, pictures, a table of limits and a page; exit status 1 when a bound is
+    /// exceeded.
+    Stability(stability::Options),
+    /// Gallery, charts, failure atlas and checks on one page; an interrupted run goes on where it was.
+    Report(report::Options),
     /// The figures of the documents, and what their errata change: pictures, style files and a page with captions.
     Figures(figures::Options),
     /// Draws a tonal art map for hatching into a folder, or unpacks one: its images, one file with all, and sheets.

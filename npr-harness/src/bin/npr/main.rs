@@ -2,6 +2,7 @@
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 mod backend;
+mod chart;
 mod check;
 mod cli;
 mod completions;
@@ -12,6 +13,8 @@ mod loading;
 mod paths;
 mod picture;
 mod render;
+mod report;
+mod stability;
 mod style;
 mod tam;
 mod terminal;
@@ -27,6 +30,9 @@ fn main() -> ExitCode {
         Some(Command::Render(options)) => render::run(&options),
         Some(Command::Inspect(options)) => inspect::run(&options),
         Some(Command::Check(options)) => check::run(&options),
+        Some(Command::Chart(options)) => chart::run(&options),
+        Some(Command::Stability(options)) => stability::run(&options),
+        Some(Command::Report(options)) => report::run(&options),
         Some(Command::Figures(options)) => figures::run(&options),
         Some(Command::Tam(options)) => tam::run(&options),
         Some(Command::Styles) => style::list(),

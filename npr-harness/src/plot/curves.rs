@@ -1,0 +1,162 @@
+//! Curves of one quantity over another, with the limits at which something fails.
+
+use super::Axis;
+use super::canvas::{Align, LINE_HEIGHT, draw, text_width};
+use super::labels::{Box2, Label, Surroundings, place};
+use super::scale::Scale;
+use super::scatter::{axes, series};
+use super::{FAINT, INK};
+
+/// A diagram of curves.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curves {
+    /// The title; empty for none.
+    pub title: String,
+    /// The horizontal axis.
+    pub x: Axis,
+    /// The vertical axis.
+    pub y: Axis,
+    /// The curves.
+    pub curves: Vec<Curve>,
+}
+
+/// A curve.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve {
+    /// The name.
+    pub name: String,
+    /// Its points, by ascending horizontal value. It is interrupted where a value is not finite.
+    pub points: Vec<(f64, f64)>,
+    /// The horizontal value of the measured limit: a solid vertical line.
+    pub measured: Option<f64>,
+    /// That of the predicted limit: a dashed one.
+    pub predicted: Option<f64>,
+}
+
+const WIDTH: f64 = 720.0;
+const PLOT_HEIGHT: f64 = 320.0;
+const LEFT: f64 = 72.0;
+const RIGHT: f64 = 20.0;
+const MARGIN: f64 = 16.0;
+const TITLE_PX: f64 = 17.0;
+const TEXT_PX: f64 = 13.0;
+const LABEL_PX: f64 = 12.0;
+const MARK_PX: f64 = 3.6;
+/// Curves with more points than this have no marks.
+const MOST_MARKED: usize = 40;
+
+/// The SVG of a diagram of curves. Limits outside the horizontal range of the points are not drawn.
+pub fn curves(diagram: &Curves) -> String {
+    let mut top = MARGIN;
+    if !diagram.title.is_empty() {
+        top += TITLE_PX * LINE_HEIGHT + 6.0;
+    }
+    let legend = legend(diagram, &mut top);
+    top += 14.0 + 16.0;
+    let plot = Box2 { left: LEFT, top, right: WIDTH - RIGHT, bottom: top + PLOT_HEIGHT };
+    let all = || diagram.curves.iter().flat_map(|curve| &curve.points);
+    let x = Scale::new(&diagram.x, all().map(|point| point.0), (plot.left, plot.right));
+    let y = Scale::new(&diagram.y, all().map(|point| point.1), (plot.bottom, plot.top));
+    draw((WIDTH, plot.bottom + 58.0), |canvas| {
+        if !diagram.title.is_empty() {
+            let at = (MARGIN, MARGIN + 0.5 * TITLE_PX * LINE_HEIGHT);
+            canvas.text(&diagram.title, at, TITLE_PX, INK, Align::Left, true);
+        }
+        axes(canvas, &diagram.x, &diagram.y, &x, &y, plot);
+        for entry in &legend {
+            let (left, y) = entry.at;
+            match entry.kind {
+                Kind::Curve(number) => {
+                    canvas.line(&[(left, y), (left + 24.0, y)], series(number), 2.0);
+                    canvas.mark(number, (left + 12.0, y), MARK_PX, series(number), false);
+                }
+                Kind::Measured => canvas.line(&[(left + 12.0, y - 8.0), (left + 12.0, y + 8.0)], FAINT, 1.6),
+                Kind::Predicted => canvas.dashed(&[(left + 12.0, y - 9.0), (left + 12.0, y + 9.0)], FAINT, 1.6),
+            }
+            canvas.text(&entry.text, (left + 32.0, y), TEXT_PX, INK, Align::Left, false);
+        }
+        let mut labels = Vec::new();
+        for (number, curve) in diagram.curves.iter().enumerate() {
+            for (limit, is_measured) in [(curve.measured, true), (curve.predicted, false)] {
+                let Some(value) = limit.filter(|value| x.shows(*value)) else { continue };
+                let line = [(x.at(value), plot.top), (x.at(value), plot.bottom)];
+                if is_measured {
+                    canvas.line(&line, series(number), 1.6);
+                } else {
+                    canvas.dashed(&line, series(number), 1.6);
+                }
+                labels.push((super::scale::number(value), x.at(value), number));
+            }
+        }
+        for (number, curve) in diagram.curves.iter().enumerate() {
+            let is_finite = |point: &(f64, f64)| point.0.is_finite() && point.1.is_finite();
+            for part in curve.points.split(|point| !is_finite(point)) {
+                let positions: Vec<_> = part.iter().map(|point| (x.at(point.0), y.at(point.1))).collect();
+                canvas.line(&positions, series(number), 2.0);
+                if curve.points.len() <= MOST_MARKED || positions.len() == 1 {
+                    for at in positions {
+                        canvas.mark(number, at, MARK_PX, series(number), false);
+                    }
+                }
+            }
+        }
+        // The values of the limits, at the upper ends of their lines. The rightmost comes first and is put to the right,
+        // so that of two near each other each is on its own side.
+        labels.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let wanted: Vec<_> = labels
+            .iter()
+            .map(|(text, x, _)| Label {
+                point: (*x, plot.top + 10.0),
+                size: (text_width(text, LABEL_PX, false) + 4.0, LABEL_PX * LINE_HEIGHT),
+            })
+            .collect();
+        let lines =
+            labels.iter().map(|(_, x, _)| Box2::around((*x, plot.top + 0.5 * PLOT_HEIGHT), 3.0, 0.5 * PLOT_HEIGHT));
+        let segments = diagram.curves.iter().flat_map(|curve| {
+            curve.points.windows(2).map(|pair| [0, 1].map(|end: usize| (x.at(pair[end].0), y.at(pair[end].1))))
+        });
+        let around = Surroundings { marks: lines.collect(), segments: segments.collect() };
+        for ((text, _, number), area) in labels.iter().zip(place(&wanted, &around, plot)) {
+            if let Some(area) = area {
+                canvas.text(text, area.center(), LABEL_PX, series(*number), Align::Middle, false);
+            }
+        }
+    })
+}
+
+struct Entry {
+    at: (f64, f64),
+    kind: Kind,
+    text: String,
+}
+
+enum Kind {
+    Curve(usize),
+    Measured,
+    Predicted,
+}
+
+/// The entries of the legend from `top` downwards; moves `top` to below them.
+fn legend(diagram: &Curves, top: &mut f64) -> Vec<Entry> {
+    let mut kinds: Vec<_> =
+        diagram.curves.iter().enumerate().map(|(n, curve)| (Kind::Curve(n), &*curve.name)).collect();
+    if diagram.curves.iter().any(|curve| curve.measured.is_some()) {
+        kinds.push((Kind::Measured, "measured limit"));
+    }
+    if diagram.curves.iter().any(|curve| curve.predicted.is_some()) {
+        kinds.push((Kind::Predicted, "predicted limit"));
+    }
+    let mut left = MARGIN;
+    let mut entries = Vec::new();
+    for (kind, text) in kinds {
+        let width = 32.0 + text_width(text, TEXT_PX, false) + 18.0;
+        if left > MARGIN && left + width > WIDTH - MARGIN {
+            left = MARGIN;
+            *top += 22.0;
+        }
+        entries.push(Entry { at: (left, *top + 10.0), kind, text: text.to_owned() });
+        left += width;
+    }
+    *top += 22.0;
+    entries
+}
