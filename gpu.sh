@@ -70,7 +70,7 @@ find_programs() {
 }
 
 pack() {
-    local file=$1 folder name
+    local file=$1 name
     shift
     find_programs
     folder="$(mktemp -d)" || exit 1
