@@ -11,6 +11,7 @@ mod image_space;
 mod light;
 mod mesh;
 mod outline;
+mod setup;
 mod shadow;
 
 use crate::check::Limit as Bound;

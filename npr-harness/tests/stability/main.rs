@@ -31,6 +31,19 @@ fn holds(sweep: &str, curves: &[&str]) -> Option<Finding> {
     Some(finding)
 }
 
+/// The measured limit of a curve.
+fn measured(finding: &Finding, curve: &str) -> f64 {
+    finding.curves.iter().find(|known| known.name == curve).expect("a curve of the sweep").limit.measured
+}
+
+/// Asserts that the measured limit of a curve is within a factor of the predicted one, above 1.
+fn near_prediction(finding: &Finding, curve: &str, factor: f64) {
+    let known = finding.curves.iter().find(|known| known.name == curve).expect("a curve of the sweep");
+    let (predicted, formula) = known.limit.predicted.as_ref().expect("a prediction");
+    let ratio = known.limit.measured / predicted;
+    assert!(ratio >= 1.0 / factor && ratio <= factor, "{curve}: {:?}, {predicted} by {formula}", known.limit.measured);
+}
+
 /// A sweep that no test names would have bounds that nothing holds.
 #[test]
 fn every_sweep_has_a_test() {
