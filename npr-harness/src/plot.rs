@@ -55,13 +55,14 @@ pub const FAINT: Color = color(0x59616B, 0xA3ABB6, "--plot-faint");
 pub const GRID: Color = color(0xE3E6EA, 0x2F343B, "--plot-grid");
 /// Groups and curves: hues that the common colour-vision deficiencies distinguish (after Okabe and Ito, 2008), darkened
 /// or lightened to a contrast of at least 4.5 against the ground of each theme.
-pub const SERIES: [Color; 6] = [
+pub const SERIES: [Color; 7] = [
     color(0x0069A6, 0x5AB4E8, "--plot-1"),
     color(0xB84A00, 0xF39552, "--plot-2"),
     color(0x007A59, 0x3FCBA0, "--plot-3"),
     color(0x9A3B80, 0xE39ACB, "--plot-4"),
     color(0x7A6200, 0xDEC04D, "--plot-5"),
     color(0x4B5875, 0xA9B9DA, "--plot-6"),
+    color(0xA6243C, 0xFF9DA8, "--plot-7"),
 ];
 
 /// All colours.

@@ -86,7 +86,8 @@ pub struct Curve {
 /// Where a method stops working.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Limit {
-    /// What the number is, such as "largest angle to tangency at which an edge is misjudged, degrees".
+    /// What the number is, such as "largest angle to tangency at which an edge is misjudged, degrees". A value of the
+    /// parameter is named by "at which" or "below which" and so on, an error without "which".
     pub what: String,
     /// The number that was measured.
     pub measured: f64,
@@ -96,6 +97,13 @@ pub struct Limit {
     pub bound: Bound,
     /// Whether the method is to be mended so that the limit moves, and how; otherwise it lies in the method.
     pub to_be_mended: Option<String>,
+}
+
+impl Limit {
+    /// Whether the numbers are values of the sweep's parameter, by the words of [`Self::what`]; otherwise they are errors.
+    pub fn is_of_parameter(&self) -> bool {
+        self.what.split_whitespace().any(|word| word == "which")
+    }
 }
 
 /// All sweeps.

@@ -42,6 +42,8 @@ const TITLE_PX: f64 = 17.0;
 const TEXT_PX: f64 = 13.0;
 const LABEL_PX: f64 = 12.0;
 const MARK_PX: f64 = 3.6;
+/// The height of a row of values above the plot.
+const LABEL_ROW: f64 = 16.0;
 /// Curves with more points than this have no marks.
 const MOST_MARKED: usize = 40;
 
@@ -52,7 +54,10 @@ pub fn curves(diagram: &Curves) -> String {
         top += TITLE_PX * LINE_HEIGHT + 6.0;
     }
     let legend = legend(diagram, &mut top);
-    top += 14.0 + 16.0;
+    // The title of the vertical axis, and the values of the limits above the plot.
+    let limits = diagram.curves.iter().flat_map(|curve| [curve.measured, curve.predicted]).flatten().count();
+    let rows = if limits > 5 { 2.0 } else { f64::from(u8::from(limits > 0)) };
+    top += 14.0 + 16.0 + rows * LABEL_ROW;
     let plot = Box2 { left: LEFT, top, right: WIDTH - RIGHT, bottom: top + PLOT_HEIGHT };
     let all = || diagram.curves.iter().flat_map(|curve| &curve.points);
     let x = Scale::new(&diagram.x, all().map(|point| point.0), (plot.left, plot.right));
@@ -62,7 +67,7 @@ pub fn curves(diagram: &Curves) -> String {
             let at = (MARGIN, MARGIN + 0.5 * TITLE_PX * LINE_HEIGHT);
             canvas.text(&diagram.title, at, TITLE_PX, INK, Align::Left, true);
         }
-        axes(canvas, &diagram.x, &diagram.y, &x, &y, plot);
+        axes(canvas, [&diagram.x, &diagram.y], [&x, &y], plot, plot.top - 16.0 - rows * LABEL_ROW);
         for entry in &legend {
             let (left, y) = entry.at;
             match entry.kind {
@@ -89,39 +94,47 @@ pub fn curves(diagram: &Curves) -> String {
             }
         }
         for (number, curve) in diagram.curves.iter().enumerate() {
+            // A curve that later ones coincide with is wider than these.
+            let coinciding =
+                diagram.curves[number + 1..].iter().filter(|later| coincide(&curve.points, &later.points, &x, &y));
+            let wider = 3.0 * coinciding.count() as f64;
             let is_finite = |point: &(f64, f64)| point.0.is_finite() && point.1.is_finite();
             for part in curve.points.split(|point| !is_finite(point)) {
                 let positions: Vec<_> = part.iter().map(|point| (x.at(point.0), y.at(point.1))).collect();
-                canvas.line(&positions, series(number), 2.0);
+                canvas.line(&positions, series(number), 2.0 + wider);
                 if curve.points.len() <= MOST_MARKED || positions.len() == 1 {
                     for at in positions {
-                        canvas.mark(number, at, MARK_PX, series(number), false);
+                        canvas.mark(number, at, MARK_PX + 0.7 * wider, series(number), false);
                     }
                 }
             }
         }
-        // The values of the limits, at the upper ends of their lines. The rightmost comes first and is put to the right,
-        // so that of two near each other each is on its own side.
+        // The values of the limits, above their lines. The rightmost comes first and is put to the right, so that of two
+        // near each other each is on its own side.
         labels.sort_by(|a, b| b.1.total_cmp(&a.1));
         let wanted: Vec<_> = labels
             .iter()
             .map(|(text, x, _)| Label {
-                point: (*x, plot.top + 10.0),
+                point: (*x, plot.top),
                 size: (text_width(text, LABEL_PX, false) + 4.0, LABEL_PX * LINE_HEIGHT),
             })
             .collect();
-        let lines =
-            labels.iter().map(|(_, x, _)| Box2::around((*x, plot.top + 0.5 * PLOT_HEIGHT), 3.0, 0.5 * PLOT_HEIGHT));
-        let segments = diagram.curves.iter().flat_map(|curve| {
-            curve.points.windows(2).map(|pair| [0, 1].map(|end: usize| (x.at(pair[end].0), y.at(pair[end].1))))
-        });
-        let around = Surroundings { marks: lines.collect(), segments: segments.collect() };
-        for ((text, _, number), area) in labels.iter().zip(place(&wanted, &around, plot)) {
+        let strip = Box2 { top: plot.top - rows * LABEL_ROW - 2.0, bottom: plot.top - 2.0, right: WIDTH - 4.0, ..plot };
+        for ((text, _, number), area) in labels.iter().zip(place(&wanted, &Surroundings::default(), strip)) {
             if let Some(area) = area {
                 canvas.text(text, area.center(), LABEL_PX, series(*number), Align::Middle, false);
             }
         }
     })
+}
+
+/// Whether two curves lie on each other, within 2 px, at half of their points or more.
+fn coincide(a: &[(f64, f64)], b: &[(f64, f64)], x: &Scale, y: &Scale) -> bool {
+    let same = |(a, b): &(&(f64, f64), &(f64, f64))| {
+        (x.at(a.0) - x.at(b.0)).abs() < 2.0 && (y.at(a.1) - y.at(b.1)).abs() < 2.0
+    };
+    let count = a.iter().zip(b).filter(same).count();
+    count > 0 && 2 * count >= a.len().max(b.len())
 }
 
 struct Entry {

@@ -155,7 +155,7 @@ pub fn scatter(scatter: &Scatter) -> String {
             let at = (MARGIN, MARGIN + 0.5 * TITLE_PX * LINE_HEIGHT);
             canvas.text(&scatter.title, at, TITLE_PX, INK, Align::Left, true);
         }
-        axes(canvas, &scatter.x, &scatter.y, &layout.x, &layout.y, layout.plot);
+        axes(canvas, [&scatter.x, &scatter.y], [&layout.x, &layout.y], layout.plot, layout.plot.top - 16.0);
         draw_legend(canvas, &layout);
         let front = front_line(scatter, &layout);
         canvas.line(&front, INK, 1.6);
@@ -188,8 +188,9 @@ fn bar(point: &Point, layout: &Layout) -> (f64, f64) {
     (layout.x.at(point.x_low.min(point.x)), layout.x.at(point.x_high.max(point.x)))
 }
 
-/// The grid, the ticks and the titles of both axes.
-pub fn axes(canvas: &Canvas<'_>, x_axis: &Axis, y_axis: &Axis, x: &Scale, y: &Scale, plot: Box2) {
+/// The grid, the ticks and the titles of both axes, the horizontal one first; that of the vertical axis at `title_y`.
+pub fn axes(canvas: &Canvas<'_>, titles: [&Axis; 2], scales: [&Scale; 2], plot: Box2, title_y: f64) {
+    let ([x_axis, y_axis], [x, y]) = (titles, scales);
     for tick in x.ticks(TEXT_PX, false) {
         canvas.line(&[(tick.at, plot.top), (tick.at, plot.bottom)], GRID, 1.0);
         canvas.line(&[(tick.at, plot.bottom), (tick.at, plot.bottom + 4.0)], FAINT, 1.0);
@@ -207,7 +208,7 @@ pub fn axes(canvas: &Canvas<'_>, x_axis: &Axis, y_axis: &Axis, x: &Scale, y: &Sc
     }
     canvas.line(&[(plot.left, plot.top), (plot.left, plot.bottom), (plot.right, plot.bottom)], FAINT, 1.0);
     canvas.text(&x_axis.title, (plot.right, plot.bottom + 38.0), TEXT_PX, INK, Align::Right, false);
-    canvas.text(&y_axis.title, (MARGIN, plot.top - 16.0), TEXT_PX, INK, Align::Left, false);
+    canvas.text(&y_axis.title, (MARGIN, title_y), TEXT_PX, INK, Align::Left, false);
 }
 
 fn draw_legend(canvas: &Canvas<'_>, layout: &Layout) {

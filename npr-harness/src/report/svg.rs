@@ -32,11 +32,15 @@ pub fn atlas_diagram(found: &Found) -> Curves {
         let scale = if axis.logarithmic { " (log scale)" } else { "" };
         Axis { title: format!("{}{unit}{scale}", axis.name), logarithmic: axis.logarithmic }
     };
-    let curve = |curve: &stability::Curve| Curve {
-        name: curve.name.clone(),
-        points: curve.points.clone(),
-        measured: Some(curve.limit.measured),
-        predicted: curve.limit.predicted.as_ref().map(|(value, _)| *value),
+    // Limits that are errors have no place on the axis of the parameter.
+    let curve = |curve: &stability::Curve| {
+        let limit = Some(&curve.limit).filter(|limit| limit.is_of_parameter());
+        Curve {
+            name: curve.name.clone(),
+            points: curve.points.clone(),
+            measured: limit.map(|limit| limit.measured),
+            predicted: limit.and_then(|limit| limit.predicted.as_ref()).map(|(value, _)| *value),
+        }
     };
     Curves {
         title: String::new(),
