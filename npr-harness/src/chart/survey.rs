@@ -9,7 +9,7 @@ use crate::scene::Scene;
 use crate::shade::Shade;
 use crate::style::{Lines, Style};
 use crate::truth::lines::TrueLines;
-use crate::variant::{Part, Setup};
+use crate::variant::Part;
 use crate::view::View;
 use std::collections::HashMap;
 
@@ -23,6 +23,10 @@ pub struct Survey<'a> {
     view: View,
     style: &'a Style,
     executors: &'a [Executor],
+    /// The largest picture in which tones are measured, px.
+    tone_size: (u32, u32),
+    /// Whether the executor of a configuration draws, instead of the CPU, which draws alike.
+    on_its_executor: bool,
     known: HashMap<(Measure, String, Vec<(Part, &'static str)>), f64>,
     lines: Option<TrueLines>,
     light: Option<Image>,
@@ -42,6 +46,8 @@ impl<'a> Survey<'a> {
             view: View { samples: 1, ..view },
             style,
             executors,
+            tone_size: TONE_SIZE,
+            on_its_executor: false,
             known: HashMap::new(),
             lines: None,
             light: None,
@@ -51,37 +57,50 @@ impl<'a> Survey<'a> {
         }
     }
 
+    /// The same, measured in whole and on the executor of each configuration: to check what a survey found.
+    pub fn in_full(self) -> Self {
+        Self { tone_size: (u32::MAX, u32::MAX), on_its_executor: true, ..self }
+    }
+
+    /// What draws a configuration for measurements.
+    fn executor(&self, configuration: &Configuration) -> &'a Executor {
+        let own = self.executors.iter().find(|executor| executor.name() == configuration.executor);
+        own.filter(|_| self.on_its_executor).unwrap_or(&CPU)
+    }
+
     /// An error of a configuration, 0..=1; 0 for what its style does not have.
     ///
     /// # Errors
     /// [`HarnessError`].
     pub fn measure(&mut self, configuration: &Configuration, measure: Measure) -> Result<f64, HarnessError> {
-        // The CPU makes the pictures of lines and tones, which an adapter makes alike.
-        let executor = if measure == Measure::Shadows { configuration.executor.clone() } else { String::new() };
+        let depends = self.on_its_executor || measure == Measure::Shadows;
+        let executor = if depends { configuration.executor.clone() } else { String::new() };
         let key = (measure, executor, configuration.of_measure(measure));
         if let Some(&known) = self.known.get(&key) {
             return Ok(known);
         }
         let error = match measure {
-            Measure::Lines => self.lines(&configuration.setup)?,
-            Measure::Tone => self.tone(&configuration.setup)?,
+            Measure::Lines => self.lines(configuration)?,
+            Measure::Tone => self.tone(configuration)?,
             Measure::Shadows => self.shadows(configuration)?,
         };
         self.known.insert(key, error);
         Ok(error)
     }
 
-    fn lines(&mut self, setup: &Setup) -> Result<f64, HarnessError> {
+    fn lines(&mut self, configuration: &Configuration) -> Result<f64, HarnessError> {
+        let (setup, executor) = (&configuration.setup, self.executor(configuration));
         if setup.style.lines == Lines::NONE {
             return Ok(0.0);
         }
         let truth = self.lines.get_or_insert_with(|| lines::asked_of_style(self.scene, &self.view, self.style));
-        lines::error_of_style(&CPU, self.scene, self.view, setup, truth)
+        lines::error_of_style(executor, self.scene, self.view, setup, truth)
     }
 
-    fn tone(&mut self, setup: &Setup) -> Result<f64, HarnessError> {
-        let scale = (f64::from(TONE_SIZE.0) / f64::from(self.view.size.0))
-            .min(f64::from(TONE_SIZE.1) / f64::from(self.view.size.1))
+    fn tone(&mut self, configuration: &Configuration) -> Result<f64, HarnessError> {
+        let (setup, executor) = (&configuration.setup, self.executor(configuration));
+        let scale = (f64::from(self.tone_size.0) / f64::from(self.view.size.0))
+            .min(f64::from(self.tone_size.1) / f64::from(self.view.size.1))
             .min(1.0);
         let scaled = |side: u32| ((f64::from(side) * scale).round() as u32).max(1);
         let view = View { size: (scaled(self.view.size.0), scaled(self.view.size.1)), ..self.view };
@@ -94,7 +113,7 @@ impl<'a> Survey<'a> {
                     None => strokes::truth(self.scene, &view, self.style)?,
                 };
                 let truth = self.strokes.insert(truth);
-                strokes::error_of_style(&CPU, self.scene, view, setup, truth)
+                strokes::error_of_style(executor, self.scene, view, setup, truth)
             }
             _ => {
                 let bare = |style: &Style| Style { lines: Lines::NONE, shadow: None, ..style.clone() };
@@ -105,7 +124,7 @@ impl<'a> Survey<'a> {
                 let truth = self.light.insert(truth);
                 let view = View { samples: setup.samples, ..view };
                 let style = bare(&setup.style);
-                let image = CPU.render(&Picture::new(self.scene, &style, view), &|_| {})?;
+                let image = executor.render(&Picture::new(self.scene, &style, view), &|_| {})?;
                 Ok(light::differences(&image, truth)[0] / 255.0)
             }
         }
@@ -139,4 +158,4 @@ impl<'a> Survey<'a> {
     }
 }
 
-const CPU: Executor = Executor::Cpu { why: None };
+static CPU: Executor = Executor::Cpu { why: None };
