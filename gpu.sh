@@ -27,33 +27,31 @@ fail() {
 programs=(npr frame shadow hatch passes outline-tests imagespace-tests)
 built="$here/target/gpu-binaries"
 
-# executable KIND NAME: the path in cargo's messages of the target of that kind and name.
-executable() {
-    grep "\"kind\":\[\"$1\"\]" | grep "\"name\":\"$2\"" | sed -n 's/.*"executable":"\([^"]*\)".*/\1/p' | tail -n 1
-}
-
-# one NAME KIND TARGET CARGO-ARGUMENTS: builds a program and copies it to where programs are.
-one() {
-    local name=$1 kind=$2 target=$3 path
-    shift 3
-    say "cargo $*"
-    path="$(cargo "$@" --profile "${NPR_PROFILE:-release}" --message-format=json-render-diagnostics |
-        executable "$kind" "$target")"
-    if [ -z "$path" ]; then fail "$name was not built"; fi
-    cp "$path" "$built/$name" || exit 1
-}
-
+# One command for all, so that they share their dependencies. Benches bring the command with them.
 build() {
     cd "$here" || exit 1
     mkdir -p "$built" || exit 1
-    local bench
-    one npr bin npr build -p npr-harness --bin npr
-    for bench in frame shadow hatch; do
-        one "$bench" bench "$bench" bench --no-run -p npr-harness --bench "$bench"
-    done
-    one passes bench passes bench --no-run -p npr-imagespace --features wgpu --bench passes
-    one outline-tests test gpu test --no-run -p npr-outline --features wgpu --test gpu
-    one imagespace-tests test gpu test --no-run -p npr-imagespace --features wgpu --test gpu
+    local messages="$built/messages.json" program package kind target path
+    set -- cargo bench --no-run --profile "${NPR_PROFILE:-release}" -p npr-harness -p npr-outline -p npr-imagespace \
+        --features npr-outline/wgpu,npr-imagespace/wgpu \
+        --bench frame --bench shadow --bench hatch --bench passes --test gpu
+    say "$*"
+    "$@" --message-format=json-render-diagnostics >"$messages" || fail "the programs were not built"
+    while read -r program package kind target; do
+        path="$(grep "/$package#.*\"kind\":\[\"$kind\"\].*\"name\":\"$target\"" "$messages" |
+            sed -n 's/.*"executable":"\([^"]*\)".*/\1/p' | tail -n 1)"
+        if [ -z "$path" ]; then fail "$program was not built"; fi
+        cp "$path" "$built/$program" || exit 1
+    done <<PROGRAMS
+npr npr-harness bin npr
+frame npr-harness bench frame
+shadow npr-harness bench shadow
+hatch npr-harness bench hatch
+passes npr-imagespace bench passes
+outline-tests npr-outline test gpu
+imagespace-tests npr-imagespace test gpu
+PROGRAMS
+    rm "$messages"
     git rev-parse HEAD >"$built/commit" 2>/dev/null || true
 }
 
@@ -72,7 +70,7 @@ find_programs() {
 }
 
 pack() {
-    local file=$1 folder name
+    local file=$1 name
     shift
     find_programs
     folder="$(mktemp -d)" || exit 1

@@ -20,6 +20,7 @@ mod configuration;
 mod table;
 
 pub use configuration::{Configuration, configurations, front_of};
+pub(crate) use configuration::{PER_PIXEL, cost_name};
 pub use table::{Amounts, Cost, CostTable, Entry, Expected, ShadeKey};
 
 use crate::error::HarnessError;

@@ -15,6 +15,7 @@ mod lines;
 mod shadows;
 mod silhouettes;
 mod strokes;
+pub mod survey;
 pub mod table;
 mod tonal_art_maps;
 mod width;

@@ -531,6 +531,9 @@ pub enum HarnessError {
         /// Whether only ways within a time were tried.
         in_time: bool,
     },
+    /// No folder for caches is known.
+    #[error("this system names no folder for caches: give a file with -o, and to plans with --calibration")]
+    NoCache,
     /// A calibration that cannot be used.
     #[error("{}: {what}", path.display())]
     Calibration {

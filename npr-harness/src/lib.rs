@@ -42,6 +42,7 @@
 #![warn(missing_docs)]
 
 pub mod budget;
+pub mod calibrate;
 pub mod camera;
 pub mod capabilities;
 pub mod chart;

@@ -391,9 +391,9 @@ fn textures(scene: &Scene, shows_colors: bool, blended: bool, image: Option<&Ima
     used
 }
 
-/// The size of a texture for these texels, in rows of up to 4096.
+/// The size of a texture for these texels, in rows of up to 4096; no wider than one row of them.
 pub(crate) fn corner_texture_size(texels: usize, texture_px: u32) -> (u32, u32) {
-    let width = texture_px.clamp(1, 4096);
+    let width = u32::try_from(texels).unwrap_or(u32::MAX).clamp(1, texture_px.clamp(1, 4096));
     (width, u32::try_from(texels.div_ceil(width as usize).max(1)).unwrap_or(u32::MAX))
 }
 

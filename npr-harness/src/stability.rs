@@ -12,6 +12,7 @@ mod ink;
 mod light;
 mod mesh;
 mod outline;
+mod setup;
 mod shadow;
 
 use crate::check::Limit as Bound;

@@ -64,8 +64,10 @@ pub struct Variant {
     pub name: &'static str,
     /// The choices of the API that it stands for, such as `HatchEncoding::Thresholds`.
     pub choices: &'static [&'static str],
-    /// Whether it serves comparison alone, as errors in print do: a plan by budget never chooses it.
+    /// Whether it has an error in print, and is kept for comparison.
     pub historical: bool,
+    /// Whether a plan by budget may choose it: not what is historical, nor what a device only emulates.
+    pub in_budget: bool,
     /// The same picture with the part made this way; `None` if the setup does not have the part, or asks for something
     /// that this way cannot give.
     pub apply: fn(&Setup) -> Option<Setup>,
@@ -76,18 +78,21 @@ const SAMPLES: &[Variant] = &[
         name: "1 sample",
         choices: &[],
         historical: false,
+        in_budget: true,
         apply: |setup| Some(Setup { samples: 1, ..setup.clone() }),
     },
     Variant {
         name: "2 x 2 samples",
         choices: &[],
         historical: false,
+        in_budget: true,
         apply: |setup| Some(Setup { samples: 2, ..setup.clone() }),
     },
     Variant {
         name: "4 x 4 samples",
         choices: &[],
         historical: false,
+        in_budget: true,
         apply: |setup| Some(Setup { samples: 4, ..setup.clone() }),
     },
 ];

@@ -154,6 +154,9 @@ pub struct ContourEdges {
 /// A face of zero area takes the plane of the neighbour across its longest edge, so that a sliver between two faces
 /// does not hide their silhouette or crease.
 ///
+/// An edge between faces whose planes are the same numbers is a silhouette for no eye. It has no record unless it is
+/// another line.
+///
 /// A folded polygon's triangles ([`Edges::folds`]) each have their own plane, so that the contour is closed where some
 /// of them are back-facing; for creases the polygon's Newell normal is used.
 ///
@@ -224,20 +227,26 @@ pub fn contour_edges(model: &Model, edges: &Edges, options: &ContourOptions) -> 
     };
     let lines: Vec<u8> = edges.edges.iter().map(|edge| line_of(edge).unwrap_or(LineKind::Silhouette) as u8).collect();
     let is_always = |line: u8| line != LineKind::Silhouette as u8;
-    let is_kept = |line: u8| match options.silhouettes {
+    // Faces in exactly one plane are on the same side of it for every eye.
+    let is_flat = |edge: &Edge| {
+        let [first, second] = edge.faces();
+        edge.kind() != EdgeKind::Boundary && planes[first as usize] == planes[second as usize] && fits(edge)
+    };
+    let is_kept = |edge: &Edge, line: u8| match options.silhouettes {
         _ if line == LineKind::Boundary as u8 => options.boundaries,
-        true => true,
+        true => is_always(line) || !is_flat(edge),
         false => is_always(line),
     };
-    let always = lines.iter().filter(|&&line| is_always(line) && is_kept(line)).count();
+    let kept: Vec<bool> = edges.edges.iter().zip(&lines).map(|(edge, &line)| is_kept(edge, line)).collect();
+    let always = lines.iter().zip(&kept).filter(|&(&line, &kept)| is_always(line) && kept).count();
     let folds = if options.silhouettes { &edges.folds[..] } else { &[] };
-    let kept = lines.iter().filter(|&&line| is_kept(line)).count();
-    let mut contour_edges: Vec<ContourEdge> = bytemuck::zeroed_vec(kept + folds.len());
+    let kept_count = kept.iter().filter(|&&kept| kept).count();
+    let mut contour_edges: Vec<ContourEdge> = bytemuck::zeroed_vec(kept_count + folds.len());
     let is_cut_out = |face: u32| face == NO_FACE || cut_out[model.face_material[face as usize] as usize];
     // Faces without material are opaque.
     let any_cut_out = !model.face_material.is_empty() && cut_out.contains(&true);
-    let of_edges = edges.edges.iter().zip(lines).filter(|&(_, line)| is_kept(line));
-    let of_edges = of_edges.map(|(edge, line)| (edge, line, fits(edge)));
+    let of_edges = edges.edges.iter().zip(lines).zip(kept).filter(|&(_, kept)| kept);
+    let of_edges = of_edges.map(|((edge, line), _)| (edge, line, fits(edge)));
     // A polygon's triangles are wound consistently, and a fold is a line only where it is a silhouette.
     let of_folds = folds.iter().map(|fold| (fold, LineKind::Silhouette as u8, true));
     let (mut next_always, mut next) = (0, always);

@@ -121,7 +121,8 @@ fn casts(model: &Model, edges: &Edges, face: usize) -> bool {
     !blended && edges.skipped.get(face) != Some(&true)
 }
 
-/// Gathers the edges and faces of a model that can cast.
+/// Gathers the edges and faces of a model that can cast. An edge between two faces whose planes are the same numbers
+/// cannot.
 ///
 /// `edges`: of this model's triangles, found without polygons (an empty `face_polygon`), so that diagonals are among
 /// them: a polygon may be warped, and its triangles then face a light differently. Where the model's `face_material` is
@@ -161,6 +162,10 @@ pub fn shadow_casters(model: &Model, edges: &Edges) -> ShadowCasters {
         if edge.kind() == EdgeKind::TwoFace && is_casting(first) && is_casting(second) {
             let same = if edge.wound_oppositely() { SAME_DIRECTION } else { 0 };
             let [first, second] = [first, second].map(|face| number[face as usize]);
+            // Faces in exactly one plane turn alike to every light, so that their edge never sweeps.
+            if same == 0 && casters.planes[first as usize] == casters.planes[second as usize] {
+                continue;
+            }
             casters.edges.push(CastingEdge { ends: edge.ends, first, second: second | same });
         } else {
             casters.edges.extend([first, second].into_iter().filter(|&f| is_casting(f)).map(|f| single(f, edge.ends)));

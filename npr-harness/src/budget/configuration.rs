@@ -6,6 +6,7 @@ use crate::scene::Scene;
 use crate::shade::Shade;
 use crate::variant::{Part, Setup, Variant};
 use crate::view::View;
+use std::borrow::Cow;
 
 /// A part as the style itself has it, where it cannot be made in another way.
 const AS_GIVEN: &str = "as the style has it";
@@ -46,8 +47,8 @@ impl Configuration {
     }
 }
 
-/// Every way to make a picture that the table knows the cost of, the cheapest first. Ways that serve comparison alone are
-/// left out.
+/// Every way to make a picture that the table knows the cost of, the cheapest first. Ways
+/// that are no plan's to choose ([`Variant::in_budget`]) are left out.
 pub fn configurations(scene: &Scene, setup: &Setup, view: &View, table: &CostTable) -> Vec<Configuration> {
     let pixels = f64::from(view.size.0) * f64::from(view.size.1);
     let faces = scene.face_count() as f64;
@@ -64,8 +65,8 @@ pub fn configurations(scene: &Scene, setup: &Setup, view: &View, table: &CostTab
             let cost = |&(part, variant): &(Part, &'static str)| {
                 let shade = (part == on_surface).then_some(shade);
                 // What was not measured for lines as they are given is expected to cost what lines in the image do.
-                let variant = if variant == AS_GIVEN { as_given(part) } else { variant };
-                Some((part, table.ms(executor, part, variant, shade, setup.samples, &amounts)?))
+                let variant = cost_name(part, if variant == AS_GIVEN { as_given(part) } else { variant }, &setup);
+                Some((part, table.ms(executor, part, &variant, shade, setup.samples, &amounts)?))
             };
             let paid = variants.iter().filter(|(part, _)| *part != Part::Samples);
             let Some(costs_ms) = paid.map(cost).collect::<Option<Vec<_>>>() else { continue };
@@ -110,6 +111,12 @@ fn as_given(part: Part) -> &'static str {
     }
 }
 
+/// The name under which a table has the cost of a variant: lines in the image cost more where a disc widens them.
+pub(crate) fn cost_name<'a>(part: Part, variant: &'a str, setup: &Setup) -> Cow<'a, str> {
+    let is_dilated = setup.style.lines.image.is_some_and(|ink| ink.dilation.is_some());
+    if part == Part::Lines && is_dilated { format!("{variant}, dilated").into() } else { variant.into() }
+}
+
 /// Every combination of variants of the parts that a setup has.
 fn setups(setup: &Setup) -> Vec<(Vec<(Part, &'static str)>, Setup)> {
     let mut all = vec![(Vec::new(), setup.clone())];
@@ -118,7 +125,7 @@ fn setups(setup: &Setup) -> Vec<(Vec<(Part, &'static str)>, Setup)> {
         for (variants, setup) in &all {
             let chosen = |variant: &Variant| Some((variant.name, (variant.apply)(setup)?));
             let ways = part.variants();
-            let mut found: Vec<_> = ways.iter().filter(|variant| !variant.historical).filter_map(chosen).collect();
+            let mut found: Vec<_> = ways.iter().filter(|variant| variant.in_budget).filter_map(chosen).collect();
             if found.is_empty() {
                 if !has(part, setup) {
                     more.push((variants.clone(), setup.clone()));

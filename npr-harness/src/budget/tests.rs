@@ -27,8 +27,8 @@ fn table() -> CostTable {
             entry(Part::Light, "per pixel", toon, 1, 12.0),
             entry(Part::Light, "per vertex", toon, 1, 11.0),
             entry(Part::Lines, "edges", None, 1, 5.0),
-            entry(Part::Lines, "image, 64 bits", None, 1, 3.0),
-            entry(Part::Lines, "image, 64 bits", None, 2, 2.0),
+            entry(Part::Lines, "image, 64 bits, dilated", None, 1, 3.0),
+            entry(Part::Lines, "image, 64 bits, dilated", None, 2, 2.0),
         ],
         expected: vec![
             expected(Part::Light, "per pixel", toon, 1, 0.02),

@@ -4,13 +4,14 @@
 //! that of a distant one, interpolated between vertices, equals that of interpolated normals.
 
 use super::frames::{Candidate, Drawn, candidates, part_of, rows};
-use super::{Chart, Lab, Row, Subject};
+use super::{Chart, Lab, Row};
 use crate::capabilities::Capabilities;
 use crate::cpu::{self, CpuOptions};
 use crate::error::HarnessError;
 use crate::lights::StyleLight;
 use crate::picture::Image;
 use crate::plan::Plan;
+use crate::scene::Scene;
 use crate::shade::Shade;
 use crate::style::{Lines, Style, style};
 use crate::variant::{Part, Setup};
@@ -51,7 +52,7 @@ fn run(lab: &Lab<'_>) -> Result<Vec<Row>, HarnessError> {
     for (number, subject) in lab.subjects.iter().enumerate() {
         for (which, (name, shade)) in shades().into_iter().enumerate() {
             let base = lit(shade);
-            let truth = truth(subject, &base, lab.size)?;
+            let truth = truth(&subject.scene, &View::new(subject.camera, lab.size), &base.style)?;
             let mut of_shade: Vec<Candidate> = Vec::new();
             for candidate in candidates(Part::Light, &base) {
                 // The other ways would not be more accurate with more samples.
@@ -59,7 +60,10 @@ fn run(lab: &Lab<'_>) -> Result<Vec<Row>, HarnessError> {
                 let all = if is_sampled { candidates_of_samples(&candidate) } else { vec![candidate] };
                 of_shade.extend(all.into_iter().map(|c| Candidate { name: format!("{name}, {}", c.name), ..c }));
             }
-            let mut judge = |drawn: &Drawn<'_>| errors(&drawn.image(drawn.view)?, &truth).map(Some);
+            let mut judge = |drawn: &Drawn<'_>| {
+                let [rmse, worst] = differences(&drawn.image(drawn.view)?, &truth);
+                Ok(Some(vec![(RMSE.into(), rmse), ("largest of 255".into(), worst)]))
+            };
             let progress = part_of(lab, number * shades().len() + which, lab.subjects.len() * shades().len());
             all.extend(rows(CHART.name, lab, subject, &of_shade, &mut judge, &progress)?);
         }
@@ -79,18 +83,20 @@ fn candidates_of_samples(candidate: &Candidate) -> Vec<Candidate> {
     candidates(Part::Samples, &candidate.setup).into_iter().map(with).collect()
 }
 
-fn truth(subject: &Subject, base: &Setup, size: (u32, u32)) -> Result<Image, HarnessError> {
-    let shade = match &base.style.shade {
+/// The picture that light is compared with.
+pub(super) fn truth(scene: &Scene, view: &View, style: &Style) -> Result<Image, HarnessError> {
+    let shade = match &style.shade {
         Shade::Toon(bands) => Shade::Toon(Bands { antialias: false, ..bands.clone() }),
         other => other.clone(),
     };
-    let style = Style { shade, normals: NormalUse::PerPixel, ..base.style.clone() };
-    let view = View { samples: TRUE_SAMPLES, ..View::new(subject.camera, size) };
-    let plan = Plan::new(&subject.scene, &style, &view, &Capabilities::RAY_CASTER)?;
-    Ok(cpu::render(&subject.scene, &plan, &CpuOptions::default(), &|_| {}).image())
+    let style = Style { shade, normals: NormalUse::PerPixel, ..style.clone() };
+    let view = View { samples: TRUE_SAMPLES, ..*view };
+    let plan = Plan::new(scene, &style, &view, &Capabilities::RAY_CASTER)?;
+    Ok(cpu::render(scene, &plan, &CpuOptions::default(), &|_| {}).image())
 }
 
-fn errors(image: &Image, truth: &Image) -> Result<Vec<(String, f64)>, HarnessError> {
+/// Root mean square and largest difference of a channel, of 255.
+pub(super) fn differences(image: &Image, truth: &Image) -> [f64; 2] {
     let differences = image
         .rgba8
         .chunks_exact(4)
@@ -102,5 +108,5 @@ fn errors(image: &Image, truth: &Image) -> Result<Vec<(String, f64)>, HarnessErr
         count += 1;
         worst = worst.max(difference.abs());
     }
-    Ok(vec![(RMSE.into(), (sum / f64::from(count.max(1))).sqrt()), ("largest of 255".into(), worst)])
+    [(sum / f64::from(count.max(1))).sqrt(), worst]
 }

@@ -7,11 +7,19 @@ use super::frames::{Candidate, Drawn, candidates, part_of, rows};
 use super::{Chart, Lab, Row, Subject, on_white};
 use crate::camera::{Camera, Projection};
 use crate::error::HarnessError;
-use crate::style::Lines;
+use crate::executor::{Executor, Picture};
+use crate::hull_lines::HullLines;
+use crate::image_lines::ImageInk;
+use crate::printed_fins::PrintedLines;
+use crate::scene::Scene;
+use crate::shadow::ShadowLines;
+use crate::style::{Lines, Style};
 use crate::truth::lines::{TrueLines, accuracy, darkness, drawn_centreline, true_intersections, true_lines};
 use crate::truth::pieces::{coverage, pieces};
-use crate::variant::{Part, Setup};
+use crate::variant::{AskedLines, Part, Setup};
 use crate::view::View;
+use glam::Vec3;
+use npr_imagespace::composite::Composite;
 use npr_outline::line_style::{LineStyle, widths_px};
 
 pub(super) const CHART: Chart = Chart {
@@ -39,7 +47,7 @@ const CREASE_RAD: f64 = std::f64::consts::FRAC_PI_4;
 pub(super) fn asked(width_px: f32) -> Setup {
     let width_px = widths_px(width_px, width_px, width_px, 0.0);
     let lines = Lines::edges(LineStyle { width_px, ink: [0.0, 0.0, 0.0, 1.0] });
-    Setup { style: crate::style::Style { crease_angle_rad: CREASE_RAD as f32, ..on_white(lines) }, samples: 1 }
+    Setup { style: Style { crease_angle_rad: CREASE_RAD as f32, ..on_white(lines) }, samples: 1 }
 }
 
 /// The variants of lines, and edge lines with several samples.
@@ -76,6 +84,43 @@ fn run(lab: &Lab<'_>) -> Result<Vec<Row>, HarnessError> {
         all.extend(rows(CHART.name, lab, subject, &candidates, &mut judge, &progress)?);
     }
     Ok(all)
+}
+
+/// 1 − F1 of a style's lines, against the exact ones of the kinds that it draws.
+pub(super) fn error_of_style(
+    executor: &Executor,
+    scene: &Scene,
+    view: View,
+    setup: &Setup,
+    truth: &TrueLines,
+) -> Result<f64, HarnessError> {
+    let style = Style { lines: in_black(setup.style.lines), shadow: None, ..on_white(Lines::NONE) };
+    let style = Style { crease_angle_rad: setup.style.crease_angle_rad, ..style };
+    let view = View { samples: setup.samples, ..view };
+    let image = executor.render(&Picture::new(scene, &style, view), &|_| {})?;
+    let drawn = drawn_centreline(&darkness(&image), view.size.0, view.size.1);
+    Ok(1.0 - accuracy(truth, &drawn, WITHIN_PX).f1)
+}
+
+/// The exact lines that a style asks for.
+pub(super) fn asked_of_style(scene: &Scene, view: &View, style: &Style) -> TrueLines {
+    let flat = scene.flattened();
+    let creases = AskedLines::of(style).is_none_or(|asked| asked.crease_px > 0.0);
+    let crease_rad = if creases { f64::from(style.crease_angle_rad) } else { std::f64::consts::PI };
+    let mut lines = true_lines(&flat, &view.camera, view.size, crease_rad);
+    lines.segments.extend(true_intersections(&flat, &view.camera, view.size, crease_rad).segments);
+    lines
+}
+
+/// The same lines, black and opaque, without those of shadows.
+fn in_black(lines: Lines) -> Lines {
+    let composite = Composite::Over { color: Vec3::ZERO, opacity: 1.0 };
+    Lines {
+        edges: lines.edges.map(|edges| LineStyle { ink: [0.0, 0.0, 0.0, 1.0], ..edges }),
+        hull: lines.hull.map(|hull| HullLines { ink: Vec3::ZERO, ..hull }),
+        printed: lines.printed.map(|fins| PrintedLines { ink: Vec3::ZERO, ..fins }),
+        image: lines.image.map(|ink| ImageInk { composite, shadows: ShadowLines::None, ..ink }),
+    }
 }
 
 /// Pictures from cameras that move to the right.

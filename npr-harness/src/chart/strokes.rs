@@ -5,16 +5,19 @@
 //! [`crate::truth::hatch::asked`].
 
 use super::frames::{Candidate, Drawn, candidates, part_of, rows};
-use super::{Chart, Lab, Row, Subject};
+use super::{Chart, Lab, Row};
 use crate::capabilities::Capabilities;
 use crate::cpu::{self, CpuOptions};
 use crate::error::HarnessError;
-use crate::hatch::{HatchEncoding, HatchMapping};
+use crate::executor::{Executor, Picture};
+use crate::hatch::{HatchEncoding, HatchGround, HatchMapping, HatchShade};
 use crate::picture::Image;
 use crate::plan::Plan;
+use crate::scene::Scene;
 use crate::shade::Shade;
 use crate::shade::ramp::{RampShade, RampSource};
 use crate::style::{Lines, Style};
+use crate::truth::bands::white;
 use crate::truth::hatch::{LINEAR, MAPPINGS, asked, black, hatched, strokes};
 use crate::variant::{Part, Setup};
 use crate::view::View;
@@ -45,7 +48,9 @@ fn run(lab: &Lab<'_>) -> Result<Vec<Row>, HarnessError> {
     let map = strokes(1);
     let mut all = Vec::new();
     for (number, subject) in lab.subjects.iter().enumerate() {
-        let truth = windows(&lit(subject, lab.size)?);
+        let view = View::new(subject.camera, lab.size);
+        let shade = black(&map, HatchEncoding::Thresholds, HatchMapping::Planes, LINEAR, 0.5);
+        let truth = truth(&subject.scene, &view, &hatched(&shade, NormalUse::PerPixel, to_light()))?;
         let mut of_subject: Vec<Candidate> = Vec::new();
         for mapping in MAPPINGS {
             // Without coordinates it is the same as planes.
@@ -65,18 +70,8 @@ fn run(lab: &Lab<'_>) -> Result<Vec<Row>, HarnessError> {
         }
         let mut judge = |drawn: &Drawn<'_>| {
             let Shade::Hatch(shade) = &drawn.candidate.setup.style.shade else { return Ok(None) };
-            let shown = windows(&drawn.image(drawn.view)?);
-            let (mut sum, mut worst, mut count) = (0.0, 0.0f64, 0u32);
-            for (&tone, &light) in shown.iter().zip(&truth) {
-                let Some(light) = light.on_surface else { continue };
-                let [low, high] = asked(shade, light);
-                let error = (tone.mean - tone.mean.clamp(low, high)).abs();
-                sum += error * error;
-                worst = worst.max(error);
-                count += 1;
-            }
-            let errors = [(TONE, (sum / f64::from(count.max(1))).sqrt()), ("largest error of a window", worst)];
-            Ok(Some(errors.map(|(name, value)| (name.to_owned(), value)).into()))
+            let [rmse, worst] = differences(shade, &drawn.image(drawn.view)?, &truth);
+            Ok(Some(vec![(TONE.into(), rmse), ("largest error of a window".into(), worst)]))
         };
         let progress = part_of(lab, number, lab.subjects.len());
         all.extend(rows(CHART.name, lab, subject, &of_subject, &mut judge, &progress)?);
@@ -86,40 +81,80 @@ fn run(lab: &Lab<'_>) -> Result<Vec<Row>, HarnessError> {
 
 /// A window of a picture.
 #[derive(Clone, Copy)]
-struct Window {
-    /// The mean of its green channel, 0..=1.
+pub(super) struct Window {
+    /// The mean of its green channel, 0..=1: the tone, or N·L.
     mean: f64,
-    /// The mean of N·L, if surfaces fill it: in [`lit`]'s picture, where blue marks them.
-    on_surface: Option<f64>,
+    /// Whether it is free of blue, which in [`truth`]'s picture means that surfaces fill it.
+    is_surface: bool,
 }
 
 fn windows(image: &Image) -> Vec<Window> {
     let window = |x0: u32, y0: u32| {
-        let mut sums = [0.0; 3];
-        for y in y0..y0 + WINDOW_PX {
-            for x in x0..x0 + WINDOW_PX {
-                let pixel = image.pixel(x, y);
-                (0..3).for_each(|channel| sums[channel] += f64::from(pixel[channel]) / 255.0);
-            }
+        let pixels = (y0..y0 + WINDOW_PX).flat_map(|y| (x0..x0 + WINDOW_PX).map(move |x| image.pixel(x, y)));
+        let (mut green, mut blue) = (0.0, 0.0);
+        for [_, g, b, _] in pixels {
+            green += f64::from(g) / 255.0;
+            blue += f64::from(b);
         }
-        let [red, green, blue] = sums.map(|sum| sum / f64::from(WINDOW_PX * WINDOW_PX));
-        let _ = red;
-        Window { mean: green, on_surface: (blue == 0.0).then_some(green) }
+        Window { mean: green / f64::from(WINDOW_PX * WINDOW_PX), is_surface: blue == 0.0 }
     };
     let columns = (0..image.width / WINDOW_PX).map(|x| x * WINDOW_PX);
     (0..image.height / WINDOW_PX).flat_map(|y| columns.clone().map(move |x| window(x, y * WINDOW_PX))).collect()
 }
 
-/// N·L as the green of surfaces without blue, on white.
-fn lit(subject: &Subject, size: (u32, u32)) -> Result<Image, HarnessError> {
+/// The root mean square and the largest error of the tone of windows that surfaces fill.
+fn differences(shade: &HatchShade, image: &Image, truth: &[Window]) -> [f64; 2] {
+    let (mut sum, mut worst, mut count) = (0.0, 0.0f64, 0u32);
+    for (tone, light) in windows(image).into_iter().zip(truth) {
+        if !light.is_surface {
+            continue;
+        }
+        let [low, high] = asked(shade, light.mean);
+        let error = (tone.mean - tone.mean.clamp(low, high)).abs();
+        sum += error * error;
+        worst = worst.max(error);
+        count += 1;
+    }
+    [(sum / f64::from(count.max(1))).sqrt(), worst]
+}
+
+/// The error of a hatched setup's tone, drawn in black on white with a tone of N·L.
+pub(super) fn error_of_style(
+    executor: &Executor,
+    scene: &Scene,
+    view: View,
+    setup: &Setup,
+    truth: &[Window],
+) -> Result<f64, HarnessError> {
+    let Shade::Hatch(shade) = &setup.style.shade else { return Ok(0.0) };
+    let shade = HatchShade { ink: Vec3::ZERO, ground: HatchGround::Paper, transfer: LINEAR, ..shade.clone() };
+    let style = Style {
+        paper: Vec3::ONE,
+        shade: Shade::Hatch(shade.clone()),
+        shadow: None,
+        lines: Lines::NONE,
+        ..setup.style.clone()
+    };
+    let view = View { samples: setup.samples, ..view };
+    let image = executor.render(&Picture::new(scene, &style, view), &|_| {})?;
+    Ok(differences(&shade, &image, truth)[0])
+}
+
+/// The windows of N·L of a style's lights: the green of surfaces without blue, on white.
+pub(super) fn truth(scene: &Scene, view: &View, style: &Style) -> Result<Vec<Window>, HarnessError> {
     let light = [(0.0, Vec3::ZERO), (1.0, Vec3::Y)].map(|(at, color)| RampStop { at, color });
     let ramp = RampSource::Stops(Ramp { stops: light.to_vec(), blend: RampBlend::Smooth });
-    let shade = black(&strokes(1), HatchEncoding::Thresholds, HatchMapping::Planes, LINEAR, 1.0);
-    let base = hatched(&shade, NormalUse::PerPixel, to_light());
-    let style = Style { shade: Shade::Ramp(RampShade { ramp, half_lambert: None }), lines: Lines::NONE, ..base };
+    let style = Style {
+        paper: Vec3::ONE,
+        shade: Shade::Ramp(RampShade { ramp, half_lambert: None }),
+        normals: NormalUse::PerPixel,
+        shadow: None,
+        lines: Lines::NONE,
+        ..style.clone()
+    };
     // White, so that the colour is that of the ramp.
-    let white = crate::scene::Scene::new(crate::truth::bands::white(subject.scene.flattened().single().model()));
-    let view = View { samples: TRUE_SAMPLES, ..View::new(subject.camera, size) };
+    let white = Scene::new(white(scene.flattened().single().model()));
+    let view = View { samples: TRUE_SAMPLES, ..*view };
     let plan = Plan::new(&white, &style, &view, &Capabilities::RAY_CASTER)?;
-    Ok(cpu::render(&white, &plan, &CpuOptions::default(), &|_| {}).image())
+    Ok(windows(&cpu::render(&white, &plan, &CpuOptions::default(), &|_| {}).image()))
 }

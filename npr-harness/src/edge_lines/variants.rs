@@ -9,6 +9,7 @@ pub(crate) const VARIANTS: &[Variant] = &[Variant {
     name: "edges",
     choices: &["EdgeLineMethod::OnCpu", "EdgeLineMethod::OnDevice", "LineSource::Records", "LineSource::OnDevice"],
     historical: false,
+    in_budget: true,
     apply: |setup| {
         AskedLines::drawn(setup, |asked| {
             let AskedLines { width_px, crease_px, border_px, color, opacity } = *asked;

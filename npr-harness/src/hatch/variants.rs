@@ -13,24 +13,28 @@ pub(crate) const VARIANTS: &[Variant] = &[
         name: "six tones",
         choices: &["HatchEncoding::SixTones"],
         historical: false,
+        in_budget: true,
         apply: |setup| strokes(setup, HatchEncoding::SixTones, NormalUse::PerPixel),
     },
     Variant {
         name: "six tones, weights per vertex",
         choices: &["NormalUse::PerVertex"],
         historical: false,
+        in_budget: true,
         apply: |setup| strokes(setup, HatchEncoding::SixTones, NormalUse::PerVertex),
     },
     Variant {
         name: "thresholds",
         choices: &["HatchEncoding::Thresholds"],
         historical: false,
+        in_budget: true,
         apply: |setup| strokes(setup, HatchEncoding::Thresholds, NormalUse::PerPixel),
     },
     Variant {
         name: "thresholds, light per vertex",
         choices: &[],
         historical: false,
+        in_budget: true,
         apply: |setup| strokes(setup, HatchEncoding::Thresholds, NormalUse::PerVertex),
     },
 ];

@@ -11,12 +11,14 @@ pub(crate) const VARIANTS: &[Variant] = &[
         name: "hull, welded normals",
         choices: &["HullNormals::Welded"],
         historical: false,
+        in_budget: true,
         apply: |setup| hull(setup, HullNormals::Welded),
     },
     Variant {
         name: "hull, normals of vertices",
         choices: &["HullNormals::Vertices"],
         historical: false,
+        in_budget: true,
         apply: |setup| hull(setup, HullNormals::Vertices),
     },
 ];

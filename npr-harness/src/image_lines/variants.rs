@@ -95,16 +95,22 @@ fn plain(setup: &Setup, form: DepthPlain) -> Option<Setup> {
 
 /// A way that a plan may choose.
 const fn way(name: &'static str, choices: &'static [&'static str], apply: fn(&Setup) -> Option<Setup>) -> Variant {
-    Variant { name, choices, historical: false, apply }
+    Variant { name, choices, historical: false, in_budget: true, apply }
 }
 
-/// A way that is kept for comparison.
+/// A way of a style's own G-buffer, which is drawn by a pass of its own and encoded by another: a plan has no reason to
+/// choose it.
+const fn own(name: &'static str, choices: &'static [&'static str], apply: fn(&Setup) -> Option<Setup>) -> Variant {
+    Variant { in_budget: false, ..way(name, choices, apply) }
+}
+
+/// A way with an error in print.
 const fn historical(
     name: &'static str,
     choices: &'static [&'static str],
     apply: fn(&Setup) -> Option<Setup>,
 ) -> Variant {
-    Variant { name, choices, historical: true, apply }
+    Variant { historical: true, ..own(name, choices, apply) }
 }
 
 /// Ways to draw lines.
@@ -151,48 +157,48 @@ pub(crate) const VARIANTS: &[Variant] = &[
         let edges = PrintedEdges { normal: Some(normal), depth: Some(depth), ..PrintedEdges::default() };
         printed(setup, PrintedFilter::Edges(edges), Background::PlusZ)
     }),
-    way("2002, corrected", &["Background::None"], |setup| {
+    own("2002, corrected", &["Background::None"], |setup| {
         printed(setup, PrintedFilter::Edges(PrintedEdges::default()), Background::None)
     }),
     historical("inker, as printed", &["InkerForm::Printed", "PrintedFilter::Inker"], |setup| {
         inker(setup, InkerForm::Printed)
     }),
     historical("inker, instruction added", &["InkerForm::Corrected"], |setup| inker(setup, InkerForm::Corrected)),
-    way("inker, two thresholds", &["InkerForm::Explicit"], |setup| inker(setup, InkerForm::Explicit)),
-    way("separate, floats", &["GBufferTarget::Separate", "DepthFormat::Float", "SeparateDepthTest::Bend"], |setup| {
+    own("inker, two thresholds", &["InkerForm::Explicit"], |setup| inker(setup, InkerForm::Explicit)),
+    own("separate, floats", &["GBufferTarget::Separate", "DepthFormat::Float", "SeparateDepthTest::Bend"], |setup| {
         separate(setup, None, DepthFormat::Float)
     }),
-    way("separate, normals of 3 bytes", &["npr_imagespace::NormalFormat::Biased8"], |setup| {
+    own("separate, normals of 3 bytes", &["npr_imagespace::NormalFormat::Biased8"], |setup| {
         separate(setup, Some(NormalFormat::Biased8), DepthFormat::Float)
     }),
-    way("separate, normals of 10 bits", &["npr_imagespace::NormalFormat::Oct5"], |setup| {
+    own("separate, normals of 10 bits", &["npr_imagespace::NormalFormat::Oct5"], |setup| {
         separate(setup, Some(NormalFormat::Oct5), DepthFormat::Float)
     }),
-    way("separate, normals of 16 bits", &["npr_imagespace::NormalFormat::Oct8"], |setup| {
+    own("separate, normals of 16 bits", &["npr_imagespace::NormalFormat::Oct8"], |setup| {
         separate(setup, Some(NormalFormat::Oct8), DepthFormat::Float)
     }),
-    way("separate, normals of 32 bits", &["npr_imagespace::NormalFormat::Oct16"], |setup| {
+    own("separate, normals of 32 bits", &["npr_imagespace::NormalFormat::Oct16"], |setup| {
         separate(setup, Some(NormalFormat::Oct16), DepthFormat::Float)
     }),
-    way("separate, normals of half floats", &["npr_imagespace::NormalFormat::Half"], |setup| {
+    own("separate, normals of half floats", &["npr_imagespace::NormalFormat::Half"], |setup| {
         separate(setup, Some(NormalFormat::Half), DepthFormat::Float)
     }),
-    way("separate, depth of 8 bits", &["DepthFormat::Unorm8"], |setup| separate(setup, None, DepthFormat::Unorm8)),
-    way("separate, depth of 16 bits", &["DepthFormat::Unorm16"], |setup| separate(setup, None, DepthFormat::Unorm16)),
-    way("separate, depth in 2 bytes", &["DepthFormat::Packed2x8"], |setup| {
+    own("separate, depth of 8 bits", &["DepthFormat::Unorm8"], |setup| separate(setup, None, DepthFormat::Unorm8)),
+    own("separate, depth of 16 bits", &["DepthFormat::Unorm16"], |setup| separate(setup, None, DepthFormat::Unorm16)),
+    own("separate, depth in 2 bytes", &["DepthFormat::Packed2x8"], |setup| {
         separate(setup, None, DepthFormat::Packed2x8)
     }),
-    way("separate, depth in 4 bytes", &["DepthFormat::Packed4x8"], |setup| {
+    own("separate, depth in 4 bytes", &["DepthFormat::Packed4x8"], |setup| {
         separate(setup, None, DepthFormat::Packed4x8)
     }),
-    way("separate, depth of half floats", &["DepthFormat::Half"], |setup| separate(setup, None, DepthFormat::Half)),
-    way("separate, relative steps of depth", &["SeparateDepthTest::Step"], |setup| {
+    own("separate, depth of half floats", &["DepthFormat::Half"], |setup| separate(setup, None, DepthFormat::Half)),
+    own("separate, relative steps of depth", &["SeparateDepthTest::Step"], |setup| {
         let test = SeparateDepthTest::Step { step: DEPTH_ANY_OUTLINING_SKETCH };
         tested(setup, None, DepthFormat::Float, Some(test))
     }),
-    way("separate, sum of steps", &["SeparateDepthTest::Plain", "DepthPlain::Sum"], |setup| {
+    own("separate, sum of steps", &["SeparateDepthTest::Plain", "DepthPlain::Sum"], |setup| {
         plain(setup, DepthPlain::Sum)
     }),
     historical("separate, sum of two steps", &["DepthPlain::SumPrinted"], |setup| plain(setup, DepthPlain::SumPrinted)),
-    way("separate, largest step", &["DepthPlain::Any"], |setup| plain(setup, DepthPlain::Any)),
+    own("separate, largest step", &["DepthPlain::Any"], |setup| plain(setup, DepthPlain::Any)),
 ];

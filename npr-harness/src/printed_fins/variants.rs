@@ -10,12 +10,14 @@ pub(crate) const VARIANTS: &[Variant] = &[
         name: "fins, as printed",
         choices: &["FinDepth::Printed"],
         historical: true,
+        in_budget: false,
         apply: |setup| fins(setup, PrintedLines::default()),
     },
     Variant {
         name: "fins, width by distance",
         choices: &["FinDepth::Eye"],
         historical: false,
+        in_budget: true,
         apply: |setup| fins(setup, PrintedLines { eye_depth: true, ..PrintedLines::default() }),
     },
 ];

@@ -12,36 +12,42 @@ pub(crate) const VARIANTS: &[Variant] = &[
         name: "per pixel",
         choices: &["NormalUse::PerPixel"],
         historical: false,
+        in_budget: true,
         apply: |setup| lit(setup, NormalUse::PerPixel),
     },
     Variant {
         name: "interpolated normals",
         choices: &["NormalUse::Interpolated"],
         historical: false,
+        in_budget: true,
         apply: |setup| lit(setup, NormalUse::Interpolated),
     },
     Variant {
         name: "per vertex",
         choices: &["NormalUse::PerVertex"],
         historical: false,
+        in_budget: true,
         apply: |setup| lit(setup, NormalUse::PerVertex),
     },
     Variant {
         name: "per subdivided face",
         choices: &["NormalUse::PerSubdividedFace"],
         historical: false,
+        in_budget: true,
         apply: |setup| lit(setup, NormalUse::PerSubdividedFace(4)),
     },
     Variant {
         name: "per face",
         choices: &["NormalUse::PerFace"],
         historical: false,
+        in_budget: true,
         apply: |setup| lit(setup, NormalUse::PerFace),
     },
     Variant {
         name: "per pixel, hard borders",
         choices: &[],
         historical: false,
+        in_budget: true,
         apply: |setup| {
             let Shade::Toon(bands) = &setup.style.shade else { return None };
             let shade = Shade::Toon(Bands { antialias: false, ..bands.clone() });

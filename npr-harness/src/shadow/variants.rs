@@ -10,17 +10,19 @@ pub(crate) const VARIANTS: &[Variant] = &[
         name: "volumes",
         choices: &["ShadowMethod::Volumes", "ShadowTechnique::Volumes", "ShadowTechnique::Rays"],
         historical: false,
+        in_budget: true,
         apply: |setup| shadows(setup, ShadowMethod::Volumes),
     },
     Variant {
         name: "map of 512",
         choices: &["ShadowMethod::Map", "ShadowTechnique::Map"],
         historical: false,
+        in_budget: true,
         apply: |setup| map(setup, 512),
     },
-    Variant { name: "map of 1024", choices: &[], historical: false, apply: |setup| map(setup, 1024) },
-    Variant { name: "map of 2048", choices: &[], historical: false, apply: |setup| map(setup, 2048) },
-    Variant { name: "map of 4096", choices: &[], historical: false, apply: |setup| map(setup, 4096) },
+    Variant { name: "map of 1024", choices: &[], historical: false, in_budget: true, apply: |setup| map(setup, 1024) },
+    Variant { name: "map of 2048", choices: &[], historical: false, in_budget: true, apply: |setup| map(setup, 2048) },
+    Variant { name: "map of 4096", choices: &[], historical: false, in_budget: true, apply: |setup| map(setup, 4096) },
 ];
 
 fn map(setup: &Setup, side: u32) -> Option<Setup> {

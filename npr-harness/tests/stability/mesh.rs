@@ -1,1 +1,57 @@
-//! Limits of meshes: scale, coincident faces, junctions, welding.
+//! Limits of meshes.
+
+use super::{holds, near_prediction};
+
+#[test]
+fn positions_in_f32_are_displaced_by_half_a_px_50_000_sizes_from_the_origin_and_nodes_in_f64_at_10_to_the_12() {
+    let found = holds("model-offset", &["positions in f32", "a node in f64"]).expect("on the CPU");
+    near_prediction(&found, "positions in f32", 1.5);
+    near_prediction(&found, "a node in f64", 3.0);
+}
+
+#[test]
+fn faces_in_one_plane_show_through_each_other_unless_their_corners_are_equal() {
+    let curves = ["cut along the same diagonal", "cut along the other diagonal", "a mark on a sheet", "back to back"];
+    holds("coincident-faces", &curves);
+}
+
+#[test]
+fn executors_differ_where_faces_lie_in_one_plane() {
+    let curves = ["cut along the same diagonal", "cut along the other diagonal", "a mark on a sheet", "back to back"];
+    holds("coincident-faces-executors", &curves);
+}
+
+#[test]
+fn seams_with_a_t_junction_are_drawn_as_lines() {
+    let found = holds("t-junctions", &["lines from edges"]).expect("on the CPU");
+    near_prediction(&found, "lines from edges", 1.01);
+}
+
+#[test]
+fn seams_open_at_a_gap_of_the_tolerance_and_exactly_welded_ones_at_any_gap() {
+    let curves = ["within a tolerance", "exactly, as for drawing"];
+    let found = holds("weld-seams", &curves).expect("on the CPU");
+    for method in curves {
+        near_prediction(&found, method, 1.02);
+    }
+}
+
+#[test]
+fn welding_destroys_plates_thinner_than_the_tolerance() {
+    let found = holds("weld-plates", &["a flat box"]).expect("on the CPU");
+    near_prediction(&found, "a flat box", 1.02);
+}
+
+#[test]
+fn opposite_windings_misjudge_no_edge_by_the_rule_and_half_of_them_without_it() {
+    let curves = ["by the rule", "by each face's own winding"];
+    let found = holds("opposite-windings", &curves).expect("on the CPU");
+    near_prediction(&found, curves[1], 1.05);
+}
+
+#[test]
+fn faces_without_area_change_nothing_and_thin_ones_take_creases_away() {
+    let curves = ["two equal corners", "three points nearly on a line"];
+    let found = holds("zero-area-faces", &curves).expect("on the CPU");
+    near_prediction(&found, curves[1], 2.0);
+}

@@ -1,37 +1,37 @@
 //! Limits of lines from edges, fins and hulls.
 
-use super::{holds, predicts};
+use super::{holds, near_prediction};
 
 #[test]
 fn rounded_normals_misjudge_edges_within_half_a_step_of_tangency() {
     let curves = ["f32", "i16", "i8", "octahedral 16", "octahedral 8"];
     let finding = holds("silhouette-normals", &curves).expect("no adapter is needed");
     // The worst case is an isolated direction that no sample meets exactly, and five roundings of f32 rarely all go one way.
-    predicts(&finding, "f32", 4.0);
+    near_prediction(&finding, "f32", 4.0);
     for format in &curves[1..] {
-        predicts(&finding, format, 1.3);
+        near_prediction(&finding, format, 1.3);
     }
 }
 
 #[test]
 fn i8_normals_tear_a_tenth_of_the_fins_of_long_edges() {
     let finding = holds("torn-fins", &["f32", "i16", "i8", "octahedral 8"]).expect("no adapter is needed");
-    predicts(&finding, "i8", 1.5);
+    near_prediction(&finding, "i8", 1.5);
 }
 
 #[test]
 fn printed_fins_are_10_percent_too_thin_within_10_near_plane_distances() {
     let curves = ["fins as printed", "fins by eye depth", "edge lines", "inverted hull"];
     let finding = holds("line-width-distance", &curves).expect("no adapter is needed");
-    predicts(&finding, "fins as printed", 1.15);
+    near_prediction(&finding, "fins as printed", 1.15);
 }
 
 #[test]
 fn printed_fins_of_boundaries_lose_half_their_width_60_degrees_towards_the_viewer() {
     let curves = ["fins as printed", "edge lines", "inverted hull"];
     let finding = holds("line-width-tilt", &curves).expect("no adapter is needed");
-    predicts(&finding, "fins as printed", 1.05);
-    predicts(&finding, "inverted hull", 1.1);
+    near_prediction(&finding, "fins as printed", 1.05);
+    near_prediction(&finding, "inverted hull", 1.1);
 }
 
 #[test]
@@ -42,21 +42,21 @@ fn fins_and_hulls_of_hard_edges_widen_when_an_end_is_behind_the_eye() {
 #[test]
 fn hulls_of_split_normals_gape_at_corners_of_1_degree() {
     let finding = holds("hull-corners", &["normals of vertices", "welded normals"]).expect("no adapter is needed");
-    predicts(&finding, "normals of vertices", 1.5);
-    predicts(&finding, "welded normals", 1.15);
+    near_prediction(&finding, "normals of vertices", 1.5);
+    near_prediction(&finding, "welded normals", 1.15);
 }
 
 #[test]
 fn image_lines_lose_bars_thinner_than_three_quarters_of_a_pixel() {
     let finding = holds("thin-bars", &["image lines", "edge lines", "inverted hull"]).expect("no adapter is needed");
-    predicts(&finding, "image lines", 1.2);
+    near_prediction(&finding, "image lines", 1.2);
 }
 
 #[test]
 fn contours_come_apart_from_noise_of_a_twelfth_of_an_edge() {
     let curves = ["more than 1.5 px off the contour", "in pieces under 6 px"];
     let finding = holds("contour-noise", &curves).expect("no adapter is needed");
-    predicts(&finding, "more than 1.5 px off the contour", 1.5);
+    near_prediction(&finding, "more than 1.5 px off the contour", 1.5);
 }
 
 #[test]
@@ -71,12 +71,12 @@ fn lines_without_coverage_flicker_with_the_root_of_a_pan() {
         "printed filters",
     ];
     let finding = holds("line-flicker", &curves).expect("no adapter is needed");
-    predicts(&finding, "edge lines, 8 × 8 samples", 1.2);
+    near_prediction(&finding, "edge lines, 8 × 8 samples", 1.2);
     for method in ["fins as printed", "inverted hull"] {
-        predicts(&finding, method, 1.1);
+        near_prediction(&finding, method, 1.1);
     }
     // Their lines are one to two px wide, some of them three where surfaces curve away.
     for method in ["image lines", "printed filters"] {
-        predicts(&finding, method, 1.7);
+        near_prediction(&finding, method, 1.7);
     }
 }

@@ -380,10 +380,13 @@ fn empty_arrays_mean_that_faces_have_no_polygon_and_no_material() {
     let contours = contours_of(&model, &ContourOptions { material_borders: true, ..ContourOptions::default() });
     assert_eq!(contours.always, 12);
     assert!(!contours.edges.iter().any(ContourEdge::is_cut_out));
-    // The diagonals of the six sides are edges then, which are no creases.
+    // The diagonals of the six sides are edges then, which are no creases, and as both faces are in one plane no
+    // silhouettes: they have no record.
     model.face_polygon.clear();
+    let edges = edges_of(&model);
+    assert_eq!(edges.edges.len(), 18);
     let contours = contours_of(&model, &ContourOptions::default());
-    assert_eq!((contours.always, contours.edges.len()), (12, 18));
+    assert_eq!((contours.always, contours.edges.len()), (12, 12));
     let bare = Model { positions: model.positions, faces: model.faces, ..Model::default() };
     assert_eq!(contours_of(&bare, &ContourOptions::default()), contours);
 }
@@ -653,4 +656,38 @@ fn the_largest_buffer_is_that_of_planes_edges_or_positions() {
     // Twelve faces, twelve edges, 24 vertices.
     assert_eq!(contours.device_bytes(&cube.positions), 12 * 24);
     assert_eq!(contours.device_bytes(&[]), 16 * 12);
+}
+
+#[test]
+fn edges_that_can_be_no_line_that_is_drawn_have_no_record() {
+    let open = {
+        let mut model = embedded::cube();
+        // Without two of the sides, which are neighbours.
+        model.faces.drain(..2);
+        model.faces.drain(2..4);
+        for of_faces in [&mut model.face_material, &mut model.face_polygon] {
+            of_faces.drain(..2);
+            of_faces.drain(2..4);
+        }
+        model
+    };
+    let all = ContourOptions::default();
+    let counts = |options: ContourOptions| {
+        let contours = contours_of(&open, &options);
+        let of_kind = |kind| contours.edges.iter().filter(|edge| edge.own_kind() == kind).count();
+        assert!(contours.edges[..contours.always].iter().all(ContourEdge::is_always));
+        assert!(!contours.edges[contours.always..].iter().any(ContourEdge::is_always));
+        LineKind::ALL.map(of_kind)
+    };
+    // Of twelve edges one is between the two missing sides; six bound what is left, and five are creases.
+    assert_eq!(counts(all), [0, 6, 5, 0]);
+    assert_eq!(counts(ContourOptions { creases: false, ..all }), [5, 6, 0, 0]);
+    assert_eq!(counts(ContourOptions { boundaries: false, ..all }), [0, 0, 5, 0]);
+    assert_eq!(counts(ContourOptions { creases: false, silhouettes: false, ..all }), [0, 6, 0, 0]);
+    assert_eq!(counts(ContourOptions { silhouettes: false, ..all }), [0, 6, 5, 0]);
+    assert_eq!(
+        counts(ContourOptions { creases: false, boundaries: false, silhouettes: false, ..all }),
+        [0; 4],
+        "no line is drawn"
+    );
 }

@@ -1,6 +1,6 @@
 //! The command's arguments.
 
-use crate::{chart, check, figures, inspect, render, report, stability, tam};
+use crate::{calibrate, chart, check, figures, inspect, plan, render, report, stability, tam};
 use clap::{Parser, Subcommand};
 use clap_complete::Shell;
 
@@ -18,6 +18,10 @@ pub struct Cli {
 pub enum Command {
     /// A picture of a model (.obj, .gltf, .glb).
     Render(render::Options),
+    /// How a picture would be made, and why; within a budget of error or time, the way that suits it.
+    Plan(plan::Options),
+    /// Measures what each way to draw costs on this machine, for budgets.
+    Calibrate(calibrate::Options),
     /// What a model is made of.
     Inspect(inspect::Options),
     /// GPU against CPU reference, lines against exact contours; exit status 1 when a limit is exceeded.

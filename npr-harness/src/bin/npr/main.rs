@@ -2,6 +2,8 @@
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 mod backend;
+mod budget;
+mod calibrate;
 mod chart;
 mod check;
 mod cli;
@@ -12,8 +14,10 @@ mod inspect;
 mod loading;
 mod paths;
 mod picture;
+mod plan;
 mod render;
 mod report;
+mod shot;
 mod stability;
 mod style;
 mod tam;
@@ -28,6 +32,8 @@ fn main() -> ExitCode {
     let done = match cli.command {
         None => gallery::run(),
         Some(Command::Render(options)) => render::run(&options),
+        Some(Command::Plan(options)) => plan::run(&options),
+        Some(Command::Calibrate(options)) => calibrate::run(&options),
         Some(Command::Inspect(options)) => inspect::run(&options),
         Some(Command::Check(options)) => check::run(&options),
         Some(Command::Chart(options)) => chart::run(&options),

@@ -1,13 +1,12 @@
 //! Normals of low precision near tangency: edges misjudged, and fins torn.
 
-use crate::camera::Camera;
 use crate::check::Limit as Bound;
 use crate::error::HarnessError;
 use crate::executor::Executor;
 use crate::figures::Setting;
+use crate::picture::Image;
 use crate::printed_fins::PrintedLines;
-use crate::scene::Scene;
-use crate::stability::ink::{Random, beside, curve, drawn, geometric, last_above, limit, parallel};
+use crate::stability::ink::{Random, beside, curve, drawn, enlarged, geometric, last_above, limit};
 use crate::stability::{Axis, Finding, Sweep};
 use crate::style::Lines;
 use crate::view::View;
@@ -60,7 +59,7 @@ fn format_error(format: NormalFormat) -> (&'static str, f64, &'static str) {
     }
 }
 
-fn silhouette_normals(executor: &Executor) -> Result<Finding, HarnessError> {
+fn silhouette_normals(_: &Executor) -> Result<Finding, HarnessError> {
     const NORMALS: usize = 4000;
     const AROUND: u32 = 8;
     let angles_deg = geometric(1e-6, 2.0, 104);
@@ -100,24 +99,37 @@ fn silhouette_normals(executor: &Executor) -> Result<Finding, HarnessError> {
         );
         curves.push(curve(name, points, limit.predicted(predicted, formula)));
     }
-    let ball = Scene::new(embedded::sphere(400));
-    let camera = Camera { eye: DVec3::new(35.0, 30.0, 70.0), ..parallel(2.3) };
-    let fins = |normals| {
-        let lines = Lines::printed(PrintedLines { normals, width_px: 3.0, ..PrintedLines::default() });
-        drawn(executor, &ball, lines, View::new(camera, (158, 158)), 1.0)
-    };
-    let picture = beside(&[fins(NormalFormat::F32)?, fins(NormalFormat::Snorm8)?]);
     Ok(Finding {
         parameter: Axis::logarithmic("angle of a face to tangency", "degrees"),
         error: Axis::linear("edges misjudged", "%"),
         curves,
         pictures: vec![(
-            "A ball of 400 segments, whose faces turn by 0.9°, with printed fins: normals in f32, and in bytes, \
-             which lose parts of the outline."
+            "Faces around the contour of a ball, 60° of it from left to right, from 1° behind (above) to 1° in front: black \
+             where they are judged to face the viewer. Normals in f32, in bytes, and octahedral in two bytes."
                 .into(),
-            picture,
+            beside(&[NormalFormat::F32, NormalFormat::Snorm8, NormalFormat::Oct8].map(judged)),
         )],
     })
+}
+
+/// Black where a face is judged to face the viewer: to the right around a ball's contour, down from 1° behind tangency to
+/// 1° in front of it.
+fn judged(format: NormalFormat) -> Image {
+    const SIZE: (u32, u32) = (104, 100);
+    let view = DVec3::new(0.35, 0.2, 0.9).normalize();
+    let (across, along) = view.any_orthonormal_pair();
+    let mut picture = Image::filled(SIZE.0, SIZE.1, [255; 4]);
+    for y in 0..SIZE.1 {
+        let (sin, cos) = (2.0 * (f64::from(y) + 0.5) / f64::from(SIZE.1) - 1.0).to_radians().sin_cos();
+        for x in 0..SIZE.0 {
+            let around = (60.0 * f64::from(x) / f64::from(SIZE.0)).to_radians();
+            let normal = (across * around.cos() + along * around.sin()) * cos + view * sin;
+            if format.quantised(normal.as_vec3()).dot(view.as_vec3()) > 0.0 {
+                picture.set_pixel(x, y, [0, 0, 0, 255]);
+            }
+        }
+    }
+    picture
 }
 
 /// The number of sides of the can whose fins are torn.
@@ -188,17 +200,19 @@ fn torn_fins(executor: &Executor) -> Result<Finding, HarnessError> {
     }
     let (scene, camera) = (Setting::Cans.scene(), Setting::Cans.camera());
     let fins = |normals| {
-        let lines = Lines::printed(PrintedLines { normals, width_px: 2.0, ..PrintedLines::default() });
-        drawn(executor, &scene, lines, View::new(camera, (158, 158)), 1.0)
+        let lines = Lines::printed(PrintedLines { normals, width_px: 6.0, ..PrintedLines::default() });
+        // The right side of the left can.
+        let picture = drawn(executor, &scene, lines, View::new(camera, (480, 300)), 1.0)?;
+        Ok::<_, HarnessError>(enlarged(&picture, [95, 45, 72, 195], 1))
     };
-    let picture = beside(&[fins(NormalFormat::F32)?, fins(NormalFormat::Snorm8)?]);
+    let picture = beside(&[fins(NormalFormat::F32)?, fins(NormalFormat::Snorm8)?, fins(NormalFormat::Oct8)?]);
     Ok(Finding {
         parameter: Axis::logarithmic("length of an edge over its distance", ""),
         error: Axis::linear("fins torn of those drawn", "%"),
         curves,
         pictures: vec![(
-            "Cans of 367 to 613 sides from near by: fins with normals in f32, and in bytes, which leave halves of fins and \
-             draw others beside them."
+            "The right side of a can of some 400 sides, drawn by printed fins of 6 px with normals in f32, in bytes, and \
+             octahedral in two bytes: halves of fins are left of the line, and slanted ones appear beside it."
                 .into(),
             picture,
         )],

@@ -1,0 +1,40 @@
+//! `npr calibrate`.
+
+use crate::backend::BackendName;
+use crate::budget;
+use crate::terminal::{announce, say};
+use clap::Args;
+use npr_harness::error::HarnessError;
+use npr_harness::executor::{Backend, Executor};
+use std::path::PathBuf;
+
+#[derive(Args)]
+pub struct Options {
+    /// What is measured: an adapter and the CPU (auto), or one of them.
+    #[arg(long, value_enum, default_value = "auto")]
+    backend: BackendName,
+    /// The cost table as JSON, instead of the cache.
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+}
+
+/// Measures this machine, and keeps what was measured.
+pub fn run(options: &Options) -> Result<bool, HarnessError> {
+    let backend = Backend::from(options.backend);
+    let executor = Executor::choose(backend)?;
+    announce(&executor);
+    let executors = budget::candidates(executor, backend);
+    let Some(path) = options.output.clone().or_else(|| budget::cache_file(&executors)) else {
+        return Err(HarnessError::NoCache);
+    };
+    let table = budget::measured(&executors)?;
+    budget::write(&path, &table)?;
+    say(format_args!(
+        "{}: {} costs and {} errors, on {}\n",
+        path.display(),
+        table.entries.len(),
+        table.expected.len(),
+        table.executors.join(" and ")
+    ))?;
+    Ok(true)
+}
