@@ -41,6 +41,8 @@ pub struct Point {
 
 const WIDTH: f64 = 960.0;
 const PLOT_HEIGHT: f64 = 440.0;
+/// The height if points are numbered, which are many.
+const TALL_PLOT_HEIGHT: f64 = 620.0;
 const LEFT: f64 = 72.0;
 const RIGHT: f64 = 24.0;
 const MARGIN: f64 = 16.0;
@@ -117,7 +119,9 @@ fn layout(scatter: &Scatter) -> Layout {
     }
     // The legend's last row, and the title of the vertical axis.
     top += 22.0 + 14.0 + 16.0;
-    let plot = Box2 { left: LEFT, top, right: WIDTH - RIGHT, bottom: top + PLOT_HEIGHT };
+    let is_crowded = scatter.points.len() > MOST_NAMED;
+    let plot_height = if is_crowded { TALL_PLOT_HEIGHT } else { PLOT_HEIGHT };
+    let plot = Box2 { left: LEFT, top, right: WIDTH - RIGHT, bottom: top + plot_height };
     let xs = scatter.points.iter().flat_map(|point| [point.x, point.x_low, point.x_high]);
     let x = Scale::new(&scatter.x, xs, (plot.left, plot.right));
     let y = Scale::new(&scatter.y, scatter.points.iter().map(|point| point.y), (plot.bottom, plot.top));
@@ -125,7 +129,7 @@ fn layout(scatter: &Scatter) -> Layout {
 
     let mut numbered: Vec<String> = Vec::new();
     let texts = scatter.points.iter().enumerate().map(|(n, point)| {
-        if scatter.points.len() <= MOST_NAMED || scatter.front.contains(&n) {
+        if !is_crowded || scatter.front.contains(&n) {
             return (point.label.clone(), true);
         }
         let number = numbered.iter().position(|name| *name == point.label).unwrap_or_else(|| {
@@ -164,9 +168,11 @@ pub fn scatter(scatter: &Scatter) -> String {
             let color = series(group_of(&layout, point));
             let (low, high) = bar(point, &layout);
             if high - low > 2.0 * MARK_PX {
-                canvas.line(&[(low, at.1), (high, at.1)], color, 1.2);
+                // Many bars would hide the marks.
+                let width_px = if layout.numbered.is_empty() { 1.2 } else { 0.6 };
+                canvas.line(&[(low, at.1), (high, at.1)], color, width_px);
                 for end in [low, high] {
-                    canvas.line(&[(end, at.1 - 3.0), (end, at.1 + 3.0)], color, 1.2);
+                    canvas.line(&[(end, at.1 - 3.0), (end, at.1 + 3.0)], color, width_px);
                 }
             }
         }
