@@ -290,7 +290,7 @@ fn banded_ball(format: NormalFormat) -> Image {
             let normal = glam::DVec3::new(at.x, -at.y, (1.0 - squared).sqrt());
             let stored = format.decode(format.encode(normal.as_vec3())).as_dvec3();
             let angle_deg = stored.angle_between(glam::DVec3::new(0.3, 0.4, 0.866)).to_degrees();
-            let grey = if (angle_deg / 6.0) as u32 % 2 == 0 { 60 } else { 200 };
+            let grey = if (angle_deg / 6.0) as u32 % 2 == 1 { 200 } else { 60 };
             picture.set_pixel(x, y, [grey, grey, grey, 255]);
         }
     }
