@@ -1,4 +1,5 @@
 //! Each limit of the failure atlas, held to its bound. A test's name says what fails and where.
+#![allow(clippy::print_stdout)]
 
 mod hatch;
 mod image_space;
