@@ -1,6 +1,6 @@
-use super::super::materials::MaterialUniform;
 use super::super::shader::surface_wgsl;
 use super::*;
+use crate::geometry::MaterialUniform;
 use crate::shade::Shade;
 use crate::shadow::gpu::ShadowUniform;
 use crate::style::style;
