@@ -133,13 +133,18 @@ fn parse(path: &Path, bytes: &[u8]) -> Result<(BTreeMap<Key, Value>, BTreeSet<St
         column: column.to_owned(),
         message,
     };
+    // The parser counts a line when it has read its end, which for CR LF is after the start of the next record.
+    let line_of = |position: Option<&csv::Position>| {
+        let start = position.map_or(0, |position| position.byte() as usize).min(bytes.len());
+        let content = bytes[start..].iter().position(|byte| !b"\r\n".contains(byte)).unwrap_or(0);
+        1 + bytes[..start + content].iter().filter(|byte| **byte == b'\n').count() as u64
+    };
     let of_parser = |error: csv::Error| {
-        let position = error.position().cloned();
         let column = match error.kind() {
             csv::ErrorKind::Utf8 { err, .. } => COLUMNS.get(err.field()).copied().unwrap_or(""),
             _ => "",
         };
-        fault(position.map_or(1, |position| position.line()), column, error.to_string())
+        fault(line_of(error.position()), column, error.to_string())
     };
     let mut reader = csv::Reader::from_reader(bytes);
     let headers = reader.headers().map_err(of_parser)?.clone();
@@ -151,7 +156,7 @@ fn parse(path: &Path, bytes: &[u8]) -> Result<(BTreeMap<Key, Value>, BTreeSet<St
     let (mut values, mut about) = (BTreeMap::new(), BTreeSet::new());
     for record in reader.records() {
         let record = record.map_err(of_parser)?;
-        let line = record.position().map_or(1, csv::Position::line);
+        let line = line_of(record.position());
         let field = |column: usize| record.get(places[column]).unwrap_or_default();
         let number = |column: usize| {
             let text = field(column);
