@@ -221,6 +221,7 @@ pub(crate) struct MaterialTable {
     pub(crate) duplicates: Vec<usize>,
     /// Per material: the number of its texture among those that are read, or the number of these if it reads none; and its
     /// offset in the uniform buffer, bytes.
+    #[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "a device alone reads it"))]
     pub(crate) places: Vec<(usize, u32)>,
     /// The uniforms of all distinct materials, at multiples of a stride; those of one where there are none.
     pub(crate) uniforms: Vec<u8>,

@@ -161,7 +161,7 @@ impl Limit {
     }
 
     /// With how it is to be mended.
-    pub(super) fn to_be_mended(self, how: &str) -> Self {
+    pub(super) fn mend_by(self, how: &str) -> Self {
         Self { to_be_mended: Some(how.into()), ..self }
     }
 }

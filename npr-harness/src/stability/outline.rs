@@ -1,5 +1,6 @@
 //! Sweeps of lines from edges, fins and hulls.
 
+mod density;
 mod flicker;
 mod fragments;
 mod hull_corners;
@@ -17,6 +18,7 @@ pub(super) const SWEEPS: &[Sweep] = &[
     widths::NEAR_PLANE,
     hull_corners::HULL_CORNERS,
     thin::THIN_BARS,
+    density::LINE_DENSITY,
     fragments::CONTOUR_NOISE,
     flicker::FLICKER,
 ];

@@ -53,6 +53,12 @@ fn image_lines_lose_bars_thinner_than_three_quarters_of_a_pixel() {
 }
 
 #[test]
+fn edge_lines_a_quarter_of_a_pixel_apart_are_three_quarters_too_pale() {
+    let finding = holds("line-density", &["edge lines", "edge lines, 4 × 4 samples"]).expect("no adapter is needed");
+    near_prediction(&finding, "edge lines", 1.05);
+}
+
+#[test]
 fn contours_come_apart_from_noise_of_a_twelfth_of_an_edge() {
     let curves = ["more than 1.5 px off the contour", "in pieces under 6 px"];
     let finding = holds("contour-noise", &curves).expect("no adapter is needed");

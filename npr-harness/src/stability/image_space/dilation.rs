@@ -4,7 +4,7 @@ use crate::check::Limit as Bound;
 use crate::error::HarnessError;
 use crate::executor::Executor;
 use crate::picture::Image;
-use crate::stability::ink::{beside, curve, limit, picture_of};
+use crate::stability::ink::{beside, curve, limit, picture_of, worst};
 use crate::stability::{Axis, Finding, Sweep};
 use glam::UVec2;
 use npr_imagespace::ImageSpaceError;
@@ -83,7 +83,9 @@ fn dilation_radius(_: &Executor) -> Result<Finding, HarnessError> {
                     "¾ + ¼ (4/π − 1): a square of dots 2 px apart",
                 )
             }
-            None => limit(what, last, Bound::AtMost(0.0)),
+            None => {
+                limit("largest share of pixels that are wrong at any radius, %", worst(&points), Bound::AtMost(0.0))
+            }
         };
         curves.push(curve(name, points, limit));
     }

@@ -116,10 +116,9 @@ fn contour_noise(executor: &Executor) -> Result<Finding, HarnessError> {
         Bound::AtLeast(6.8),
     )
     .predicted(predicted, "½ √(2 · 1.5 px / radius): faces tilted by twice the noise reach 1.5 px into the ball")
-    .to_be_mended(how);
+    .mend_by(how);
     let fragment_limit =
-        limit("largest share of the ink in pieces under 6 px, %", worst(&fragments), Bound::AtMost(1.2))
-            .to_be_mended(how);
+        limit("largest share of the ink in pieces under 6 px, %", worst(&fragments), Bound::AtMost(1.2)).mend_by(how);
     let pair = beside(&[crop(&picture(0.0)?), crop(&picture(0.2)?)]);
     Ok(Finding {
         parameter: Axis::linear("noise of the vertices, share of an edge's length", "%"),

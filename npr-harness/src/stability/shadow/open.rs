@@ -15,8 +15,8 @@ use npr_outline::shadow_volume::{VOLUME_SECOND, outline_light_side};
 pub(super) const SWEEP: Sweep = Sweep {
     name: "shadow-open-mesh",
     technique: "shadows",
-    what: "Volumes from the contour of a mesh with a hole are open at its border, and light leaks through them; where every \
-           face casts by itself, as here, they are closed.",
+    what: "Volumes from the contour of a mesh with a hole are open at its border, and shadow and light leak through; where \
+           every face casts by itself, as here, they are closed.",
     needs_adapter: false,
     run: measure,
 };
@@ -97,7 +97,7 @@ fn measure(_: &Executor) -> Result<Finding, HarnessError> {
             "sides from the contour",
             contour,
             limit(
-                "radius of the hole from which light leaks, degrees",
+                "radius of the hole from which shadow leaks, degrees",
                 leaks,
                 Some((
                     90.0 - HOLE.angle_between(TO_LIGHT).to_degrees(),
