@@ -20,12 +20,13 @@
 //! | what is shown | [`scene`], [`camera`], [`view`], [`lights`], [`facets`], [`texture`], [`color`] |
 //! | how it looks | [`style`], and a module for each technique: [`shade`], [`hatch`], [`edge_lines`], [`printed_fins`], [`hull_lines`], [`image_lines`], [`shadow`] |
 //! | rendering | [`plan`], [`variant`], [`budget`], [`capabilities`], [`picture_limits`], [`executor`], [`gpu`], [`cpu`], [`rays`], [`picture`] |
-//! | measuring | [`truth`], what is exactly right; [`compare`]; [`check`]; [`chart`], accuracy against speed; [`measure`], times of frames; [`stability`], where methods fail |
+//! | measuring | [`truth`], what is exactly right; [`compare`]; [`check`]; [`chart`], accuracy against speed; [`measure`], times of frames; [`stability`], where methods fail; [`plot`]; [`report`] |
 //! | the command | [`gallery`], [`inspect`], [`suggest`], [`error`] |
 //!
 //! # Features
 //!
 //! - `gpu`: the wgpu executor.
+//! - `laboratory`: the diagrams ([`plot`]) and the page ([`report`]) of what is measured. Measuring does not need it.
 //! - `cli`: the command `npr`, and with it the parser of its arguments and its progress bars. A library needs neither.
 //!
 //! # WebAssembly

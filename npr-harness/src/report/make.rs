@@ -55,6 +55,13 @@ impl Options {
         self.models.iter().map(|path| subject_of_file(path, &self.loading, self.size())).collect()
     }
 
+    /// What charts are measured with, in a line.
+    pub fn describe(&self, subjects: &[Subject]) -> String {
+        let ((width, height), rounds) = (self.size(), self.rounds().rounds);
+        let names: Vec<_> = subjects.iter().map(|subject| subject.name.as_str()).collect();
+        format!("charts: {width} × {height} px, {rounds} rounds, scenes: {}", names.join(", "))
+    }
+
     /// What results depend on.
     fn key(&self, machine: &[String]) -> String {
         let models = self.models.iter().map(|path| {
@@ -151,7 +158,7 @@ pub fn run(
     progress: &(dyn Fn(Progress<'_>) + Sync),
 ) -> Result<(Contents, Table), HarnessError> {
     let executors = executors()?;
-    let machine = machine(&executors);
+    let mut machine = machine(&executors);
     let kept = Stages::new(&dir.join("stages"), &options.key(&machine))?;
     let all = stages();
     if options.fresh {
@@ -159,6 +166,7 @@ pub fn run(
         kept.forget(names.iter().map(String::as_str))?;
     }
     let subjects = options.subjects()?;
+    machine.push(options.describe(&subjects));
     let mut contents = Contents { machine: machine.clone(), ..Contents::default() };
     let mut table = Table { machine, ..Table::default() };
     for (number, stage) in all.iter().enumerate() {

@@ -49,6 +49,7 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
     let executors = make::executors()?;
     let subjects = measuring.subjects()?;
     let mut table = Table { machine: make::machine(&executors), ..Table::default() };
+    table.machine.push(measuring.describe(&subjects));
     for line in &table.machine {
         say(format_args!("{line}\n"))?;
     }

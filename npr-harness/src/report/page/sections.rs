@@ -114,10 +114,10 @@ fn one_chart(chart: &ChartContent) -> String {
 fn figure(svg: &str, label: &str, above: &str) -> String {
     let label = escaped(label);
     let svg = themed(svg).replacen("<svg", &format!("<svg role=\"group\" aria-label=\"{label}\""), 1);
-    // Not enlarged.
+    // Neither enlarged nor reduced so far that its text is too small.
     let natural = svg.split("viewBox=\"0 0 ").nth(1).and_then(|rest| rest.split(' ').next()?.parse::<f64>().ok());
     let width = natural.map_or(960.0, |units| units / 16.0);
-    let svg = svg.replacen("<svg", &format!("<svg style=\"max-width: {width}px\""), 1);
+    let svg = svg.replacen("<svg", &format!("<svg style=\"max-width: {width}px; min-width: {}px\"", 0.9 * width), 1);
     let svg = svg.replacen("</svg>", &format!("{above}</svg>"), 1);
     format!("<div class=\"diagram\" role=\"region\" aria-label=\"{label}, diagram\" tabindex=\"0\">\n{svg}</div>\n")
 }

@@ -1,6 +1,6 @@
 //! Lines closer together than a pixel.
 
-use crate::check::{Limit as Bound, darkness};
+use crate::check::Limit as Bound;
 use crate::error::HarnessError;
 use crate::executor::Executor;
 use crate::picture::Image;
@@ -8,6 +8,7 @@ use crate::scene::Scene;
 use crate::stability::ink::{beside, curve, drawn, limit, parallel};
 use crate::stability::{Axis, Finding, Sweep};
 use crate::style::Lines;
+use crate::truth::lines::darkness;
 use crate::view::View;
 use glam::{DVec2, Vec3};
 use npr_mesh::{Material, Model};
