@@ -2,7 +2,7 @@
 
 use super::Axis;
 use super::canvas::{Align, LINE_HEIGHT, draw, text_width};
-use super::labels::{Box2, Label, Surroundings, place};
+use super::labels::Box2;
 use super::scale::Scale;
 use super::scatter::{axes, series};
 use super::{FAINT, INK};
@@ -54,20 +54,22 @@ pub fn curves(diagram: &Curves) -> String {
         top += TITLE_PX * LINE_HEIGHT + 6.0;
     }
     let legend = legend(diagram, &mut top);
-    // The title of the vertical axis, and the values of the limits above the plot.
-    let limits = diagram.curves.iter().flat_map(|curve| [curve.measured, curve.predicted]).flatten().count();
-    let rows = if limits > 5 { 2.0 } else { f64::from(u8::from(limits > 0)) };
-    top += 14.0 + 16.0 + rows * LABEL_ROW;
-    let plot = Box2 { left: LEFT, top, right: WIDTH - RIGHT, bottom: top + PLOT_HEIGHT };
+    let sides = (LEFT, WIDTH - RIGHT);
     let all = || diagram.curves.iter().flat_map(|curve| &curve.points);
-    let x = Scale::new(&diagram.x, all().map(|point| point.0), (plot.left, plot.right));
+    let x = Scale::new(&diagram.x, all().map(|point| point.0), sides);
+    let values = limit_values(diagram, &x);
+    let rows = values.iter().map(|value| value.row + 1).max().unwrap_or(0);
+    let values_px = rows as f64 * LABEL_ROW;
+    // The title of the vertical axis, and the values of the limits above the plot.
+    top += 14.0 + 16.0 + values_px;
+    let plot = Box2 { left: sides.0, top, right: sides.1, bottom: top + PLOT_HEIGHT };
     let y = Scale::new(&diagram.y, all().map(|point| point.1), (plot.bottom, plot.top));
     draw((WIDTH, plot.bottom + 58.0), |canvas| {
         if !diagram.title.is_empty() {
             let at = (MARGIN, MARGIN + 0.5 * TITLE_PX * LINE_HEIGHT);
             canvas.text(&diagram.title, at, TITLE_PX, INK, Align::Left, true);
         }
-        axes(canvas, [&diagram.x, &diagram.y], [&x, &y], plot, plot.top - 16.0 - rows * LABEL_ROW);
+        axes(canvas, [&diagram.x, &diagram.y], [&x, &y], plot, plot.top - 16.0 - values_px);
         for entry in &legend {
             let (left, y) = entry.at;
             match entry.kind {
@@ -80,7 +82,6 @@ pub fn curves(diagram: &Curves) -> String {
             }
             canvas.text(&entry.text, (left + 32.0, y), TEXT_PX, INK, Align::Left, false);
         }
-        let mut labels = Vec::new();
         for (number, curve) in diagram.curves.iter().enumerate() {
             for (limit, is_measured) in [(curve.measured, true), (curve.predicted, false)] {
                 let Some(value) = limit.filter(|value| x.shows(*value)) else { continue };
@@ -90,7 +91,6 @@ pub fn curves(diagram: &Curves) -> String {
                 } else {
                     canvas.dashed(&line, series(number), 1.6);
                 }
-                labels.push((super::scale::number(value), x.at(value), number));
             }
         }
         for (number, curve) in diagram.curves.iter().enumerate() {
@@ -109,32 +109,52 @@ pub fn curves(diagram: &Curves) -> String {
                 }
             }
         }
-        // The values of the limits, above their lines. The rightmost comes first and is put to the right, so that of two
-        // near each other each is on its own side.
-        labels.sort_by(|a, b| b.1.total_cmp(&a.1));
-        let wanted: Vec<_> = labels
-            .iter()
-            .map(|(text, x, _)| Label {
-                point: (*x, plot.top),
-                size: (text_width(text, LABEL_PX, false) + 4.0, LABEL_PX * LINE_HEIGHT),
-            })
-            .collect();
-        let strip = Box2 { top: plot.top - rows * LABEL_ROW - 2.0, bottom: plot.top - 2.0, right: WIDTH - 4.0, ..plot };
-        for ((text, _, number), area) in labels.iter().zip(place(&wanted, &Surroundings::default(), strip)) {
-            if let Some(area) = area {
-                canvas.text(text, area.center(), LABEL_PX, series(*number), Align::Middle, false);
-            }
+        for LimitValue { text, center, row, curve } in &values {
+            let at = (*center, plot.top - (0.5 + *row as f64) * LABEL_ROW - 2.0);
+            canvas.text(text, at, LABEL_PX, series(*curve), Align::Middle, false);
         }
     })
 }
 
-/// Whether two curves lie on each other, within 2 px, at half of their points or more.
+/// The value of a limit, above the plot.
+struct LimitValue {
+    text: String,
+    center: f64,
+    /// From the plot upwards.
+    row: usize,
+    curve: usize,
+}
+
+/// The values of the limits over their lines, from the left, each in the lowest row that has room.
+fn limit_values(diagram: &Curves, x: &Scale) -> Vec<LimitValue> {
+    let limits = diagram.curves.iter().enumerate().flat_map(|(n, curve)| [(n, curve.measured), (n, curve.predicted)]);
+    let mut values: Vec<(f64, usize)> =
+        limits.filter_map(|(n, value)| Some((value?, n))).filter(|(value, _)| x.shows(*value)).collect();
+    values.sort_by(|a, b| a.0.total_cmp(&b.0));
+    // The right ends of the rows.
+    let mut ends: Vec<f64> = Vec::new();
+    let mut placed = Vec::new();
+    for (value, curve) in values {
+        let text = super::scale::number(value);
+        let width = text_width(&text, LABEL_PX, false) + 6.0;
+        let center = x.at(value).clamp(0.5 * width, WIDTH - 0.5 * width);
+        let row = ends.iter().position(|end| *end <= center - 0.5 * width).unwrap_or(ends.len());
+        if row == ends.len() {
+            ends.push(0.0);
+        }
+        ends[row] = center + 0.5 * width;
+        placed.push(LimitValue { text, center, row, curve });
+    }
+    placed
+}
+
+/// Whether two curves lie on each other, within 2 px, at nine tenths of their points or more.
 fn coincide(a: &[(f64, f64)], b: &[(f64, f64)], x: &Scale, y: &Scale) -> bool {
     let same = |(a, b): &(&(f64, f64), &(f64, f64))| {
         (x.at(a.0) - x.at(b.0)).abs() < 2.0 && (y.at(a.1) - y.at(b.1)).abs() < 2.0
     };
     let count = a.iter().zip(b).filter(same).count();
-    count > 0 && 2 * count >= a.len().max(b.len())
+    count > 0 && 10 * count >= 9 * a.len().max(b.len())
 }
 
 struct Entry {

@@ -135,6 +135,15 @@ fn texts_of_diagrams_neither_overlap_nor_leave_the_picture() {
     }
     assert_legible(&scatter(&narrow), "a narrow range");
     assert_legible(&curves(&curves_example()), "curves");
+    let mut close = curves_example();
+    for (n, curve) in close.curves.iter_mut().enumerate() {
+        (curve.measured, curve.predicted) = (Some(1.01 + 0.01 * n as f64), Some(6812.9 - n as f64));
+    }
+    let svg = curves(&close);
+    assert_legible(&svg, "limits near each other");
+    for text in ["1.01", "1.02", "1.03", "6813", "6812", "6811"] {
+        assert!(texts(&svg).0.iter().any(|(found, _)| found.trim() == text), "{text} is not there");
+    }
 }
 
 #[test]
