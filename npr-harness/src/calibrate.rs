@@ -2,13 +2,14 @@
 //!
 //! Every variant that a plan may choose is drawn on a coarse and a fine model at two sizes, in rounds with a plain pass.
 //! Its cost is fitted to what its median takes, linear in samples and faces, with no negative part. Expected errors are
-//! those of the charts, on two built-in scenes.
+//! means over two built-in scenes.
 
 mod fit;
 
-use crate::budget::{Amounts, CostTable, Entry, Expected, ShadeKey, cost_name};
+use crate::budget::{Amounts, CostTable, Entry, Expected, Measure, ShadeKey, cost_name};
 use crate::camera::Framing;
-use crate::chart::{Lab, Row, Subject, built_in_subjects, charts};
+use crate::chart::survey::Survey;
+use crate::chart::{Subject, built_in_subjects};
 use crate::error::HarnessError;
 use crate::executor::{Executor, Picture};
 use crate::hatch::{HatchEncoding, HatchMapping};
@@ -26,7 +27,7 @@ use npr_outline::line_style::{LineStyle, widths_px};
 use npr_toon::normal::NormalUse;
 
 /// The sizes of the pictures from which costs are found, px.
-const SIZES: [(u32, u32); 2] = [(256, 144), (512, 288)];
+const SIZES: [(u32, u32); 2] = [(208, 117), (416, 234)];
 /// The size of the pictures from which errors are expected, px.
 const ERROR_SIZE: (u32, u32) = (320, 180);
 /// The widths of lines, px: one for which lines in the image need no disc, and one for which they do.
@@ -38,6 +39,8 @@ struct Priced {
     name: String,
     shade: Option<ShadeKey>,
     setup: Setup,
+    /// The style that it is a variant of.
+    asked: Style,
 }
 
 /// Measures the cost table of some executors, the unit of time first. `progress` is called with the share that is done,
@@ -52,7 +55,7 @@ pub fn calibrate(executors: &[Executor], progress: &(dyn Fn(f64) + Sync)) -> Res
         let share = |done: f64| progress(0.7 * (number as f64 + done) / executors.len() as f64);
         entries.extend(costs(executor, &priced, &share)?);
     }
-    let expected = expected(executors, &|share| progress(0.7 + 0.3 * share))?;
+    let expected = expected(executors, &priced, &|share| progress(0.7 + 0.3 * share))?;
     let executors = executors.iter().map(Executor::name).collect();
     Ok(CostTable { version: env!("CARGO_PKG_VERSION").into(), executors, entries, expected })
 }
@@ -68,7 +71,8 @@ fn priced() -> Vec<Priced> {
                 (known.part, &known.name, known.shade, known.setup.samples) == (part, &name, shade, samples)
             };
             if !all.iter().any(is_known) {
-                all.push(Priced { part, name, shade, setup: Setup { samples, ..setup } });
+                let asked = base.style.clone();
+                all.push(Priced { part, name, shade, setup: Setup { samples, ..setup }, asked });
             }
         }
     };
@@ -89,8 +93,9 @@ fn priced() -> Vec<Priced> {
     // Surfaces that are not painted or lit have no variants.
     for shade in [Shade::Paper, Shade::Normals] {
         let key = Some(ShadeKey::of(&shade));
-        let setup = Setup { style: Style { shade, ..plain().style }, samples: 1 };
-        all.push(Priced { part: Part::Light, name: crate::budget::PER_PIXEL.into(), shade: key, setup });
+        let asked = Style { shade, ..plain().style };
+        let setup = Setup { style: asked.clone(), samples: 1 };
+        all.push(Priced { part: Part::Light, name: crate::budget::PER_PIXEL.into(), shade: key, setup, asked });
     }
     all
 }
@@ -120,7 +125,7 @@ fn subjects(size: (u32, u32)) -> [Subject; 2] {
 /// The costs of everything on an executor.
 fn costs(executor: &Executor, priced: &[Priced], progress: &dyn Fn(f64)) -> Result<Vec<Entry>, HarnessError> {
     // A frame of a ray caster takes longer, and its times differ less.
-    let rounds = Rounds { rounds: if executor.is_cpu() { 2 } else { 4 }, ..Rounds::default() };
+    let rounds = Rounds { rounds: if executor.is_cpu() { 1 } else { 3 }, ..Rounds::default() };
     let mut points: Vec<Vec<fit::Point>> = priced.iter().map(|_| Vec::new()).collect();
     let steps = (SIZES.len() * 2) as f64;
     for (number, size) in SIZES.into_iter().enumerate() {
@@ -164,7 +169,7 @@ fn costs(executor: &Executor, priced: &[Priced], progress: &dyn Fn(f64)) -> Resu
             }
         }
     }
-    let entry = |(Priced { part, name, shade, setup }, points): (&Priced, Vec<fit::Point>)| {
+    let entry = |(Priced { part, name, shade, setup, .. }, points): (&Priced, Vec<fit::Point>)| {
         (!points.is_empty()).then(|| Entry {
             executor: executor.name(),
             part: *part,
@@ -177,56 +182,50 @@ fn costs(executor: &Executor, priced: &[Priced], progress: &dyn Fn(f64)) -> Resu
     Ok(priced.iter().zip(points).filter_map(entry).collect())
 }
 
-/// The errors that are expected, from charts.
-fn expected(executors: &[Executor], progress: &(dyn Fn(f64) + Sync)) -> Result<Vec<Expected>, HarnessError> {
-    let on_cpu = [Executor::Cpu { why: None }];
-    let subjects = built_in_subjects(ERROR_SIZE, 2);
+/// The errors that are expected: means over the built-in scenes, as a [`Survey`] measures them.
+fn expected(executors: &[Executor], priced: &[Priced], progress: &dyn Fn(f64)) -> Result<Vec<Expected>, HarnessError> {
     // Errors are the same on every executor but for shadows, which the CPU has none of.
-    let on_adapter = executors.iter().position(|executor| !executor.is_cpu());
-    let rounds = Rounds { rounds: 1, ..Rounds::default() };
+    let on_adapter = executors.iter().find(|executor| !executor.is_cpu());
+    let subjects = built_in_subjects(ERROR_SIZE, 2);
     let mut all = Vec::new();
-    let names = ["lines", "light", "hatching", "shadows"];
-    for (number, name) in names.into_iter().enumerate() {
-        let executors = match on_adapter {
-            Some(at) if name == "shadows" => &executors[at..=at],
-            _ => &on_cpu[..],
+    for Priced { part, name, shade, setup, .. } in priced {
+        // What errs like another shade is not measured apart.
+        if shade.is_some_and(|shade| shade.errs_like() != shade || shade == ShadeKey::Paper) {
+            continue;
+        }
+        // More samples do not change shadows, and lines hardly.
+        let samples: &[u32] = match (part, setup.samples) {
+            (Part::Light | Part::Strokes, 2) => &[2, 4],
+            (_, 1) => &[1],
+            _ => &[],
         };
-        let progress = |share: f64| progress((number as f64 + share) / names.len() as f64);
-        let lab =
-            Lab { executors, subjects: &subjects, size: ERROR_SIZE, rounds, skipped: &|_| {}, progress: &progress };
-        let chart = charts().into_iter().find(|chart| chart.name == name).expect("a chart of this crate");
-        let rows = (chart.run)(&lab)?;
-        all.extend(errors_of(name, &rows));
+        for &samples in samples {
+            let setup = Setup { samples, ..setup.clone() };
+            all.push((setup, Expected { part: *part, variant: name.clone(), shade: *shade, samples, error: 0.0 }));
+        }
     }
-    Ok(all)
+    let count = (all.len() * subjects.len()) as f64;
+    for (number, Subject { scene, camera, .. }) in subjects.iter().enumerate() {
+        let view = View::new(*camera, ERROR_SIZE);
+        // A survey for each kind of shade, which keeps its truths.
+        let mut surveys: Vec<((Part, Option<ShadeKey>), Survey<'_>)> = Vec::new();
+        for (index, (setup, expected)) in all.iter_mut().enumerate() {
+            progress((number * (count as usize / subjects.len()) + index) as f64 / count);
+            let (measure, executor) = match expected.part {
+                Part::Lines => (Measure::Lines, &CPU),
+                Part::Light | Part::Strokes | Part::Samples => (Measure::Tone, &CPU),
+                Part::Shadows => (Measure::Shadows, on_adapter.unwrap_or(&CPU)),
+            };
+            let key = (expected.part, expected.shade);
+            let asked = priced.iter().find(|priced| (priced.part, priced.shade) == key).expect("it is of one of them");
+            let at = surveys.iter().position(|(known, _)| *known == key).unwrap_or_else(|| {
+                surveys.push((key, Survey::new(scene, view, &asked.asked, executors)));
+                surveys.len() - 1
+            });
+            expected.error += surveys[at].1.error(setup, executor, measure)? / subjects.len() as f64;
+        }
+    }
+    Ok(all.into_iter().map(|(_, expected)| expected).collect())
 }
 
-/// What the rows of a chart say of the variants of its part.
-fn errors_of(chart: &str, rows: &[Row]) -> Vec<Expected> {
-    let (part, shades): (Part, &[(&str, ShadeKey)]) = match chart {
-        "lines" => (Part::Lines, &[]),
-        "shadows" => (Part::Shadows, &[]),
-        "light" => (Part::Light, &[("bands, ", ShadeKey::Toon), ("Gooch, ", ShadeKey::Gooch)]),
-        _ => (Part::Strokes, &[("planes, ", ShadeKey::HatchPlanes), ("form, ", ShadeKey::HatchForm)]),
-    };
-    let unit = if chart == "light" { 255.0 } else { 1.0 };
-    let mut all = Vec::new();
-    let mut add = |prefix: &str, shade: Option<ShadeKey>| {
-        for variant in part.variants() {
-            for (samples, ending) in [(1, ""), (2, ", 2 x 2 samples"), (4, ", 4 x 4 samples")] {
-                let name = format!("{prefix}{}{ending}", variant.name);
-                let found: Vec<f64> =
-                    rows.iter().filter(|row| row.variant == name).map(|row| row.errors[0].1).collect();
-                if !found.is_empty() {
-                    let error = found.iter().sum::<f64>() / found.len() as f64 / unit;
-                    all.push(Expected { part, variant: variant.name.into(), shade, samples, error });
-                }
-            }
-        }
-    };
-    if shades.is_empty() {
-        add("", None);
-    }
-    shades.iter().for_each(|(prefix, shade)| add(prefix, Some(*shade)));
-    all
-}
+static CPU: Executor = Executor::Cpu { why: None };

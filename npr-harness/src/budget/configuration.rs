@@ -73,8 +73,8 @@ pub fn configurations(scene: &Scene, setup: &Setup, view: &View, table: &CostTab
             let cost_ms: f64 = costs_ms.iter().map(|(_, ms)| ms).sum();
             let error = |part: Part, shade: Option<ShadeKey>| {
                 let (_, variant) = variants.iter().find(|(of, _)| *of == part)?;
-                let variant = if *variant == AS_GIVEN { as_given(part) } else { variant };
-                table.error(part, variant, shade, setup.samples)
+                let variant = cost_name(part, if *variant == AS_GIVEN { as_given(part) } else { variant }, &setup);
+                table.error(part, &variant, shade, setup.samples)
             };
             let is_ray_caster = executor == "cpu";
             let errors = [
@@ -111,7 +111,7 @@ fn as_given(part: Part) -> &'static str {
     }
 }
 
-/// The name under which a table has the cost of a variant: lines in the image cost more where a disc widens them.
+/// The name under which a table has a variant: lines in the image cost more, and err otherwise, where a disc widens them.
 pub(crate) fn cost_name<'a>(part: Part, variant: &'a str, setup: &Setup) -> Cow<'a, str> {
     let is_dilated = setup.style.lines.image.is_some_and(|ink| ink.dilation.is_some());
     if part == Part::Lines && is_dilated { format!("{variant}, dilated").into() } else { variant.into() }

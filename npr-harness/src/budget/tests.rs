@@ -35,7 +35,7 @@ fn table() -> CostTable {
             expected(Part::Light, "per pixel", toon, 2, 0.01),
             expected(Part::Light, "per vertex", toon, 1, 0.08),
             expected(Part::Lines, "edges", None, 1, 0.0),
-            expected(Part::Lines, "image, 64 bits", None, 1, 0.06),
+            expected(Part::Lines, "image, 64 bits, dilated", None, 1, 0.06),
         ],
     }
 }

@@ -9,7 +9,7 @@ use crate::scene::Scene;
 use crate::shade::Shade;
 use crate::style::{Lines, Style};
 use crate::truth::lines::TrueLines;
-use crate::variant::Part;
+use crate::variant::{Part, Setup};
 use crate::view::View;
 use std::collections::HashMap;
 
@@ -62,34 +62,36 @@ impl<'a> Survey<'a> {
         Self { tone_size: (u32::MAX, u32::MAX), on_its_executor: true, ..self }
     }
 
-    /// What draws a configuration for measurements.
-    fn executor(&self, configuration: &Configuration) -> &'a Executor {
-        let own = self.executors.iter().find(|executor| executor.name() == configuration.executor);
-        own.filter(|_| self.on_its_executor).unwrap_or(&CPU)
-    }
-
     /// An error of a configuration, 0..=1; 0 for what its style does not have.
     ///
     /// # Errors
     /// [`HarnessError`].
     pub fn measure(&mut self, configuration: &Configuration, measure: Measure) -> Result<f64, HarnessError> {
-        let depends = self.on_its_executor || measure == Measure::Shadows;
-        let executor = if depends { configuration.executor.clone() } else { String::new() };
-        let key = (measure, executor, configuration.of_measure(measure));
+        let own = self.executors.iter().find(|executor| executor.name() == configuration.executor).unwrap_or(&CPU);
+        // The CPU makes the pictures of lines and tones, which an adapter makes alike.
+        let executor = if self.on_its_executor || measure == Measure::Shadows { own } else { &CPU };
+        let key = (measure, executor.name(), configuration.of_measure(measure));
         if let Some(&known) = self.known.get(&key) {
             return Ok(known);
         }
-        let error = match measure {
-            Measure::Lines => self.lines(configuration)?,
-            Measure::Tone => self.tone(configuration)?,
-            Measure::Shadows => self.shadows(configuration)?,
-        };
+        let error = self.error(&configuration.setup, executor, measure)?;
         self.known.insert(key, error);
         Ok(error)
     }
 
-    fn lines(&mut self, configuration: &Configuration) -> Result<f64, HarnessError> {
-        let (setup, executor) = (&configuration.setup, self.executor(configuration));
+    /// An error of a setup on an executor, 0..=1; 0 for what its style does not have.
+    ///
+    /// # Errors
+    /// [`HarnessError`].
+    pub fn error(&mut self, setup: &Setup, executor: &Executor, measure: Measure) -> Result<f64, HarnessError> {
+        match measure {
+            Measure::Lines => self.lines(setup, executor),
+            Measure::Tone => self.tone(setup, executor),
+            Measure::Shadows => self.shadows(setup, executor),
+        }
+    }
+
+    fn lines(&mut self, setup: &Setup, executor: &Executor) -> Result<f64, HarnessError> {
         if setup.style.lines == Lines::NONE {
             return Ok(0.0);
         }
@@ -97,8 +99,7 @@ impl<'a> Survey<'a> {
         lines::error_of_style(executor, self.scene, self.view, setup, truth)
     }
 
-    fn tone(&mut self, configuration: &Configuration) -> Result<f64, HarnessError> {
-        let (setup, executor) = (&configuration.setup, self.executor(configuration));
+    fn tone(&mut self, setup: &Setup, executor: &Executor) -> Result<f64, HarnessError> {
         let scale = (f64::from(self.tone_size.0) / f64::from(self.view.size.0))
             .min(f64::from(self.tone_size.1) / f64::from(self.view.size.1))
             .min(1.0);
@@ -131,17 +132,15 @@ impl<'a> Survey<'a> {
     }
 
     #[cfg(not(feature = "gpu"))]
-    fn shadows(&mut self, _configuration: &Configuration) -> Result<f64, HarnessError> {
+    fn shadows(&mut self, _setup: &Setup, _executor: &Executor) -> Result<f64, HarnessError> {
         Ok(0.0)
     }
 
     #[cfg(feature = "gpu")]
-    fn shadows(&mut self, configuration: &Configuration) -> Result<f64, HarnessError> {
+    fn shadows(&mut self, setup: &Setup, executor: &Executor) -> Result<f64, HarnessError> {
         use crate::truth::shadows::{ShadowShot, States, states_on_device};
-        let Some(shadow) = configuration.setup.style.shadow else { return Ok(0.0) };
-        let executor = self.executors.iter().find(|executor| executor.name() == configuration.executor);
         // The CPU follows the rays that are the truth.
-        let Some(Executor::Gpu(context)) = executor else { return Ok(0.0) };
+        let (Some(shadow), Executor::Gpu(context)) = (setup.style.shadow, executor) else { return Ok(0.0) };
         let shot = ShadowShot { name: "", light: self.style.lights[0], camera: self.view.camera };
         let size = self.view.size;
         let truth = match self.shadows.take() {

@@ -6,7 +6,7 @@ use crate::variant::{Setup, Variant};
 use npr_toon::Bands;
 use npr_toon::normal::NormalUse;
 
-/// Ways to light a surface.
+/// Ways to light a surface. Light of whole faces is another look, which no plan chooses by itself.
 pub(crate) const VARIANTS: &[Variant] = &[
     Variant {
         name: "per pixel",
@@ -33,14 +33,14 @@ pub(crate) const VARIANTS: &[Variant] = &[
         name: "per subdivided face",
         choices: &["NormalUse::PerSubdividedFace"],
         historical: false,
-        in_budget: true,
+        in_budget: false,
         apply: |setup| lit(setup, NormalUse::PerSubdividedFace(4)),
     },
     Variant {
         name: "per face",
         choices: &["NormalUse::PerFace"],
         historical: false,
-        in_budget: true,
+        in_budget: false,
         apply: |setup| lit(setup, NormalUse::PerFace),
     },
     Variant {
