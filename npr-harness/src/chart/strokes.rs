@@ -38,7 +38,8 @@ pub(super) const CHART: Chart = Chart {
 const TONE: &str = "RMSE of the tone";
 /// The side of a window, px. Shorter ones would hold a part of a stroke's period.
 const WINDOW_PX: u32 = 16;
-const TRUE_SAMPLES: u32 = 4;
+/// Samples of N·L along each axis of a pixel; a window has 256 pixels.
+const TRUE_SAMPLES: u32 = 2;
 
 fn to_light() -> DVec3 {
     DVec3::new(-0.5, 0.7, 0.6).normalize()

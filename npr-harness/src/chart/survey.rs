@@ -13,8 +13,8 @@ use crate::variant::{Part, Setup};
 use crate::view::View;
 use std::collections::HashMap;
 
-/// The largest picture in which tones are measured, px: their truth takes 64 samples a pixel. Larger pictures are scaled
-/// down, in which errors at borders weigh more.
+/// The largest picture in which colours are measured, px: their truth takes 64 samples a pixel. Larger pictures are scaled
+/// down, in which errors at borders weigh more. Strokes are measured in the whole picture.
 const TONE_SIZE: (u32, u32) = (480, 270);
 
 /// Measures configurations of a scene in a view. What they have in common is measured once.
@@ -23,7 +23,7 @@ pub struct Survey<'a> {
     view: View,
     style: &'a Style,
     executors: &'a [Executor],
-    /// The largest picture in which tones are measured, px.
+    /// The largest picture in which colours are measured, px.
     tone_size: (u32, u32),
     /// Whether the executor of a configuration draws, instead of the CPU, which draws alike.
     on_its_executor: bool,
@@ -99,24 +99,29 @@ impl<'a> Survey<'a> {
         lines::error_of_style(executor, self.scene, self.view, setup, truth)
     }
 
-    fn tone(&mut self, setup: &Setup, executor: &Executor) -> Result<f64, HarnessError> {
+    /// The size in which colours are measured, px.
+    fn tone_size(&self) -> (u32, u32) {
         let scale = (f64::from(self.tone_size.0) / f64::from(self.view.size.0))
             .min(f64::from(self.tone_size.1) / f64::from(self.view.size.1))
             .min(1.0);
         let scaled = |side: u32| ((f64::from(side) * scale).round() as u32).max(1);
-        let view = View { size: (scaled(self.view.size.0), scaled(self.view.size.1)), ..self.view };
+        (scaled(self.view.size.0), scaled(self.view.size.1))
+    }
+
+    fn tone(&mut self, setup: &Setup, executor: &Executor) -> Result<f64, HarnessError> {
         match &setup.style.shade {
             // Paper has no tone, and normals as colours have no light.
             Shade::Paper | Shade::Normals => Ok(0.0),
             Shade::Hatch(_) => {
                 let truth = match self.strokes.take() {
                     Some(truth) => truth,
-                    None => strokes::truth(self.scene, &view, self.style)?,
+                    None => strokes::truth(self.scene, &self.view, self.style)?,
                 };
                 let truth = self.strokes.insert(truth);
-                strokes::error_of_style(executor, self.scene, view, setup, truth)
+                strokes::error_of_style(executor, self.scene, self.view, setup, truth)
             }
             _ => {
+                let view = View { size: self.tone_size(), ..self.view };
                 let bare = |style: &Style| Style { lines: Lines::NONE, shadow: None, ..style.clone() };
                 let truth = match self.light.take() {
                     Some(truth) => truth,
