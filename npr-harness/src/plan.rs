@@ -7,6 +7,7 @@
 mod explain;
 pub mod resources;
 
+pub use explain::part_of_pass;
 pub use resources::{Resource, ResourceKind, TexelFormat};
 
 use crate::camera::Camera;

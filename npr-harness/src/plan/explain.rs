@@ -5,6 +5,7 @@ use crate::hatch::HatchMapping;
 use crate::image_lines::{ImagePlan, InkScale};
 use crate::shadow::{ShadowLines, ShadowTechnique};
 use crate::style::Style;
+use crate::variant::Part;
 use std::fmt;
 
 impl Plan {
@@ -181,6 +182,29 @@ impl Plan {
             "lines and band borders carry their own coverage",
         );
         (self.passes, self.left_out) = (passes, left_out);
+    }
+}
+
+/// The part of a picture that a pass makes, for its costs: a tonal art map and its field for strokes, and what surfaces
+/// need besides for their light, or for strokes.
+pub fn part_of_pass(pass: &str, is_hatched: bool) -> Part {
+    match pass {
+        "shadow rays" | "geometry: depth, before all" | "shadow volumes into a stencil" | "shadow map" => Part::Shadows,
+        "inverted hull: displaced back faces"
+        | "printed fins, all edges"
+        | "line coverage and ink"
+        | "normal, region, depth beside colour"
+        | "geometry: normal, region, depth"
+        | "G-buffer in the style's formats"
+        | "steps of morphology"
+        | "filter and composite in one"
+        | "filter for shadows"
+        | "filter"
+        | "dilation by a disc"
+        | "composite" => Part::Lines,
+        "resolve" => Part::Samples,
+        _ if is_hatched => Part::Strokes,
+        _ => Part::Light,
     }
 }
 

@@ -9,6 +9,7 @@ use npr_harness::calibrate::calibrate;
 use npr_harness::chart::survey::Survey;
 use npr_harness::error::HarnessError;
 use npr_harness::executor::{Backend, Executor};
+use npr_harness::plan::{Plan, Reason, part_of_pass};
 use npr_harness::scene::Scene;
 use npr_harness::variant::{Part, Setup};
 use npr_harness::view::View;
@@ -177,23 +178,33 @@ fn short(configuration: &Configuration) -> String {
     )
 }
 
-/// What was chosen, for people.
-pub fn summary(choice: &Choice) -> String {
+/// What a part of a configuration is expected to cost and to err.
+fn expected(configuration: &Configuration, part: Part) -> String {
+    let per_plain = configuration.cost_ms / configuration.cost_plain;
+    let measure = match part {
+        Part::Lines => Some(Measure::Lines),
+        Part::Light | Part::Strokes => Some(Measure::Tone),
+        Part::Shadows => Some(Measure::Shadows),
+        Part::Samples => None,
+    };
+    let cost = configuration.costs_ms.iter().find(|(of, _)| *of == part).map(|(_, ms)| ms);
+    let error = configuration.errors.iter().find(|(of, _)| Some(*of) == measure);
+    let cost = cost.map(|ms| format!("{:.2} plain passes ({ms:.1} ms)", ms / per_plain)).unwrap_or_default();
+    let error = error.map(|(measure, error)| format!(", {measure} off by {error:.4}")).unwrap_or_default();
+    cost + &error
+}
+
+/// What was chosen, for people: each part with its passes in the plan and why they are there, what it is expected to cost
+/// and to err, and what lies beside it.
+pub fn summary(choice: &Choice, plan: &Plan) -> String {
     let Choice { chosen, measured, cheaper, better, of } = choice;
-    let per_plain = chosen.cost_ms / chosen.cost_plain;
     let mut text = format!("  chosen  of {of} ways, on {}\n", chosen.executor);
-    for (part, variant) in &chosen.variants {
-        let cost = chosen.costs_ms.iter().find(|(of, _)| of == part).map(|(_, ms)| ms);
-        let measure = match part {
-            Part::Lines => Some(Measure::Lines),
-            Part::Light | Part::Strokes => Some(Measure::Tone),
-            Part::Shadows => Some(Measure::Shadows),
-            Part::Samples => None,
-        };
-        let error = chosen.errors.iter().find(|(of, _)| Some(*of) == measure);
-        let cost = cost.map(|ms| format!("{:.2} plain passes ({ms:.1} ms)", ms / per_plain)).unwrap_or_default();
-        let error = error.map(|(measure, error)| format!(", {measure} off by {error:.4}")).unwrap_or_default();
-        let _ = writeln!(text, "  part    {:<10} {variant:<32} {cost}{error}", part_name(*part));
+    let is_hatched = chosen.variants.iter().any(|(part, _)| *part == Part::Strokes);
+    for &(part, variant) in &chosen.variants {
+        let _ = writeln!(text, "  part    {:<10} {variant:<32} {}", part_name(part), expected(chosen, part));
+        for Reason { pass, why } in plan.passes.iter().filter(|reason| part_of_pass(reason.pass, is_hatched) == part) {
+            let _ = writeln!(text, "            {pass:<36} {why}");
+        }
     }
     let _ = writeln!(
         text,
@@ -205,16 +216,9 @@ pub fn summary(choice: &Choice) -> String {
     if !measured.is_empty() {
         let _ = writeln!(text, "  here    {}, measured on this model in this view", errors(measured));
     }
-    match cheaper {
-        Some(cheaper) => writeln!(text, "  cheaper {}", short(cheaper)),
-        None => writeln!(text, "  cheaper nothing"),
-    }
-    .expect("text can be written");
-    match better {
-        Some(better) => writeln!(text, "  better  {}", short(better)),
-        None => writeln!(text, "  better  nothing"),
-    }
-    .expect("text can be written");
+    let beside = |other: &Option<Configuration>| other.as_ref().map_or_else(|| "nothing".to_owned(), short);
+    let _ = writeln!(text, "  cheaper {}", beside(cheaper));
+    let _ = writeln!(text, "  better  {}", beside(better));
     text
 }
 

@@ -7,7 +7,7 @@ use clap::Args;
 use npr_harness::error::HarnessError;
 use npr_harness::executor::{Candidates, Picture, Work};
 use npr_harness::plan::resources::total_bytes;
-use npr_harness::plan::{Reason, Resource, ResourceKind};
+use npr_harness::plan::{Plan, Reason, Resource, ResourceKind};
 use npr_harness::variant::Setup;
 use serde_json::json;
 
@@ -61,9 +61,15 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
     }
     let mut text = format!("on {}\n", executor.describe());
     if let Some(choice) = &choice {
-        text.push_str(&budget::summary(choice));
+        text.push_str(&budget::summary(choice, &plan));
     }
-    text.push_str(&plan.to_string());
+    // The passes stand with their parts already.
+    if choice.is_some() {
+        let left_out = Plan { passes: Vec::new(), ..plan.clone() };
+        text.push_str(&left_out.to_string());
+    } else {
+        text.push_str(&plan.to_string());
+    }
     text.push_str(&format!("  memory  {:>12} bytes besides the scene\n", total_bytes(&resources)));
     for resource in &resources {
         text.push_str(&format!("  memory  {resource}\n"));

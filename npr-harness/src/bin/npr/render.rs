@@ -129,7 +129,7 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
             executor.describe()
         );
         if let Some(choice) = &choice {
-            summary.push_str(&budget::summary(choice));
+            summary.push_str(&budget::summary(choice, &plan));
         }
         if options.plan {
             summary.push_str(&plan.to_string());
