@@ -2,6 +2,8 @@
 //!
 //! NPR_BROWSER=required makes a missing browser a failure; otherwise these tests say that they are skipped.
 
+#![allow(clippy::print_stdout)]
+
 mod common;
 
 use common::Folder;
@@ -24,8 +26,7 @@ const AFTER: &str = include_str!("page/after.js");
 /// The browser, or `None` with a message.
 fn browser() -> Option<&'static str> {
     let works = |name: &&str| Command::new(name).arg("--version").output().is_ok_and(|said| said.status.success());
-    let found =
-        ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"].into_iter().find(|name| works(&name));
+    let found = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"].into_iter().find(works);
     if found.is_none() {
         assert_ne!(std::env::var("NPR_BROWSER").as_deref(), Ok("required"), "NPR_BROWSER=required, and there is none");
         println!("skipped: there is no Chromium");

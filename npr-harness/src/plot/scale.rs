@@ -83,8 +83,12 @@ impl Scale {
             if self.logarithmic { logarithmic_ticks(self.range, most) } else { linear_ticks(self.range, most) };
         let zero = self.zero.map(|at| Tick { at, text: "0".into() });
         let mut ticks: Vec<Tick> = zero.into_iter().collect();
-        for value in values {
-            let tick = Tick { at: self.at(value), text: number(value) };
+        // Narrow ranges take more digits to tell the values apart.
+        let texts = |digits| values.iter().map(|value| number_of_digits(*value, digits)).collect::<Vec<_>>();
+        let are_distinct = |texts: &Vec<String>| texts.windows(2).all(|pair| pair[0] != pair[1]);
+        let texts = (DIGITS..=MOST_DIGITS).map(texts).find(are_distinct).unwrap_or_else(|| texts(MOST_DIGITS));
+        for (value, text) in values.iter().zip(texts) {
+            let tick = Tick { at: self.at(*value), text };
             let fits = |other: &Tick| (other.at - tick.at).abs() >= 0.5 * (length(&other.text) + length(&tick.text));
             if ticks.iter().all(fits) {
                 ticks.push(tick);
@@ -98,9 +102,14 @@ impl Scale {
 fn linear_ticks((low, high): (f64, f64), most: f64) -> Vec<f64> {
     let rough = (high - low) / most;
     let decade = 10f64.powf(rough.log10().floor());
-    let step = [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * decade).find(|step| *step >= rough).unwrap_or(rough);
-    let (first, last) = ((low / step - 1e-9).ceil() as i64, (high / step + 1e-9).floor() as i64);
-    (first..=last).map(|n| n as f64 * step).collect()
+    // From the step that there is room for downwards, until there are some ticks.
+    let steps = [10.0, 5.0, 2.0, 1.0, 0.5, 0.2].map(|multiple| multiple * decade);
+    let ticks = |step: f64| {
+        let (first, last) = ((low / step - 1e-9).ceil() as i64, (high / step + 1e-9).floor() as i64);
+        (first..=last).map(|n| n as f64 * step).collect::<Vec<_>>()
+    };
+    let fits = steps.iter().rposition(|step| *step >= rough).unwrap_or(0);
+    steps[fits..].iter().map(|step| ticks(*step)).find(|ticks| ticks.len() >= 3).unwrap_or_default()
 }
 
 /// 1, 2 and 5, or 1 and 3, times the powers of ten, or only some of these, whichever there is room for; round values at
@@ -128,22 +137,34 @@ fn logarithmic_ticks((low, high): (f64, f64), most: f64) -> Vec<f64> {
     powers.filter(|p| p.rem_euclid(stride) == 0).map(|p| 10f64.powi(p)).filter(within).collect()
 }
 
-/// A number in few digits: powers of ten where it is very large or small.
+/// Significant digits of numbers.
+const DIGITS: usize = 4;
+/// Those that an f64 has.
+const MOST_DIGITS: usize = 15;
+
+/// A number in few digits: with a power of ten where it is very large or small.
 pub fn number(value: f64) -> String {
-    if value == 0.0 {
-        return "0".into();
+    number_of_digits(value, DIGITS)
+}
+
+/// A number in at most so many significant digits.
+fn number_of_digits(value: f64, digits: usize) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return if value == 0.0 { "0".into() } else { value.to_string() };
     }
-    let magnitude = value.abs();
-    if (1e-3..1e5).contains(&magnitude) {
-        // At most four significant digits.
-        let digits = (3 - magnitude.log10().floor() as i32).clamp(0, 6) as usize;
-        let text = format!("{value:.digits$}");
-        let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
-        return text.replace('-', "−");
-    }
-    let power = (magnitude.log10() + 1e-9).floor() as i32;
-    let factor = format!("{:.2}", value / 10f64.powi(power));
-    // The font has no superscript minus.
-    let factor = factor.trim_end_matches('0').trim_end_matches('.');
-    format!("{factor}e{power}").replace('-', "−")
+    let scientific = format!("{value:.*e}", digits - 1);
+    let (factor, power) = scientific.split_once('e').unwrap_or((&scientific, "0"));
+    let exponent: i32 = power.parse().unwrap_or(0);
+    let without_zeros = |text: &str| match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => text.to_owned(),
+    };
+    let text = if (-3..5).contains(&exponent) {
+        let decimals = (digits as i32 - 1 - exponent).max(0) as usize;
+        without_zeros(&format!("{value:.decimals$}"))
+    } else {
+        // The font has no superscript minus.
+        format!("{}e{power}", without_zeros(factor))
+    };
+    text.replace('-', "−")
 }

@@ -147,6 +147,41 @@ fn texts_of_diagrams_neither_overlap_nor_leave_the_picture() {
 }
 
 #[test]
+fn values_of_limits_have_room_at_any_distance() {
+    for step in 0..40 {
+        let mut diagram = curves_example();
+        for (n, curve) in diagram.curves.iter_mut().enumerate() {
+            let value = 12.34 * 10f64.powf(0.01 * f64::from(step) * n as f64);
+            (curve.measured, curve.predicted) = (Some(value), Some(1.11 * value));
+        }
+        assert_legible(&curves(&diagram), &format!("step {step}"));
+    }
+}
+
+#[test]
+fn ticks_do_not_touch() {
+    let mut random = random(3);
+    for n in 0..400 {
+        let (decade, extent) = (10.0 * random() - 5.0, 10f64.powf(6.0 * random() - 4.0));
+        let low = 10f64.powf(decade);
+        let axis = axis("", n % 2 == 0);
+        let values = [low, low * (1.0 + extent), if n % 3 == 0 { 0.0 } else { low }];
+        for is_stacked in [false, true] {
+            let scale = scale::Scale::new(&axis, values.into_iter(), (60.0, 300.0));
+            let mut ticks = scale.ticks(13.0, is_stacked);
+            assert!(ticks.len() >= 2, "{values:?}: {ticks:?}");
+            ticks.sort_by(|a, b| a.at.total_cmp(&b.at));
+            for pair in ticks.windows(2) {
+                let length = |text: &str| if is_stacked { 13.0 } else { canvas::text_width(text, 13.0, false) };
+                let room = 0.5 * (length(&pair[0].text) + length(&pair[1].text));
+                assert!(pair[1].at - pair[0].at > room, "{values:?}, {pair:?}");
+                assert_ne!(pair[0].text, pair[1].text, "{values:?}");
+            }
+        }
+    }
+}
+
+#[test]
 fn every_point_is_named_or_numbered() {
     for (count, seed) in [(22, 5), (45, 7)] {
         let example = example(count, seed);
