@@ -3,7 +3,7 @@
 //!
 //! `cargo bench -p npr-harness --bench budget -- MODEL…`, with the options of the other benches; built-in models if none
 //! are given. Pictures of 640×360. Ends with the shares that keep to their budgets, and names each that does not.
-#![allow(clippy::print_stdout)]
+#![allow(clippy::print_stdout, clippy::print_stderr)]
 
 mod common;
 

@@ -64,11 +64,10 @@ fn least_squares(
             return None;
         }
         rows[at].iter_mut().for_each(|value| *value /= scale);
-        for other in (0..count).filter(|&other| other != at) {
-            let factor = rows[other][at];
-            for column in 0..=count {
-                rows[other][column] -= factor * rows[at][column];
-            }
+        let reduced = rows[at].clone();
+        for (_, row) in rows.iter_mut().enumerate().filter(|(other, _)| *other != at) {
+            let factor = row[at];
+            row.iter_mut().zip(&reduced).for_each(|(value, reduced)| *value -= factor * reduced);
         }
     }
     let mut parts = [0.0; 3];

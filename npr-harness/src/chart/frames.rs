@@ -48,7 +48,10 @@ impl Drawn<'_> {
 
 /// Finds the errors of a candidate on an executor; `None` if the executor cannot make it, or makes it as another
 /// candidate.
-pub(super) type Judge<'a> = dyn FnMut(&Drawn<'_>) -> Result<Option<Vec<(String, f64)>>, HarnessError> + 'a;
+pub(super) type Judge<'a> = dyn FnMut(&Drawn<'_>) -> Result<Option<Errors>, HarnessError> + 'a;
+
+/// Errors by name, that of the chart's axis first.
+pub(super) type Errors = Vec<(String, f64)>;
 
 /// The rows of a chart for a subject. Every candidate is judged, then all candidates that have errors are timed, with
 /// the plain pass of every executor, in the same rounds.
@@ -70,7 +73,7 @@ pub(super) fn rows(
     for executor in lab.executors {
         plans.push((executor, plan(executor, &plain())?));
     }
-    let mut judged: Vec<(usize, &Candidate, Vec<(String, f64)>)> = Vec::new();
+    let mut judged: Vec<(usize, &Candidate, Errors)> = Vec::new();
     let total = (lab.executors.len() * candidates.len()) as f64;
     for (number, executor) in lab.executors.iter().enumerate() {
         for (index, candidate) in candidates.iter().enumerate() {

@@ -39,13 +39,14 @@ fn run(lab: &Lab<'_>) -> Result<Vec<Row>, HarnessError> {
             truths.push(States::by_rays(&subject.scene, shot, lab.size, DVec2::ZERO)?);
         }
         let mut judge = |drawn: &Drawn<'_>| {
-            let Some(method) = drawn.candidate.setup.style.shadow.map(|shadow| shadow.method) else { return Ok(None) };
             match drawn.executor {
                 // Rays, whatever the method.
                 Executor::Cpu { .. } if drawn.candidate.name != candidates[0].name => Ok(None),
                 Executor::Cpu { .. } => Ok(Some(errors(&[], lab.size))),
                 #[cfg(feature = "gpu")]
                 Executor::Gpu(context) => {
+                    let Some(shadow) = drawn.candidate.setup.style.shadow else { return Ok(None) };
+                    let method = shadow.method;
                     let mut pairs = Vec::new();
                     for (shot, truth) in shots.iter().zip(&truths) {
                         let scene = &subject.scene;

@@ -17,6 +17,9 @@ use std::collections::HashMap;
 /// down, in which errors at borders weigh more. Strokes are measured in the whole picture.
 const TONE_SIZE: (u32, u32) = (480, 270);
 
+/// A measure, the executor that draws, and the variants that it depends on.
+type Key = (Measure, String, Vec<(Part, &'static str)>);
+
 /// Measures configurations of a scene in a view. What they have in common is measured once.
 pub struct Survey<'a> {
     scene: &'a Scene,
@@ -27,7 +30,7 @@ pub struct Survey<'a> {
     tone_size: (u32, u32),
     /// Whether the executor of a configuration draws, instead of the CPU, which draws alike.
     on_its_executor: bool,
-    known: HashMap<(Measure, String, Vec<(Part, &'static str)>), f64>,
+    known: HashMap<Key, f64>,
     lines: Option<TrueLines>,
     light: Option<Image>,
     strokes: Option<Vec<strokes::Window>>,
