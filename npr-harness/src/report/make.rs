@@ -36,12 +36,12 @@ pub struct Options {
 impl Options {
     /// The size of the charts' pictures, px.
     pub fn size(&self) -> (u32, u32) {
-        if self.quick { (320, 180) } else { (640, 360) }
+        if self.quick { (320, 180) } else { (480, 270) }
     }
 
     /// How often charts measure.
     pub fn rounds(&self) -> Rounds {
-        Rounds { rounds: if self.quick { 5 } else { 9 }, ..Rounds::default() }
+        Rounds { rounds: if self.quick { 5 } else { 7 }, ..Rounds::default() }
     }
 
     /// The scenes of the charts.

@@ -9,6 +9,8 @@ use npr_hatch::files::write_file;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+/// The charts that a README shows.
+const README_CHARTS: [&str; 3] = ["lines", "dilation", "shadows"];
 /// Pixels of PNG diagrams for each CSS pixel.
 const PNG_SCALE: f32 = 1.5;
 
@@ -173,7 +175,7 @@ pub fn limits_csv(entries: &[AtlasEntry]) -> Result<Vec<u8>, HarnessError> {
     writer.into_inner().map_err(|error| HarnessError::Write { path: "limits.csv".into(), source: error.into_error() })
 }
 
-/// Writes `charts.md`, `limits.md`, and the diagrams of the first chart and the first sweep for a README.
+/// Writes `charts.md`, `limits.md`, and the diagrams of three charts and of the first sweep for a README.
 ///
 /// # Errors
 /// [`HarnessError::Write`], [`HarnessError::Plot`].
@@ -182,9 +184,9 @@ pub fn write_docs(dir: &Path, contents: &super::Contents) -> Result<Vec<PathBuf>
         write(dir, "charts.md", charts_markdown(&contents.charts, &contents.machine).as_bytes())?,
         write(dir, "limits.md", limits_markdown(&contents.atlas).as_bytes())?,
     ];
-    if let Some(chart) = contents.charts.first() {
+    for chart in contents.charts.iter().filter(|chart| README_CHARTS.contains(&chart.name.as_str())) {
         let diagram = crate::plot::Scatter { title: chart.title.clone(), ..chart_diagram(chart) };
-        paths.push(write(dir, "chart.png", &png(&scatter(&diagram), 1.0)?)?);
+        paths.push(write(dir, &format!("chart-{}.png", chart.name), &png(&scatter(&diagram), 1.0)?)?);
     }
     let found = contents.atlas.iter().find_map(|entry| Some((entry, entry.found.as_ref().ok()?)));
     if let Some((entry, found)) = found {
