@@ -1,6 +1,7 @@
 //! Black lines on white paper for sweeps: rendered, measured, and put beside each other.
 
-use super::{Curve, Limit};
+use super::Limit;
+pub(super) use super::setup::{curve, worst};
 use crate::camera::{Camera, Projection};
 use crate::check::{Limit as Bound, one_px_style};
 use crate::error::HarnessError;
@@ -144,11 +145,6 @@ pub(super) fn crossing(points: &[(f64, f64)], level: f64) -> f64 {
     points.last().map_or(0.0, |point| point.0)
 }
 
-/// The largest error of a curve.
-pub(super) fn worst(points: &[(f64, f64)]) -> f64 {
-    points.iter().fold(0.0, |worst, point| point.1.max(worst))
-}
-
 /// A limit without a prediction that lies in the method.
 pub(super) fn limit(what: &str, measured: f64, bound: Bound) -> Limit {
     Limit { what: what.into(), measured, predicted: None, bound, to_be_mended: None }
@@ -164,11 +160,6 @@ impl Limit {
     pub(super) fn mend_by(self, how: &str) -> Self {
         Self { to_be_mended: Some(how.into()), ..self }
     }
-}
-
-/// A curve.
-pub(super) fn curve(name: &str, points: Vec<(f64, f64)>, limit: Limit) -> Curve {
-    Curve { name: name.into(), points, limit }
 }
 
 /// `count` numbers from `from` to `to` in equal ratios.
