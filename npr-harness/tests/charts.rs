@@ -161,7 +161,7 @@ fn every_variant_is_a_point_of_its_chart_with_the_same_errors_each_time() {
                 name => point.variant.contains(name),
             });
             // The CPU has rays alone.
-            let needs_adapter = part == Part::Shadows && variant.name != "volumes";
+            let needs_adapter = part == Part::Shadows;
             assert!(is_shown || needs_adapter && !has_adapter, "{chart} lacks {}", variant.name);
         }
     }

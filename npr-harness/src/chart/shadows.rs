@@ -64,7 +64,9 @@ fn run(lab: &Lab<'_>) -> Result<Vec<Row>, HarnessError> {
             }
         };
         let progress = part_of(lab, number, lab.subjects.len());
-        all.extend(rows(CHART.name, lab, subject, &candidates, &mut judge, &progress)?);
+        let mut of_subject = rows(CHART.name, lab, subject, &candidates, &mut judge, &progress)?;
+        of_subject.iter_mut().filter(|row| row.executor == "cpu").for_each(|row| row.variant = "rays".into());
+        all.extend(of_subject);
     }
     Ok(all)
 }
