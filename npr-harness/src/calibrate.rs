@@ -1,8 +1,8 @@
 //! Measures the cost table of a machine, for plans by budget.
 //!
-//! Every variant that a plan may choose is drawn on a coarse and a fine model at two sizes, in rounds with a plain pass.
-//! Its cost is fitted to what its median takes, linear in samples and faces, with no negative part. Expected errors are
-//! means over two built-in scenes.
+//! Every variant that a plan may choose is drawn on a coarse and a fine model at two sizes. Its cost is fitted to the ratios
+//! of its times to those of a plain pass in the same rounds, linear in samples and faces, with no negative part. Expected
+//! errors are means over two built-in scenes.
 
 mod fit;
 
@@ -32,6 +32,10 @@ const SIZES: [(u32, u32); 2] = [(208, 117), (416, 234)];
 const ERROR_SIZE: (u32, u32) = (320, 180);
 /// The widths of lines, px: one for which lines in the image need no disc, and one for which they do.
 const WIDTHS_PX: [f32; 2] = [1.0, 3.0];
+
+/// The number of variants that are measured in the same rounds, with plain passes among them: few, so that what slows
+/// the machine for a while slows both.
+const CHUNK: usize = 12;
 
 /// Something whose cost is found.
 struct Priced {
@@ -134,38 +138,51 @@ fn costs(executor: &Executor, priced: &[Priced], progress: &dyn Fn(f64)) -> Resu
                 let view = View { samples: setup.samples, ..View::new(*camera, size) };
                 Picture::new(scene, &setup.style, view).plan(executor.capabilities())
             };
-            // The plain pass with as many samples, from which what lines and shadows add is told.
-            let plains = [1, 2].map(|samples| plan(&Setup { samples, ..plain() }));
-            let [one, two] = plains;
-            let mut plans: Vec<Plan> = vec![one?, two?];
-            let mut of: Vec<usize> = Vec::new();
-            for (index, Priced { setup, .. }) in priced.iter().enumerate() {
-                match plan(setup) {
-                    Ok(plan) => {
-                        plans.push(plan);
-                        of.push(index);
+            let mut measured: Vec<(usize, f64)> = Vec::new();
+            let mut plain_ms = f64::INFINITY;
+            let chunks = priced.len().div_ceil(CHUNK);
+            for chunk in 0..chunks {
+                let done = ((2 * number + which) * chunks + chunk) as f64 / (steps * chunks as f64);
+                progress(done);
+                // The plain passes with as many samples, from which what lines and shadows add is told.
+                let mut plans: Vec<Plan> = Vec::new();
+                for samples in [1, 2] {
+                    plans.push(plan(&Setup { samples, ..plain() })?);
+                }
+                let mut of: Vec<usize> = Vec::new();
+                let indices = chunk * CHUNK..((chunk + 1) * CHUNK).min(priced.len());
+                for index in indices {
+                    match plan(&priced[index].setup) {
+                        Ok(plan) => {
+                            plans.push(plan);
+                            of.push(index);
+                        }
+                        Err(error) if error.is_device_limit() => {}
+                        Err(error) => return Err(error),
                     }
-                    Err(error) if error.is_device_limit() => {}
-                    Err(error) => return Err(error),
+                }
+                let mut cases: Vec<Case<'_>> = plans.iter().map(|plan| Case::Frame { executor, scene, plan }).collect();
+                let timed = time(&mut cases, &rounds, &|_| {})?;
+                let (plains, timed) = timed.split_at(2);
+                let plain = &plains[0].wall;
+                plain_ms = plain_ms.min(plain.spread().median);
+                for (&index, timed) in of.iter().zip(timed) {
+                    let Priced { part, setup, .. } = &priced[index];
+                    let relative = timed.wall.relative_to(plain).median;
+                    let without = match part {
+                        Part::Lines | Part::Shadows if setup.samples == 1 => 1.0,
+                        Part::Lines | Part::Shadows => plains[1].wall.relative_to(plain).median,
+                        _ => 0.0,
+                    };
+                    measured.push((index, relative - without));
                 }
             }
-            let mut cases: Vec<Case<'_>> = plans.iter().map(|plan| Case::Frame { executor, scene, plan }).collect();
-            let done = (2 * number + which) as f64;
-            let timed = time(&mut cases, &rounds, &|share| progress((done + share) / steps))?;
-            let (plains, timed) = timed.split_at(2);
-            for (&index, timed) in of.iter().zip(timed) {
-                let Priced { part, setup, .. } = &priced[index];
-                let samples = setup.samples;
-                let plain = &plains[samples as usize - 1];
-                let added = matches!(part, Part::Lines | Part::Shadows);
-                let pixels = f64::from(size.0 * size.1);
-                points[index].push(fit::Point {
-                    amounts: Amounts {
-                        samples: pixels * f64::from(samples * samples),
-                        faces: scene.face_count() as f64,
-                    },
-                    ms: if added { timed.wall.longer_than(&plain.wall) } else { timed.wall.spread().median },
-                });
+            // Ratios within rounds, in units of the plain pass where it was least disturbed.
+            for (index, relative) in measured {
+                let samples = priced[index].setup.samples;
+                let pixels = f64::from(size.0 * size.1) * f64::from(samples * samples);
+                let amounts = Amounts { samples: pixels, faces: scene.face_count() as f64 };
+                points[index].push(fit::Point { amounts, ms: relative * plain_ms });
             }
         }
     }

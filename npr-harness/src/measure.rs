@@ -94,16 +94,6 @@ impl Samples {
         Spread::of(&self.0)
     }
 
-    /// The median of the differences from `other` within each round, ms: what a case takes that has more to do.
-    ///
-    /// # Panics
-    /// As [`Self::relative_to`].
-    pub fn longer_than(&self, other: &Self) -> f64 {
-        assert_eq!(self.0.len(), other.0.len(), "differences are of cases of the same rounds");
-        let differences: Vec<f64> = self.0.iter().zip(&other.0).map(|(time, other)| time - other).collect();
-        Spread::of(&differences).median
-    }
-
     /// The median and the quartiles of the ratios to `plain` within each round. What slows a round slows both, so that
     /// it cancels.
     ///
