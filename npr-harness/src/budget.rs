@@ -24,6 +24,8 @@ pub(crate) use configuration::{PER_PIXEL, cost_name};
 pub use table::{Amounts, Cost, CostTable, Entry, Expected, ShadeKey};
 
 use crate::error::HarnessError;
+use crate::shade::Shade;
+use crate::style::{Lines, Style};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
@@ -91,7 +93,8 @@ impl FromStr for MaxErrors {
                 .find(|measure| measure.name() == name.trim())
                 .ok_or_else(|| format!("{:?} is no measure: {}", name.trim(), names()))?;
             let error = value.trim().parse::<f64>().ok().filter(|error| (0.0..=1.0).contains(error));
-            let error = error.ok_or_else(|| format!("{:?} is no error: 0..=1", value.trim()))?;
+            let error = error
+                .ok_or_else(|| format!("{:?} is no error of {name}, which is a number from 0 to 1", value.trim()))?;
             if all.iter().any(|(known, _)| *known == measure) {
                 return Err(format!("{measure} is given twice"));
             }
@@ -108,6 +111,24 @@ pub enum MaxTime {
     Ms(f64),
     /// Multiples of the plain pass of the table's first executor.
     Plain(f64),
+}
+
+impl MaxErrors {
+    /// Checks that a style has what every measure is of.
+    ///
+    /// # Errors
+    /// [`HarnessError::NothingErrs`].
+    pub fn check(&self, style: &Style) -> Result<(), HarnessError> {
+        let has = |measure: Measure| match measure {
+            Measure::Lines => style.lines != Lines::NONE,
+            Measure::Tone => style.shade != Shade::Paper,
+            Measure::Shadows => style.shadow.is_some(),
+        };
+        match self.0.iter().find(|(measure, _)| !has(*measure)) {
+            Some((measure, _)) => Err(HarnessError::NothingErrs { style: style.name.clone(), measure: measure.name() }),
+            None => Ok(()),
+        }
+    }
 }
 
 /// A budget.

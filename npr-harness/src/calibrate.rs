@@ -128,8 +128,9 @@ fn subjects(size: (u32, u32)) -> [Subject; 2] {
 
 /// The costs of everything on an executor.
 fn costs(executor: &Executor, priced: &[Priced], progress: &dyn Fn(f64)) -> Result<Vec<Entry>, HarnessError> {
-    // A frame of a ray caster takes longer, and its times differ less.
-    let rounds = Rounds { rounds: if executor.is_cpu() { 1 } else { 3 }, ..Rounds::default() };
+    // A ray caster takes as long for each sample, so that pictures of one sample tell all; and what lines or shadows add
+    // is little beside its rays, so that it takes more rounds to see it.
+    let rounds = Rounds { rounds: if executor.is_cpu() { 5 } else { 3 }, ..Rounds::default() };
     let mut points: Vec<Vec<fit::Point>> = priced.iter().map(|_| Vec::new()).collect();
     let steps = (SIZES.len() * 2) as f64;
     for (number, size) in SIZES.into_iter().enumerate() {
@@ -152,6 +153,9 @@ fn costs(executor: &Executor, priced: &[Priced], progress: &dyn Fn(f64)) -> Resu
                 let mut of: Vec<usize> = Vec::new();
                 let indices = chunk * CHUNK..((chunk + 1) * CHUNK).min(priced.len());
                 for index in indices {
+                    if executor.is_cpu() && priced[index].setup.samples > 1 {
+                        continue;
+                    }
                     match plan(&priced[index].setup) {
                         Ok(plan) => {
                             plans.push(plan);

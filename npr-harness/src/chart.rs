@@ -51,17 +51,9 @@ pub struct Chart {
 
 /// All charts.
 pub fn charts() -> Vec<Chart> {
-    vec![
-        lines::CHART,
-        width::CHART,
-        silhouettes::CHART,
-        encodings::CHART,
-        dilation::CHART,
-        light::CHART,
-        strokes::CHART,
-        tonal_art_maps::CHART,
-        shadows::CHART,
-    ]
+    let first = [lines::CHART, width::CHART, silhouettes::CHART, encodings::CHART];
+    let last = [tonal_art_maps::CHART, shadows::CHART];
+    [&first[..], &dilation::CHARTS, &light::CHARTS, &strokes::CHARTS, &last].concat()
 }
 
 /// A scene that charts measure, and its view.

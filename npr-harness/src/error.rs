@@ -501,6 +501,14 @@ pub enum HarnessError {
         /// The cause.
         source: std::io::Error,
     },
+    /// A budget for what a style does not have.
+    #[error("the style {style:?} has no {measure} that could err")]
+    NothingErrs {
+        /// The style.
+        style: String,
+        /// The measure.
+        measure: &'static str,
+    },
     /// No way to make a picture is in the cost table.
     #[error("the cost table knows no way to make this picture: npr calibrate measures this machine anew")]
     NoConfiguration,

@@ -122,6 +122,8 @@ pub struct ChartContent {
     pub error: String,
     /// What is measured.
     pub about: String,
+    /// The executors of the run, whether this chart has points of them or not.
+    pub executors: Vec<String>,
     /// The rows of this chart.
     pub rows: Vec<Row>,
     /// Its points.

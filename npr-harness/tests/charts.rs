@@ -144,15 +144,15 @@ fn rows(names: &[&str]) -> Table {
 
 #[test]
 fn every_variant_is_a_point_of_its_chart_with_the_same_errors_each_time() {
-    let names = ["lines", "formats", "dilation", "light", "hatching", "shadows"];
+    let names = ["lines", "formats", "dilation-4", "light-bands", "hatching-planes", "shadows"];
     let (table, again) = (rows(&names), rows(&names));
     let has_adapter = table.rows.iter().any(|row| row.executor != "cpu");
     for (part, chart) in [
         (Part::Lines, "lines"),
-        (Part::Light, "light"),
-        (Part::Strokes, "hatching"),
+        (Part::Light, "light-bands"),
+        (Part::Strokes, "hatching-planes"),
         (Part::Shadows, "shadows"),
-        (Part::Samples, "light"),
+        (Part::Samples, "light-bands"),
     ] {
         let points = table.points(chart);
         for variant in part.variants() {

@@ -112,7 +112,8 @@ fn contents(folder: &Folder) -> Contents {
     old.rows[4].variant = "a variant that is gone".into();
     let path = folder.join("old.csv");
     std::fs::write(&path, old.to_csv()).expect("written");
-    let of = |chart| make::content(chart, table.rows.iter().filter(|row| row.chart == chart.name).cloned().collect());
+    let of =
+        |chart| make::content(chart, table.rows.iter().filter(|row| row.chart == chart.name).cloned().collect(), &[]);
     let executors = [Executor::choose(Backend::Cpu).expect("an executor")];
     let sweeps = sweeps().into_iter().filter(|sweep| !sweep.needs_adapter).take(2);
     let mut atlas: Vec<AtlasEntry> = sweeps.map(|sweep| make::swept(&sweep, &executors).expect("a sweep")).collect();

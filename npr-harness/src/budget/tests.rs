@@ -146,6 +146,7 @@ fn budgets_of_errors_are_read_and_refused() {
         ("lines=2", "is no error"),
         ("lines=nan", "is no error"),
         ("lines=0.1,lines=0.2", "given twice"),
+        ("lines=-0.1", "from 0 to 1"),
         ("", "is no budget"),
     ] {
         let error = read(text).expect_err(text);

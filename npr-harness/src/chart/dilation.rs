@@ -14,47 +14,47 @@ use crate::variant::Setup;
 use npr_imagespace::morphology::disc::Disc;
 use npr_imagespace::morphology::{Kernel, Operation};
 
-pub(super) const CHART: Chart = Chart {
-    name: "dilation",
-    title: "Dilation",
-    error: SHARE,
-    about: "Lines widened by 1, 4 and 16 px: pixels that differ from the Euclidean disc, as a share of the disc's ink.",
-    choices: &["Kernel::Cross", "Kernel::Square", "Kernel::Diagonal"],
-    run,
-};
+/// A chart for each radius, since lines of one width are no substitute for those of another.
+pub(super) const CHARTS: [Chart; 3] = [
+    chart("dilation-1", "Dilation by 1 px", |lab| run(lab, "dilation-1", 1)),
+    chart("dilation-4", "Dilation by 4 px", |lab| run(lab, "dilation-4", 4)),
+    chart("dilation-16", "Dilation by 16 px", |lab| run(lab, "dilation-16", 16)),
+];
+
+const fn chart(name: &'static str, title: &'static str, run: fn(&Lab<'_>) -> Result<Vec<Row>, HarnessError>) -> Chart {
+    Chart {
+        name,
+        title,
+        error: SHARE,
+        about: "Lines widened by a disc or by repeated steps of a kernel: pixels that differ from the Euclidean disc, as a \
+                share of the disc's ink.",
+        choices: &["Kernel::Cross", "Kernel::Square", "Kernel::Diagonal"],
+        run,
+    }
+}
 
 const SHARE: &str = "wrong pixels, share of the ink";
-const RADII_PX: [u32; 3] = [1, 4, 16];
 
-fn run(lab: &Lab<'_>) -> Result<Vec<Row>, HarnessError> {
-    let mut candidates = Vec::new();
-    for radius_px in RADII_PX {
-        let disc = |antialias| ink(Some(Disc { radius_px: radius_px as f32, antialias }), None);
-        let steps =
-            |kernel| ink(None, Some(InkStep { kind: StepKind::Hard(Operation::Dilate, kernel), times: radius_px }));
-        candidates.extend(
-            [
-                (format!("disc of {radius_px} px"), disc(false)),
-                (format!("antialiased disc of {radius_px} px"), disc(true)),
-                (format!("cross, {radius_px} times"), steps(Kernel::Cross)),
-                (format!("square, {radius_px} times"), steps(Kernel::Square)),
-                (format!("diagonals, {radius_px} times"), steps(Kernel::Diagonal)),
-            ]
-            .map(|(name, setup)| (radius_px, Candidate { name, historical: false, setup })),
-        );
-    }
-    let (radii, candidates): (Vec<u32>, Vec<Candidate>) = candidates.into_iter().unzip();
+fn run(lab: &Lab<'_>, chart: &str, radius_px: u32) -> Result<Vec<Row>, HarnessError> {
+    let disc = |antialias| ink(Some(Disc { radius_px: radius_px as f32, antialias }), None);
+    let steps = |kernel| ink(None, Some(InkStep { kind: StepKind::Hard(Operation::Dilate, kernel), times: radius_px }));
+    let candidates = [
+        ("disc", disc(false)),
+        ("antialiased disc", disc(true)),
+        ("cross, repeated", steps(Kernel::Cross)),
+        ("square, repeated", steps(Kernel::Square)),
+        ("diagonals, repeated", steps(Kernel::Diagonal)),
+    ]
+    .map(|(name, setup)| Candidate { name: name.into(), historical: false, setup });
     let thin = Candidate { name: String::new(), historical: false, setup: ink(None, None) };
     let mut all = Vec::new();
     for (number, subject) in lab.subjects.iter().enumerate() {
         let mut judge = |drawn: &Drawn<'_>| {
-            let at = candidates.iter().position(|candidate| candidate.name == drawn.candidate.name);
-            let Some(radius_px) = at.map(|at| radii[at]) else { return Ok(None) };
             let undilated = Drawn { candidate: &thin, ..*drawn }.image(drawn.view)?;
             Ok(Some(errors(&drawn.image(drawn.view)?, &undilated, radius_px)))
         };
         let progress = part_of(lab, number, lab.subjects.len());
-        all.extend(rows(CHART.name, lab, subject, &candidates, &mut judge, &progress)?);
+        all.extend(rows(chart, lab, subject, &candidates, &mut judge, &progress)?);
     }
     Ok(all)
 }

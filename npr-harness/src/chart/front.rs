@@ -13,11 +13,16 @@ pub struct Dominated {
     pub clearly: bool,
 }
 
+/// Errors that differ by less than this share are the same: executors round otherwise.
+const SAME: f64 = 1e-3;
+
 /// The indices of the points that no other point dominates, by ascending time. A point dominates another one if neither
-/// its time nor its error is larger, and one of them is smaller. Points without a finite error are on no front.
+/// its time nor its error is larger, and one of them is smaller; errors that differ by rounding alone are the same. Points
+/// without a finite error, and those that serve comparison alone, are on no front and dominate nothing.
 pub fn front(points: &[Point]) -> Vec<usize> {
+    let is_candidate = |point: &Point| point.error().is_finite() && !point.historical;
     let mut front: Vec<usize> =
-        (0..points.len()).filter(|&at| points[at].error().is_finite() && dominating(points, at).is_none()).collect();
+        (0..points.len()).filter(|&at| is_candidate(&points[at]) && dominating(points, at).is_none()).collect();
     front.sort_by(|&a, &b| points[a].relative.median.total_cmp(&points[b].relative.median));
     front
 }
@@ -34,15 +39,16 @@ pub fn dominated(points: &[Point]) -> Vec<Dominated> {
 /// The fastest of the points that dominate one.
 fn dominating(points: &[Point], at: usize) -> Option<usize> {
     let (time, error) = (points[at].relative.median, points[at].error());
-    let dominates = |other: &&usize| {
-        let (other_time, other_error) = (points[**other].relative.median, points[**other].error());
-        other_time <= time && other_error <= error && (other_time < time || other_error < error)
+    let dominates = |other: &usize| {
+        let (other_time, other_error) = (points[*other].relative.median, points[*other].error());
+        let (least, most) = (error * (1.0 - SAME), error * (1.0 + SAME));
+        !points[*other].historical
+            && other_time <= time
+            && other_error <= most
+            && (other_time < time || other_error < least)
     };
-    let all: Vec<usize> = (0..points.len()).collect();
-    all.iter()
-        .filter(dominates)
-        .copied()
-        .min_by(|&a, &b| points[a].relative.median.total_cmp(&points[b].relative.median))
+    let by_time = |a: &usize, b: &usize| points[*a].relative.median.total_cmp(&points[*b].relative.median);
+    (0..points.len()).filter(dominates).min_by(by_time)
 }
 
 #[cfg(test)]
@@ -76,6 +82,14 @@ mod tests {
         let points = [point(1.0, 0.5), point(1.0, 0.5)];
         assert_eq!(front(&points), [0, 1]);
         assert_eq!(dominated(&points), []);
+    }
+
+    #[test]
+    fn rounding_puts_nothing_on_the_front_and_what_is_historical_dominates_nothing() {
+        let old = Point { historical: true, ..point(0.5, 0.5) };
+        let points = [old, point(1.0, 0.5), point(2.0, 0.499_99), point(3.0, 0.4)];
+        assert_eq!(front(&points), [1, 3]);
+        assert_eq!(dominated(&points).iter().map(|d| (d.point, d.by)).collect::<Vec<_>>(), [(2, 1)]);
     }
 
     #[test]

@@ -22,24 +22,27 @@ use npr_toon::Bands;
 use npr_toon::normal::NormalUse;
 use npr_toon::source::Light;
 
-pub(super) const CHART: Chart = Chart {
-    name: "light",
-    title: "Light",
-    error: RMSE,
-    about: "Bands and Gooch's tones of a near light, against the same style per pixel with 64 samples: root mean square \
-            and largest difference of a channel, of 255.",
-    choices: &[],
-    run,
-};
+/// A chart for each kind of shade, since one is no substitute for the other.
+pub(super) const CHARTS: [Chart; 2] = [
+    chart("light-bands", "Light in bands", |lab| run(lab, "light-bands", &Shade::Toon(Bands::default()))),
+    chart("light-gooch", "Gooch's light", |lab| run(lab, "light-gooch", &Shade::Gooch(Gooch::default()))),
+];
+
+const fn chart(name: &'static str, title: &'static str, run: fn(&Lab<'_>) -> Result<Vec<Row>, HarnessError>) -> Chart {
+    Chart {
+        name,
+        title,
+        error: RMSE,
+        about: "A near light, against the same style per pixel with 64 samples: root mean square and largest difference of a \
+                channel, of 255.",
+        choices: &[],
+        run,
+    }
+}
 
 const RMSE: &str = "RMSE of 255";
 /// Samples of the truth along each axis of a pixel.
 const TRUE_SAMPLES: u32 = 8;
-
-/// The shades that are lit.
-fn shades() -> [(&'static str, Shade); 2] {
-    [("bands", Shade::Toon(Bands::default())), ("Gooch", Shade::Gooch(Gooch::default()))]
-}
 
 fn lit(shade: Shade) -> Setup {
     let lamp = StyleLight { light: Light::positional(Vec3::new(-0.9, 1.2, 1.1)), ..StyleLight::KEY };
@@ -47,26 +50,23 @@ fn lit(shade: Shade) -> Setup {
     Setup { style: Style { shade, lights: vec![lamp], lines: Lines::NONE, ..toon }, samples: 1 }
 }
 
-fn run(lab: &Lab<'_>) -> Result<Vec<Row>, HarnessError> {
+fn run(lab: &Lab<'_>, chart: &str, shade: &Shade) -> Result<Vec<Row>, HarnessError> {
+    let base = lit(shade.clone());
+    let mut of_shade: Vec<Candidate> = Vec::new();
+    for candidate in candidates(Part::Light, &base) {
+        // The other ways would not be more accurate with more samples.
+        let is_sampled = [NormalUse::PerPixel, NormalUse::PerVertex].contains(&candidate.setup.style.normals);
+        of_shade.extend(if is_sampled { candidates_of_samples(&candidate) } else { vec![candidate] });
+    }
     let mut all = Vec::new();
     for (number, subject) in lab.subjects.iter().enumerate() {
-        for (which, (name, shade)) in shades().into_iter().enumerate() {
-            let base = lit(shade);
-            let truth = truth(&subject.scene, &View::new(subject.camera, lab.size), &base.style)?;
-            let mut of_shade: Vec<Candidate> = Vec::new();
-            for candidate in candidates(Part::Light, &base) {
-                // The other ways would not be more accurate with more samples.
-                let is_sampled = [NormalUse::PerPixel, NormalUse::PerVertex].contains(&candidate.setup.style.normals);
-                let all = if is_sampled { candidates_of_samples(&candidate) } else { vec![candidate] };
-                of_shade.extend(all.into_iter().map(|c| Candidate { name: format!("{name}, {}", c.name), ..c }));
-            }
-            let mut judge = |drawn: &Drawn<'_>| {
-                let [rmse, worst] = differences(&drawn.image(drawn.view)?, &truth);
-                Ok(Some(vec![(RMSE.into(), rmse), ("largest of 255".into(), worst)]))
-            };
-            let progress = part_of(lab, number * shades().len() + which, lab.subjects.len() * shades().len());
-            all.extend(rows(CHART.name, lab, subject, &of_shade, &mut judge, &progress)?);
-        }
+        let truth = truth(&subject.scene, &View::new(subject.camera, lab.size), &base.style)?;
+        let mut judge = |drawn: &Drawn<'_>| {
+            let [rmse, worst] = differences(&drawn.image(drawn.view)?, &truth);
+            Ok(Some(vec![(RMSE.into(), rmse), ("largest of 255".into(), worst)]))
+        };
+        let progress = part_of(lab, number, lab.subjects.len());
+        all.extend(rows(chart, lab, subject, &of_shade, &mut judge, &progress)?);
     }
     Ok(all)
 }

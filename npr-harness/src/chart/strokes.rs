@@ -4,8 +4,8 @@
 //! samples. Six tones cannot show tones below the darkest; there that tone is asked for, as in
 //! [`crate::truth::hatch::asked`].
 
-use super::frames::{Candidate, Drawn, candidates, part_of, rows};
-use super::{Chart, Lab, Row};
+use super::frames::{Drawn, candidates, part_of, rows};
+use super::{Chart, Lab, Row, Subject};
 use crate::capabilities::Capabilities;
 use crate::cpu::{self, CpuOptions};
 use crate::error::HarnessError;
@@ -18,22 +18,42 @@ use crate::shade::Shade;
 use crate::shade::ramp::{RampShade, RampSource};
 use crate::style::{Lines, Style};
 use crate::truth::bands::white;
-use crate::truth::hatch::{LINEAR, MAPPINGS, asked, black, hatched, strokes};
+use crate::truth::hatch::{LINEAR, asked, black, hatched, strokes, torus_with_uvs};
 use crate::variant::{Part, Setup};
 use crate::view::View;
 use glam::{DVec3, Vec3};
 use npr_toon::normal::NormalUse;
 use npr_toon::ramp::{Ramp, RampBlend, RampStop};
 
-pub(super) const CHART: Chart = Chart {
-    name: "hatching",
-    title: "Hatching",
-    error: TONE,
-    about: "Black strokes on white: root mean square error of the mean tone of windows of 16 px, against N·L. Six tones \
-            end at 1/7, which counts as right for what is darker.",
-    choices: &["HatchMapping::Coordinates", "HatchMapping::Planes", "HatchMapping::Form"],
-    run,
-};
+/// A chart for each mapping, since one is no substitute for another.
+pub(super) const CHARTS: [Chart; 3] = [
+    chart("hatching-coordinates", "Hatching by texture coordinates", &["HatchMapping::Coordinates"], |lab| {
+        run(lab, "hatching-coordinates", HatchMapping::Coordinates)
+    }),
+    chart("hatching-planes", "Hatching by three planes", &["HatchMapping::Planes"], |lab| {
+        run(lab, "hatching-planes", HatchMapping::Planes)
+    }),
+    chart("hatching-form", "Hatching along the form", &["HatchMapping::Form"], |lab| {
+        run(lab, "hatching-form", HatchMapping::Form)
+    }),
+];
+
+const fn chart(
+    name: &'static str,
+    title: &'static str,
+    choices: &'static [&'static str],
+    run: fn(&Lab<'_>) -> Result<Vec<Row>, HarnessError>,
+) -> Chart {
+    Chart {
+        name,
+        title,
+        error: TONE,
+        about: "Black strokes on white: root mean square error of the mean tone of windows of 16 px, against N·L. Six tones \
+                end at 1/7, which counts as right for what is darker.",
+        choices,
+        run,
+    }
+}
 
 const TONE: &str = "RMSE of the tone";
 /// The side of a window, px. Shorter ones would hold a part of a stroke's period.
@@ -45,37 +65,31 @@ fn to_light() -> DVec3 {
     DVec3::new(-0.5, 0.7, 0.6).normalize()
 }
 
-fn run(lab: &Lab<'_>) -> Result<Vec<Row>, HarnessError> {
-    let map = strokes(1);
-    let mut all = Vec::new();
-    for (number, subject) in lab.subjects.iter().enumerate() {
-        let view = View::new(subject.camera, lab.size);
-        let shade = black(&map, HatchEncoding::Thresholds, HatchMapping::Planes, LINEAR, 0.5);
-        let truth = truth(&subject.scene, &view, &hatched(&shade, NormalUse::PerPixel, to_light()))?;
-        let mut of_subject: Vec<Candidate> = Vec::new();
-        for mapping in MAPPINGS {
-            // Without coordinates it is the same as planes.
-            let has_coordinates = subject.scene.meshes().iter().any(|mesh| !mesh.model().uvs.is_empty());
-            if mapping == HatchMapping::Coordinates && !has_coordinates {
-                continue;
-            }
-            let name = match mapping {
-                HatchMapping::Coordinates => "coordinates",
-                HatchMapping::Planes => "planes",
-                HatchMapping::Form => "form",
-            };
-            let shade = black(&map, HatchEncoding::Thresholds, mapping, LINEAR, 0.5);
-            let base = Setup { style: hatched(&shade, NormalUse::PerPixel, to_light()), samples: 1 };
-            let named = candidates(Part::Strokes, &base).into_iter();
-            of_subject.extend(named.map(|c| Candidate { name: format!("{name}, {}", c.name), ..c }));
+fn run(lab: &Lab<'_>, chart: &str, mapping: HatchMapping) -> Result<Vec<Row>, HarnessError> {
+    let shade = black(&strokes(1), HatchEncoding::Thresholds, mapping, LINEAR, 0.5);
+    let base = Setup { style: hatched(&shade, NormalUse::PerPixel, to_light()), samples: 1 };
+    let candidates = candidates(Part::Strokes, &base);
+    // Models without coordinates are hatched by planes; where no subject has any, a torus has.
+    let has_coordinates = |subject: &&Subject| subject.scene.meshes().iter().any(|mesh| !mesh.model().uvs.is_empty());
+    let torus =
+        [Subject::framed("torus with coordinates", Scene::new(torus_with_uvs(96, 48)), lab.size, &Default::default())];
+    let mut subjects: Vec<&Subject> = lab.subjects.iter().collect();
+    if mapping == HatchMapping::Coordinates {
+        subjects.retain(has_coordinates);
+        if subjects.is_empty() {
+            subjects.extend(&torus);
         }
+    }
+    let mut all = Vec::new();
+    for (number, subject) in subjects.iter().enumerate() {
+        let truth = truth(&subject.scene, &View::new(subject.camera, lab.size), &base.style)?;
         let mut judge = |drawn: &Drawn<'_>| {
             let Shade::Hatch(shade) = &drawn.candidate.setup.style.shade else { return Ok(None) };
             let [rmse, worst] = differences(shade, &drawn.image(drawn.view)?, &truth);
             Ok(Some(vec![(TONE.into(), rmse), ("largest error of a window".into(), worst)]))
         };
-        let progress = part_of(lab, number, lab.subjects.len());
-        all.extend(rows(CHART.name, lab, subject, &of_subject, &mut judge, &progress)?);
+        let progress = part_of(lab, number, subjects.len());
+        all.extend(rows(chart, lab, subject, &candidates, &mut judge, &progress)?);
     }
     Ok(all)
 }

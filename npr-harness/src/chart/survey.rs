@@ -113,8 +113,7 @@ impl<'a> Survey<'a> {
 
     fn tone(&mut self, setup: &Setup, executor: &Executor) -> Result<f64, HarnessError> {
         match &setup.style.shade {
-            // Paper has no tone, and normals as colours have no light.
-            Shade::Paper | Shade::Normals => Ok(0.0),
+            Shade::Paper => Ok(0.0),
             Shade::Hatch(_) => {
                 let truth = match self.strokes.take() {
                     Some(truth) => truth,

@@ -14,6 +14,8 @@ pub struct Scatter {
     pub x: Axis,
     /// The vertical axis.
     pub y: Axis,
+    /// All groups of a set of diagrams, so that each looks the same in every one; more are taken from the points.
+    pub groups: Vec<String>,
     /// The points.
     pub points: Vec<Point>,
     /// The indices of the points on the Pareto front, in any order. Small values are better on both axes.
@@ -89,17 +91,24 @@ pub fn series(number: usize) -> Color {
 }
 
 fn layout(scatter: &Scatter) -> Layout {
-    let mut groups: Vec<String> = Vec::new();
+    // In the order of all groups, so that one looks the same in every diagram.
+    let mut groups = scatter.groups.clone();
     for point in &scatter.points {
         if !groups.contains(&point.group) {
             groups.push(point.group.clone());
         }
     }
+    let is_used = |group: &String| scatter.points.iter().any(|point| point.group == *group);
     let mut top = MARGIN;
     if !scatter.title.is_empty() {
         top += TITLE_PX * LINE_HEIGHT + 6.0;
     }
-    let mut kinds: Vec<_> = groups.iter().enumerate().map(|(n, group)| (Kind::Group(n), group.clone())).collect();
+    let mut kinds: Vec<_> = groups
+        .iter()
+        .enumerate()
+        .filter(|(_, group)| is_used(group))
+        .map(|(n, group)| (Kind::Group(n), group.clone()))
+        .collect();
     if scatter.points.iter().any(|point| point.historical) {
         kinds.push((Kind::Hollow, "hollow: for comparison only".into()));
     }

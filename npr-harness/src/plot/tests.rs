@@ -53,6 +53,7 @@ fn example(count: usize, seed: u64) -> Scatter {
         title: "Lines: error against time".into(),
         x: axis("time relative to a plain pass", true),
         y: axis("1 − F1 within 1.5 px", true),
+        groups: Vec::new(),
         points,
         front,
     }

@@ -36,7 +36,7 @@ pub struct Options {
 impl Options {
     /// The size of the charts' pictures, px.
     pub fn size(&self) -> (u32, u32) {
-        if self.quick { (320, 180) } else { (480, 270) }
+        if self.quick { (256, 144) } else { (480, 270) }
     }
 
     /// How often charts measure.
@@ -52,7 +52,18 @@ impl Options {
         if self.models.is_empty() {
             return Ok(built_in_subjects(self.size(), if self.quick { 1 } else { 3 }));
         }
-        self.models.iter().map(|path| subject_of_file(path, &self.loading, self.size())).collect()
+        let mut subjects: Vec<Subject> = Vec::new();
+        for path in &self.models {
+            let mut subject = subject_of_file(path, &self.loading, self.size())?;
+            // Files of different folders may have one name.
+            let is_taken = |name: &str| subjects.iter().any(|known| known.name == name);
+            if is_taken(&subject.name) {
+                let free = (2..).map(|number| format!("{} {number}", subject.name)).find(|name| !is_taken(name));
+                subject.name = free.expect("numbers do not end");
+            }
+            subjects.push(subject);
+        }
+        Ok(subjects)
     }
 
     /// What charts are measured with, in a line.
@@ -180,7 +191,7 @@ pub fn run(
             Stage::Chart(chart) => {
                 let measured: Measured =
                     kept.get_or(&name, || measure(chart, &executors, &subjects, options, &tell))?;
-                contents.charts.push(content(chart, measured.rows.clone()));
+                contents.charts.push(content(chart, measured.rows.clone(), &executors));
                 table.skipped.extend(measured.skipped);
                 table.rows.extend(measured.rows);
             }
@@ -249,7 +260,7 @@ pub fn measure(
 }
 
 /// A chart with its rows.
-pub fn content(chart: &Chart, rows: Vec<Row>) -> ChartContent {
+pub fn content(chart: &Chart, rows: Vec<Row>, executors: &[Executor]) -> ChartContent {
     let table = Table { rows, ..Table::default() };
     let points = table.points(chart.name);
     let Chart { name, title, error, about, .. } = *chart;
@@ -258,6 +269,7 @@ pub fn content(chart: &Chart, rows: Vec<Row>) -> ChartContent {
         title: title.into(),
         error: error.into(),
         about: about.into(),
+        executors: executors.iter().map(Executor::name).collect(),
         rows: table.rows,
         points,
     }

@@ -20,6 +20,7 @@ pub fn chart_diagram(chart: &ChartContent) -> Scatter {
         title: String::new(),
         x: Axis { title: "time of a frame relative to a plain pass (log scale)".into(), logarithmic: true },
         y: Axis { title: format!("{} (log scale)", chart.error), logarithmic: true },
+        groups: chart.executors.clone(),
         points: chart.points.iter().map(point).collect(),
         front: front(&chart.points),
     }

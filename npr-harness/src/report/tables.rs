@@ -10,7 +10,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 /// The charts that a README shows.
-const README_CHARTS: [&str; 3] = ["lines", "dilation", "shadows"];
+const README_CHARTS: [&str; 3] = ["lines", "dilation-16", "shadows"];
 /// Pixels of PNG diagrams for each CSS pixel.
 const PNG_SCALE: f32 = 1.5;
 

@@ -22,13 +22,13 @@ pub struct BudgetOptions {
     /// Find the cheapest way to make the picture that keeps to these errors on this model in this view: lines, tone or
     /// shadows, such as lines=0.02,tone=0.01. It chooses how lines, light, strokes and shadows are made, the samples and
     /// the executor.
-    #[arg(long, value_name = "MEASURE=ERROR,...")]
+    #[arg(long, value_name = "MEASURE=ERROR,...", conflicts_with = "samples")]
     max_error: Option<MaxErrors>,
     /// Find the most accurate way to make a frame in this time, ms, by a renderer that is kept.
-    #[arg(long, value_name = "MS", conflicts_with = "max_plain")]
+    #[arg(long, value_name = "MS", conflicts_with_all = ["max_plain", "samples"])]
     max_ms: Option<f64>,
     /// The same in multiples of a plain pass: light without bands or lines.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", conflicts_with = "samples")]
     max_plain: Option<f64>,
     /// The cost table, from `npr calibrate -o FILE`. Without it the one in the cache is used, and made if there is none.
     #[arg(long, value_name = "FILE")]
@@ -45,8 +45,8 @@ impl BudgetOptions {
     /// The budget, if there is one.
     pub fn budget(&self) -> Result<Option<Budget>, HarnessError> {
         let positive = |what, value: f64| {
-            let range = "above 0";
-            if value > 0.0 && value.is_finite() { Ok(value) } else { Err(HarnessError::Range { what, value, range }) }
+            let range = "1e-6..=1e9";
+            if (1e-6..=1e9).contains(&value) { Ok(value) } else { Err(HarnessError::Range { what, value, range }) }
         };
         let max_time = match (self.max_ms, self.max_plain) {
             (Some(ms), _) => Some(MaxTime::Ms(positive("the time of a frame", ms)?)),
@@ -69,12 +69,18 @@ impl BudgetOptions {
         backend: Backend,
         budget: &Budget,
     ) -> Result<Chosen, HarnessError> {
+        budget.max_errors.check(&setup.style)?;
         let mut executors = candidates(executor, backend);
         let table = match &self.calibration {
             Some(path) => read(path)?,
             None => cached(&executors)?,
         };
         let usable: Vec<String> = executors.iter().map(Executor::name).collect();
+        if let Some(missing) = usable.iter().find(|name| !table.executors.contains(name)) {
+            let path = self.calibration.clone().unwrap_or_default();
+            let what = format!("it has no costs of {missing}, only of {}: npr calibrate", table.executors.join(", "));
+            return Err(HarnessError::Calibration { path, what });
+        }
         let mut all = configurations(scene, setup, view, &table);
         all.retain(|configuration| usable.contains(&configuration.executor));
         let mut survey = Survey::new(scene, *view, &setup.style, &executors);
@@ -105,12 +111,18 @@ fn cached(executors: &[Executor]) -> Result<CostTable, HarnessError> {
             Err(error) => tell(&format!("npr: {error}; measuring again")),
         }
     }
-    tell("npr: measuring what each way to draw costs here, once (npr calibrate)");
+    match &path {
+        Some(path) => tell(&format!(
+            "npr: measuring what each way to draw costs here, once, which takes a minute or two; kept in {}",
+            path.display()
+        )),
+        None => tell("npr: measuring what each way to draw costs here, which takes a minute or two"),
+    }
     let table = measured(executors)?;
     if let Some(path) = &path
         && let Err(error) = write(path, &table)
     {
-        tell(&format!("npr: {error}; the measurement is not kept"));
+        tell(&format!("npr: {error}; the measurement is not kept, npr calibrate -o FILE keeps it elsewhere"));
     }
     Ok(table)
 }
@@ -137,6 +149,14 @@ pub fn read(path: &Path) -> Result<CostTable, HarnessError> {
     let table: CostTable = serde_json::from_str(&text).map_err(|error| wrong(format!("no cost table: {error}")))?;
     if table.version != env!("CARGO_PKG_VERSION") {
         return Err(wrong(format!("it is of version {}, and this is {}", table.version, env!("CARGO_PKG_VERSION"))));
+    }
+    let costs = table.entries.iter().flat_map(|entry| [entry.cost.fixed_ms, entry.cost.sample_ns, entry.cost.face_ns]);
+    let mut numbers = costs.chain(table.expected.iter().map(|expected| expected.error));
+    if let Some(number) = numbers.find(|number| !(number.is_finite() && *number >= 0.0)) {
+        return Err(wrong(format!("{number} is neither a cost nor an error")));
+    }
+    if table.executors.is_empty() || table.entries.is_empty() || table.expected.is_empty() {
+        return Err(wrong("a cost table without costs or errors".into()));
     }
     Ok(table)
 }

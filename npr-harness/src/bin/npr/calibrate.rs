@@ -27,6 +27,11 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
     let Some(path) = options.output.clone().or_else(|| budget::cache_file(&executors)) else {
         return Err(HarnessError::NoCache);
     };
+    // What cannot be written is found out before it is measured.
+    if let Some(folder) = path.parent() {
+        std::fs::create_dir_all(folder).map_err(|source| HarnessError::Write { path: path.clone(), source })?;
+    }
+    npr_hatch::files::check_writable(&path).map_err(|source| HarnessError::Write { path: path.clone(), source })?;
     let table = budget::measured(&executors)?;
     budget::write(&path, &table)?;
     say(format_args!(

@@ -60,7 +60,7 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
         bar.set_message(chart.name);
         let tell = |share| bar.set_position((1000.0 * (number as f64 + share) / count) as u64);
         let measured = make::measure(chart, &executors, &subjects, &measuring, &tell)?;
-        contents.push(make::content(chart, measured.rows.clone()));
+        contents.push(make::content(chart, measured.rows.clone(), &executors));
         table.skipped.extend(measured.skipped);
         table.rows.extend(measured.rows);
     }

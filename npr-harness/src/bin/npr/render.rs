@@ -52,6 +52,9 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
     let candidates = looking.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
     let mut setup = Setup { style: shot.style.clone(), samples: shot.samples };
     let mut view = shot.view(&scene);
+    // The part of the device's start that did not overlap loading.
+    let device_ms = elapsed_ms(start);
+    let start = Instant::now();
     let mut choice = None;
     let mut executor = match &budget {
         Some(budget) => {
@@ -63,10 +66,7 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
         }
         None => candidates.choose_for(&Work::new(&scene, &setup.style, shot.view(&scene).size, setup.samples)),
     };
-    // The part of the device's start that did not overlap loading.
-    let device_ms = elapsed_ms(start);
     announce(&executor);
-    let start = Instant::now();
     let style = &setup.style;
     let picture = Picture { memory_bytes: shot.memory_bytes, ..Picture::new(&scene, style, view) };
     // The data that planning derives are cached for rendering.

@@ -355,6 +355,13 @@ fn changes(contents: &Contents) -> Option<Section> {
     for old in &changes.old {
         let _ = writeln!(html, "<li>{}</li>", escaped(old));
     }
+    // A line of the machine says with which sizes, rounds and scenes charts were measured.
+    if changes.old.iter().any(|old| !contents.machine.iter().all(|line| old.contains(line.as_str()))) {
+        html.push_str(
+            "<li><strong>That run had another machine, size, number of rounds or other scenes than this one: what differs \
+             may come from there.</strong></li>\n",
+        );
+    }
     let _ = writeln!(
         html,
         "</ul>\n<p>Of {} values, <strong>{} became worse, {} better</strong>; {} are new, {} are gone. An error counts if it \
