@@ -2,13 +2,16 @@
 //! vertices are copied, which faces are drawn together.
 
 use crate::hatch::HatchMapping;
-use crate::plan::resources::level_count;
 use crate::plan::{PaintPlan, Plan};
 use crate::scene::{Mesh, Object, Scene};
+use crate::texel_format::level_count;
 use npr_mesh::{AlphaMode, Model};
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 use std::sync::Arc;
+
+/// The data of an object, bytes.
+pub(crate) const INSTANCE_BYTES: u64 = 84;
 
 /// The attributes of vertices that surfaces are drawn with, besides positions. Each has a buffer of its own, so that none
 /// is uploaded that no pixel depends on; a shader that declares another gets the same value at every vertex.

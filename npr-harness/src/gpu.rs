@@ -5,6 +5,7 @@
 
 mod adapter;
 pub(crate) mod context;
+pub(crate) mod index_format;
 pub(crate) mod instances;
 mod materials;
 mod resolve;

@@ -85,6 +85,7 @@ pub mod stability;
 pub mod style;
 pub mod suggest;
 pub mod systems;
+pub mod texel_format;
 pub mod texture;
 pub mod truth;
 pub mod variant;

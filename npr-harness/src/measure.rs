@@ -16,6 +16,7 @@
 //! write buffers leave them nothing to wait for: there, device time is too short for plans that find lines or bound
 //! shadow volumes on the device. Wall time is the time to show for software adapters.
 
+mod case;
 #[cfg(feature = "gpu")]
 mod clock;
 #[cfg(feature = "gpu")]
@@ -23,11 +24,14 @@ mod on_adapter;
 #[cfg(test)]
 mod tests;
 
+pub use case::{Case, HARDWARE_FRAMES, Rounds};
+
 use crate::cpu::{self, CpuOptions};
 use crate::error::HarnessError;
 use crate::executor::Executor;
 use crate::plan::Plan;
 use crate::scene::Scene;
+use case::Measurement;
 use serde::{Deserialize, Serialize};
 use std::hint::black_box;
 use std::time::Instant;
@@ -106,29 +110,6 @@ impl Samples {
     }
 }
 
-/// How often cases are measured.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rounds {
-    /// The number of rounds that are counted, at least 1.
-    pub rounds: usize,
-    /// The frames between two waits for an adapter, at least 1; one measurement is their mean. `None` for 1 on a
-    /// software adapter, where a wait is short beside a frame, and [`HARDWARE_FRAMES`] on hardware. For work on the CPU
-    /// it is the number of calls in a measurement, and `None` means 1.
-    pub frames_a_wait: Option<u32>,
-    /// No further round begins after this time, ms, for all cases together and without the first round; but
-    /// [`LEAST_ROUNDS`] are measured, or [`Self::rounds`] if that is fewer. Infinity for no bound.
-    pub most_ms: f64,
-}
-
-/// The frames between two waits for a hardware adapter, by default.
-pub const HARDWARE_FRAMES: u32 = 8;
-
-impl Default for Rounds {
-    fn default() -> Self {
-        Self { rounds: 15, frames_a_wait: None, most_ms: f64::INFINITY }
-    }
-}
-
 /// A frame to measure.
 #[derive(Clone, Copy)]
 pub struct FrameCase<'a> {
@@ -146,28 +127,6 @@ pub struct Timed {
     /// Device time. `None` on the CPU; on an adapter that cannot write timestamps between passes; and where one of the
     /// timestamps of the case was not later than the one before.
     pub device: Option<Samples>,
-}
-
-/// One measurement, ms.
-#[derive(Clone, Copy)]
-struct Measurement {
-    wall_ms: f64,
-    device_ms: Option<f64>,
-}
-
-/// Something to measure beside others.
-pub enum Case<'a> {
-    /// A frame.
-    Frame {
-        /// What draws it.
-        executor: &'a Executor,
-        /// The scene.
-        scene: &'a Scene,
-        /// A plan of the scene for the executor's capabilities.
-        plan: &'a Plan,
-    },
-    /// Work on the CPU. What takes less than some µs must repeat itself.
-    Work(&'a mut dyn FnMut()),
 }
 
 /// Measures frames of an executor, in the order of the cases, as [`time`] does.

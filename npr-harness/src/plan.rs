@@ -8,7 +8,7 @@ mod explain;
 pub mod resources;
 
 pub use explain::part_of_pass;
-pub use resources::{Resource, ResourceKind, TexelFormat};
+pub use resources::{Resource, ResourceKind};
 
 use crate::camera::Camera;
 use crate::capabilities::Capabilities;
@@ -30,6 +30,7 @@ use crate::scene::Scene;
 use crate::shade::{Shade, ShadeView};
 use crate::shadow::{ShadowLines, ShadowPlan, ShadowTechnique};
 use crate::style::Style;
+use crate::texel_format::TexelFormat;
 use crate::view::View;
 use glam::{DVec3, DVec4, Vec3};
 use npr_imagespace::artist::LineKind as InnerLines;

@@ -14,13 +14,14 @@ use npr_harness::image_lines::gbuffer::style::{GBuffer, GBufferTarget, InkStep, 
 use npr_harness::image_lines::{ImageInk, InkScale, Regions};
 use npr_harness::lights::{LightFrame, StyleLight};
 use npr_harness::plan::resources::total_bytes;
-use npr_harness::plan::{Plan, Resource, ResourceKind, TexelFormat};
+use npr_harness::plan::{Plan, Resource, ResourceKind};
 use npr_harness::printed_fins::PrintedLines;
 use npr_harness::scene::{ObjectLines, Scene};
 use npr_harness::shade::Shade;
 use npr_harness::shade::ramp::{RampShade, RampSource};
 use npr_harness::shadow::{ShadowMethod, ShadowStyle};
 use npr_harness::style::{Lines, Style, style};
+use npr_harness::texel_format::TexelFormat;
 use npr_harness::view::View;
 use npr_imagespace::filter::separate::SeparateFilter;
 use npr_imagespace::format::texel::TexelLayout;

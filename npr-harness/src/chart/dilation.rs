@@ -3,7 +3,8 @@
 //! The truth is made from the picture of the same lines undilated: a pixel is ink if a line pixel lies within the radius.
 
 use super::frames::{Candidate, Drawn, part_of, rows};
-use super::{Chart, Lab, Row, on_white};
+use super::lab::on_white;
+use super::{Chart, Lab, Row};
 use crate::error::HarnessError;
 use crate::image_lines::ImageInk;
 use crate::image_lines::gbuffer::style::{GBuffer, InkStep, MOST_STEPS, StepKind};

@@ -4,7 +4,8 @@
 //! boundaries, creases and the curves where surfaces intersect.
 
 use super::frames::{Candidate, Drawn, candidates, part_of, rows};
-use super::{Chart, Lab, Row, Subject, on_white};
+use super::lab::on_white;
+use super::{Chart, Lab, Row, Subject};
 use crate::camera::{Camera, Projection};
 use crate::error::HarnessError;
 use crate::executor::{Executor, Picture};

@@ -25,7 +25,7 @@ struct Instance {
 }
 
 /// The size of an object's data, bytes.
-pub(crate) const INSTANCE_BYTES: u64 = crate::plan::resources::INSTANCE_BYTES;
+pub(crate) const INSTANCE_BYTES: u64 = crate::geometry::INSTANCE_BYTES;
 const _: () = assert!(size_of::<Instance>() as u64 == INSTANCE_BYTES);
 
 /// The attributes of objects.

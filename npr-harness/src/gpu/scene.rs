@@ -1,6 +1,7 @@
 //! A scene on the GPU.
 
 use super::context::GpuContext;
+use super::index_format::IndexFormat;
 use super::instances::Instances;
 use super::materials::{Materials, buffer};
 use crate::error::HarnessError;
@@ -68,29 +69,6 @@ pub struct GpuScene {
     pub(super) facets: Option<wgpu::TextureView>,
     /// The tonal art map, if surfaces are hatched.
     pub(super) hatch: Option<HatchTextures>,
-}
-
-/// The format of indices.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct IndexFormat {
-    /// Whether they have 16 bits, not 32.
-    is_short: bool,
-}
-
-impl IndexFormat {
-    /// Indices in this format.
-    pub(crate) fn bytes(self, indices: &[u32]) -> Vec<u8> {
-        if self.is_short {
-            indices.iter().flat_map(|&index| (index as u16).to_ne_bytes()).collect()
-        } else {
-            bytemuck::cast_slice(indices).to_vec()
-        }
-    }
-
-    /// The format of wgpu.
-    pub(crate) fn on_device(self) -> wgpu::IndexFormat {
-        if self.is_short { wgpu::IndexFormat::Uint16 } else { wgpu::IndexFormat::Uint32 }
-    }
 }
 
 /// The attributes of vertices that a plan reads, a buffer each.

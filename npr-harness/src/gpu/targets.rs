@@ -6,8 +6,8 @@ use crate::image_lines::gbuffer::targets::{GBufferTargets, TEXEL_FORMAT};
 use crate::image_lines::plan::ImagePlan;
 use crate::image_lines::style::InkScale;
 use crate::picture::Image;
-use crate::plan::{TexelFormat, resources};
 use crate::shadow::gpu::StencilTarget;
+use crate::texel_format::{self, TexelFormat};
 use crate::view::View;
 use npr_imagespace::format::texel::TexelLayout;
 use npr_imagespace::pass::INK_FORMAT;
@@ -17,9 +17,9 @@ use npr_outline::line_pass::COVERAGE_FORMAT;
 use std::cell::{Cell, OnceCell, Ref, RefCell};
 
 /// Without sRGB encoding on store, because values are display-referred.
-pub(crate) const COLOR_FORMAT: wgpu::TextureFormat = resources::COLOR.on_device();
+pub(crate) const COLOR_FORMAT: wgpu::TextureFormat = texel_format::COLOR.on_device();
 /// Depth is reversed: 1 at the near plane.
-pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = resources::DEPTH.on_device();
+pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = texel_format::DEPTH.on_device();
 
 /// The usages of targets that are read by later passes, and copied.
 const READ_AND_COPIED: wgpu::TextureUsages =

@@ -1,7 +1,8 @@
 //! Times of frames on adapters.
 
+use super::case::Measurement;
 use super::clock::DeviceClock;
-use super::{Case, HARDWARE_FRAMES, Measurement, Rounds};
+use super::{Case, HARDWARE_FRAMES, Rounds};
 use crate::error::HarnessError;
 use crate::executor::Executor;
 use crate::gpu::targets::{InkKind, ink_kind};

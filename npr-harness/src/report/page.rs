@@ -5,19 +5,11 @@ mod sections;
 use super::Contents;
 use super::html::escaped;
 use crate::plot::palette;
+use sections::Section;
 use std::fmt::Write;
 
 const STYLE: &str = include_str!("page.css");
 const SCRIPT: &str = include_str!("page.js");
-
-/// A section of the page, with its entries in the table of contents.
-struct Section {
-    id: &'static str,
-    title: &'static str,
-    /// The id and the title of each part.
-    parts: Vec<(String, String)>,
-    html: String,
-}
 
 /// The page. Sections without content are left out.
 pub fn page(contents: &Contents) -> String {

@@ -6,11 +6,11 @@ use crate::camera::{Camera, Projection};
 use crate::error::HarnessError;
 use crate::geometry::POSITION_BYTES;
 use crate::gpu::context::GpuContext;
+use crate::gpu::index_format::IndexFormat;
 use crate::gpu::instances::{INSTANCE_ATTRIBUTES, Instances, instance_layout};
-use crate::gpu::scene::IndexFormat;
 use crate::gpu::uniform::uniform_buffer;
-use crate::plan::resources;
 use crate::scene::{Object, Scene};
+use crate::texel_format;
 use crate::view::size_px;
 use glam::{DMat4, DVec2, DVec3, DVec4};
 use npr_outline::shadow_mask::{MASK_FORMAT, ShadowMaskPass};
@@ -60,7 +60,7 @@ impl BlankShadow {
     }
 }
 
-const MAP_FORMAT: wgpu::TextureFormat = resources::SHADOW_MAP.on_device();
+const MAP_FORMAT: wgpu::TextureFormat = texel_format::SHADOW_MAP.on_device();
 
 fn texture(device: &wgpu::Device, label: &str, format: wgpu::TextureFormat, size: (u32, u32)) -> wgpu::Texture {
     device.create_texture(&wgpu::TextureDescriptor {
@@ -225,7 +225,7 @@ impl ShadowPasses {
             // The plan was made for the CPU.
             ShadowTechnique::Rays => return Err(HarnessError::RayPlan),
         };
-        let format = resources::stencil_format(float_depth).on_device();
+        let format = texel_format::stencil_format(float_depth).on_device();
         let (depth_stencil, mask) = target.views(device, format, frame.size);
         draw_depth(encoder, depth_stencil)?;
         let parallel = matches!(frame.camera.projection, Projection::Orthographic { .. });

@@ -6,7 +6,7 @@ use crate::error::HarnessError;
 use crate::gpu::shader::assemble;
 use crate::gpu::targets::{COLOR_FORMAT, InkTargets};
 use crate::gpu::uniform::uniform_buffer;
-use crate::plan::TexelFormat;
+use crate::texel_format::TexelFormat;
 use npr_imagespace::composite::Composite;
 use npr_imagespace::format::depth::DepthFormat;
 use npr_imagespace::format::normal::NormalFormat;

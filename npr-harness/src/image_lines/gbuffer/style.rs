@@ -1,8 +1,8 @@
 //! The settings of a G-buffer in a style.
 
 use crate::error::HarnessError;
-use crate::plan::TexelFormat;
 use crate::schema::within;
+use crate::texel_format::TexelFormat;
 use npr_imagespace::filter::depth::{DEPTH_SUM_CARD_MITCHELL, DepthPlain};
 use npr_imagespace::filter::inker::Inker;
 use npr_imagespace::filter::normal::NORMAL_COS_CARD_MITCHELL;

@@ -3,7 +3,7 @@
 use super::style::GBuffer;
 
 /// The format of unquantised texels.
-pub(crate) const TEXEL_FORMAT: wgpu::TextureFormat = crate::plan::resources::UNQUANTISED.on_device();
+pub(crate) const TEXEL_FORMAT: wgpu::TextureFormat = crate::texel_format::UNQUANTISED.on_device();
 
 /// The encoded G-buffer, and a second ink picture for steps of morphology.
 pub(crate) struct GBufferTargets {

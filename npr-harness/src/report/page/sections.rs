@@ -1,6 +1,5 @@
 //! The sections.
 
-use super::Section;
 use crate::chart::front::{dominated, front};
 use crate::chart::table::Point;
 use crate::check::Limit;
@@ -11,6 +10,15 @@ use crate::report::{
     chart_diagram,
 };
 use std::fmt::Write;
+
+/// A section of the page, with its entries in the table of contents.
+pub(super) struct Section {
+    pub(super) id: &'static str,
+    pub(super) title: &'static str,
+    /// The id and the title of each part.
+    pub(super) parts: Vec<(String, String)>,
+    pub(super) html: String,
+}
 
 /// The sections that have content, in order.
 pub fn all(contents: &Contents) -> Vec<Section> {
