@@ -24,7 +24,7 @@ mod on_adapter;
 #[cfg(test)]
 mod tests;
 
-pub use case::{Case, HARDWARE_FRAMES, Rounds};
+pub use case::{Case, HARDWARE_FRAMES, LEAST_ROUNDS, Rounds};
 
 use crate::cpu::{self, CpuOptions};
 use crate::error::HarnessError;
@@ -35,9 +35,6 @@ use case::Measurement;
 use serde::{Deserialize, Serialize};
 use std::hint::black_box;
 use std::time::Instant;
-
-/// The number of rounds that a bound on time leaves.
-pub const LEAST_ROUNDS: usize = 5;
 
 /// The median and the quartiles of some values.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

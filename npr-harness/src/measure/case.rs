@@ -4,6 +4,9 @@ use crate::executor::Executor;
 use crate::plan::Plan;
 use crate::scene::Scene;
 
+/// The number of rounds that a bound on time leaves.
+pub const LEAST_ROUNDS: usize = 5;
+
 /// Something to measure beside others.
 pub enum Case<'a> {
     /// A frame.
