@@ -205,6 +205,7 @@ fn costs(executor: &Executor, priced: &[Priced], progress: &dyn Fn(f64)) -> Resu
 
 /// The errors that are expected: means over the built-in scenes, as a [`Survey`] measures them.
 fn expected(executors: &[Executor], priced: &[Priced], progress: &dyn Fn(f64)) -> Result<Vec<Expected>, HarnessError> {
+    let cpu = Executor::Cpu { why: None };
     // Errors are the same on every executor but for shadows, which the CPU has none of.
     let on_adapter = executors.iter().find(|executor| !executor.is_cpu());
     let subjects = built_in_subjects(ERROR_SIZE, 2);
@@ -233,9 +234,9 @@ fn expected(executors: &[Executor], priced: &[Priced], progress: &dyn Fn(f64)) -
         for (index, (setup, expected)) in all.iter_mut().enumerate() {
             progress((number * (count as usize / subjects.len()) + index) as f64 / count);
             let (measure, executor) = match expected.part {
-                Part::Lines => (Measure::Lines, &CPU),
-                Part::Light | Part::Strokes | Part::Samples => (Measure::Tone, &CPU),
-                Part::Shadows => (Measure::Shadows, on_adapter.unwrap_or(&CPU)),
+                Part::Lines => (Measure::Lines, &cpu),
+                Part::Light | Part::Strokes | Part::Samples => (Measure::Tone, &cpu),
+                Part::Shadows => (Measure::Shadows, on_adapter.unwrap_or(&cpu)),
             };
             let key = (expected.part, expected.shade);
             let asked = priced.iter().find(|priced| (priced.part, priced.shade) == key).expect("it is of one of them");
@@ -248,5 +249,3 @@ fn expected(executors: &[Executor], priced: &[Priced], progress: &dyn Fn(f64)) -
     }
     Ok(all.into_iter().map(|(_, expected)| expected).collect())
 }
-
-static CPU: Executor = Executor::Cpu { why: None };

@@ -70,9 +70,11 @@ impl<'a> Survey<'a> {
     /// # Errors
     /// [`HarnessError`].
     pub fn measure(&mut self, configuration: &Configuration, measure: Measure) -> Result<f64, HarnessError> {
-        let own = self.executors.iter().find(|executor| executor.name() == configuration.executor).unwrap_or(&CPU);
+        let cpu = Executor::Cpu { why: None };
+        let executors = self.executors;
+        let own = executors.iter().find(|executor| executor.name() == configuration.executor).unwrap_or(&cpu);
         // The CPU makes the pictures of lines and tones, which an adapter makes alike.
-        let executor = if self.on_its_executor || measure == Measure::Shadows { own } else { &CPU };
+        let executor = if self.on_its_executor || measure == Measure::Shadows { own } else { &cpu };
         let key = (measure, executor.name(), configuration.of_measure(measure));
         if let Some(&known) = self.known.get(&key) {
             return Ok(known);
@@ -163,5 +165,3 @@ impl<'a> Survey<'a> {
         }
     }
 }
-
-static CPU: Executor = Executor::Cpu { why: None };
