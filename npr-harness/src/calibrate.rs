@@ -26,8 +26,11 @@ use npr_mesh::embedded;
 use npr_outline::line_style::{LineStyle, widths_px};
 use npr_toon::normal::NormalUse;
 
-/// The sizes of the pictures from which costs are found, px.
-const SIZES: [(u32, u32); 2] = [(208, 117), (416, 234)];
+/// The sizes of the pictures from which the costs of an adapter are found, px. In smaller ones most of a frame is what a
+/// frame takes at any size.
+const SIZES: [(u32, u32); 2] = [(320, 180), (960, 540)];
+/// Those of the CPU, which takes as long for each sample in any of them.
+const CPU_SIZES: [(u32, u32); 2] = [(208, 117), (416, 234)];
 /// The size of the pictures from which errors are expected, px.
 const ERROR_SIZE: (u32, u32) = (320, 180);
 /// The widths of lines, px: one for which lines in the image need no disc, and one for which they do.
@@ -133,7 +136,8 @@ fn costs(executor: &Executor, priced: &[Priced], progress: &dyn Fn(f64)) -> Resu
     let rounds = Rounds { rounds: if executor.is_cpu() { 5 } else { 3 }, ..Rounds::default() };
     let mut points: Vec<Vec<fit::Point>> = priced.iter().map(|_| Vec::new()).collect();
     let steps = (SIZES.len() * 2) as f64;
-    for (number, size) in SIZES.into_iter().enumerate() {
+    let sizes = if executor.is_cpu() { CPU_SIZES } else { SIZES };
+    for (number, size) in sizes.into_iter().enumerate() {
         for (which, Subject { scene, camera, .. }) in subjects(size).iter().enumerate() {
             let plan = |setup: &Setup| {
                 let view = View { samples: setup.samples, ..View::new(*camera, size) };
