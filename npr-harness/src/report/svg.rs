@@ -35,7 +35,7 @@ pub fn atlas_diagram(found: &Found) -> Curves {
     };
     // Limits that are errors have no place on the axis of the parameter.
     let curve = |curve: &stability::Curve| {
-        let limit = Some(&curve.limit).filter(|limit| limit.is_of_parameter());
+        let limit = Some(&curve.limit).filter(|limit| limit.is_of_parameter);
         Curve {
             name: curve.name.clone(),
             points: curve.points.clone(),

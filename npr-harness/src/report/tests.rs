@@ -40,6 +40,7 @@ fn entry() -> AtlasEntry {
     let limit = stability::Limit {
         what: "value at which it fails".into(),
         measured: f64::INFINITY,
+        is_of_parameter: true,
         predicted: Some((0.1 + 0.2, "a | formula".into())),
         bound: check::Limit::AtLeast(1e-300),
         to_be_mended: None,

@@ -1,7 +1,7 @@
 //! Black lines on white paper for sweeps: rendered, measured, and put beside each other.
 
 use super::Limit;
-pub(super) use super::setup::{curve, worst};
+pub(super) use super::setup::{Random, curve, worst};
 use crate::camera::{Camera, Projection};
 use crate::check::{Limit as Bound, one_px_style};
 use crate::error::HarnessError;
@@ -145,50 +145,18 @@ pub(super) fn crossing(points: &[(f64, f64)], level: f64) -> f64 {
     points.last().map_or(0.0, |point| point.0)
 }
 
-/// A limit without a prediction that lies in the method.
+/// A limit without a prediction that lies in the method, and is an error.
 pub(super) fn limit(what: &str, measured: f64, bound: Bound) -> Limit {
-    Limit { what: what.into(), measured, predicted: None, bound, to_be_mended: None }
+    Limit { what: what.into(), measured, is_of_parameter: false, predicted: None, bound, to_be_mended: None }
 }
 
-impl Limit {
-    /// With what a formula predicts.
-    pub(super) fn predicted(self, value: f64, formula: &str) -> Self {
-        Self { predicted: Some((value, formula.into())), ..self }
-    }
-
-    /// With how it is to be mended.
-    pub(super) fn mend_by(self, how: &str) -> Self {
-        Self { to_be_mended: Some(how.into()), ..self }
-    }
+/// The same for a value of the parameter.
+pub(super) fn limit_at(what: &str, measured: f64, bound: Bound) -> Limit {
+    Limit { is_of_parameter: true, ..limit(what, measured, bound) }
 }
 
 /// `count` numbers from `from` to `to` in equal ratios.
 pub(super) fn geometric(from: f64, to: f64, count: u32) -> Vec<f64> {
     let ratio = (to / from).powf(1.0 / f64::from(count - 1));
     (0..count).map(|i| from * ratio.powi(i as i32)).collect()
-}
-
-/// A generator of uniform numbers, seeded: SplitMix64 (Steele, Lea & Flood 2014).
-pub(super) struct Random(pub(super) u64);
-
-impl Random {
-    /// 64 random bits.
-    pub(super) fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mixed = (self.0 ^ self.0 >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let mixed = (mixed ^ mixed >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-        mixed ^ mixed >> 31
-    }
-
-    /// 0..1.
-    pub(super) fn unit(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    /// A direction, evenly distributed over the sphere.
-    pub(super) fn direction(&mut self) -> DVec3 {
-        let z = 2.0 * self.unit() - 1.0;
-        let around = std::f64::consts::TAU * self.unit();
-        DVec2::from_angle(around).extend(0.0) * (1.0 - z * z).max(0.0).sqrt() + DVec3::Z * z
-    }
 }

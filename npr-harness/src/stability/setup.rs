@@ -80,15 +80,15 @@ pub(super) fn curve(name: &str, points: Vec<(f64, f64)>, limit: Limit) -> Curve 
     Curve { name: name.into(), points, limit }
 }
 
-/// A limit that lies in the method, with the value that a formula predicts.
+/// A limit that lies in the method and is an error, with the value that a formula predicts.
 pub(super) fn limit(what: &str, measured: f64, predicted: Option<(f64, &str)>, bound: Bound) -> Limit {
     let predicted = predicted.map(|(value, formula)| (value, formula.to_owned()));
-    Limit { what: what.into(), measured, predicted, bound, to_be_mended: None }
+    Limit { what: what.into(), measured, is_of_parameter: false, predicted, bound, to_be_mended: None }
 }
 
-/// The same limit, of a method that is to be mended.
-pub(super) fn mend(limit: Limit, how: &str) -> Limit {
-    Limit { to_be_mended: Some(how.into()), ..limit }
+/// The same for a value of the parameter.
+pub(super) fn limit_at(what: &str, measured: f64, predicted: Option<(f64, &str)>, bound: Bound) -> Limit {
+    Limit { is_of_parameter: true, ..limit(what, measured, predicted, bound) }
 }
 
 /// The parameter from which on the error stays at most `most`: between the last point above it and the next,
@@ -165,10 +165,35 @@ pub(super) fn states_image(states: &States, (left, top): (u32, u32), (width, hei
     Image::new(width, height, rgba8.collect()).expect("four bytes a pixel")
 }
 
-/// A deterministic sequence of numbers in 0..1: SplitMix64 (Steele, Lea & Flood 2014).
+/// The number of a seeded sequence at an index, 0..1: [`Random`] from there on.
 pub(super) fn uniform(seed: u64, index: u64) -> f64 {
-    let mut z = seed.wrapping_add(index.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15));
-    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    Random(seed.wrapping_add(index.wrapping_mul(Random::STEP))).unit()
+}
+
+/// A generator of uniform numbers, seeded: SplitMix64 (Steele, Lea & Flood 2014).
+pub(super) struct Random(pub(super) u64);
+
+impl Random {
+    /// The difference of successive states: 2⁶⁴ over the golden ratio, odd.
+    pub(super) const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
+
+    /// 64 random bits.
+    pub(super) fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(Self::STEP);
+        let mixed = (self.0 ^ self.0 >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let mixed = (mixed ^ mixed >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+        mixed ^ mixed >> 31
+    }
+
+    /// 0..1.
+    pub(super) fn unit(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// A direction, evenly distributed over the sphere.
+    pub(super) fn direction(&mut self) -> DVec3 {
+        let z = 2.0 * self.unit() - 1.0;
+        let around = std::f64::consts::TAU * self.unit();
+        DVec2::from_angle(around).extend(0.0) * (1.0 - z * z).max(0.0).sqrt() + DVec3::Z * z
+    }
 }

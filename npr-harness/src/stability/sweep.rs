@@ -76,6 +76,8 @@ pub struct Limit {
     pub what: String,
     /// The number that was measured.
     pub measured: f64,
+    /// Whether it is a value of the sweep's parameter, so that a diagram marks it; otherwise it is an error.
+    pub is_of_parameter: bool,
     /// The number that a formula predicts, and the formula with its source.
     pub predicted: Option<(f64, String)>,
     /// The bound that a test holds it to.
@@ -85,8 +87,13 @@ pub struct Limit {
 }
 
 impl Limit {
-    /// Whether the numbers are values of the sweep's parameter, by the words of [`Self::what`]; otherwise they are errors.
-    pub fn is_of_parameter(&self) -> bool {
-        self.what.split_whitespace().any(|word| word == "which")
+    /// With what a formula predicts.
+    pub(super) fn predicted(self, value: f64, formula: &str) -> Self {
+        Self { predicted: Some((value, formula.into())), ..self }
+    }
+
+    /// With how it is to be mended.
+    pub(super) fn mend_by(self, how: &str) -> Self {
+        Self { to_be_mended: Some(how.into()), ..self }
     }
 }

@@ -1,6 +1,6 @@
 //! Directions of strokes where a surface hardly has any.
 
-use super::super::setup::{curve, frame, front, limit, side_by_side, stays_within};
+use super::super::setup::{curve, frame, front, limit_at, side_by_side, stays_within};
 use super::super::{Axis, Finding, Sweep};
 use crate::check::Limit as Bound;
 use crate::error::HarnessError;
@@ -64,7 +64,7 @@ fn measure(_: &Executor) -> Result<Finding, HarnessError> {
         let measured = stays_within(&points, UNRELATED_DEG / 4.0);
         let what = "least elongation from which directions are within 11° of the parallels, in the mean";
         let bound = Bound::AtMost(0.1);
-        curves.push(curve(&format!("{segments} segments"), points, limit(what, measured, None, bound)));
+        curves.push(curve(&format!("{segments} segments"), points, limit_at(what, measured, None, bound)));
     }
     let shade = black(&strokes(1), HatchEncoding::Thresholds, HatchMapping::Form, LIT, 0.5);
     let style = hatched(&shade, NormalUse::PerPixel, DVec3::new(-0.5, 0.6, 0.6));

@@ -3,7 +3,7 @@
 //! Tones are those of squares with four tiles of the map along them, from several distances; strokes are those on a square
 //! that fills the picture.
 
-use super::super::setup::{curve, first_over, frame, front, limit, side_by_side, tones, worst};
+use super::super::setup::{curve, first_over, frame, front, limit, limit_at, side_by_side, tones, worst};
 use super::super::{Axis, Finding, Sweep};
 use crate::check::Limit as Bound;
 use crate::error::HarnessError;
@@ -129,7 +129,7 @@ fn contrast(_: &Executor) -> Result<Finding, HarnessError> {
         let measured = first_over(&points, 0.999);
         let what = "texels in a pixel from which there are no strokes";
         let predicted = (SIDE / 8.0, "the side of the map over 8 px, from where on the weight of the flat tone is 1");
-        curves.push(curve(name, points, limit(what, measured, Some(predicted), Bound::AtLeast(31.0))));
+        curves.push(curve(name, points, limit_at(what, measured, Some(predicted), Bound::AtLeast(31.0))));
     }
     Ok(Finding {
         parameter: texels_axis(),
@@ -170,7 +170,7 @@ fn width(_: &Executor) -> Result<Finding, HarnessError> {
         let measured = first_over(&points, 2.0 * at_one);
         let what = "pixels in a texel at which strokes are twice as wide as the map's";
         let predicted = (2.0, "the width in texels is fixed at the finest level: 1 px a texel, times 2");
-        curves.push(curve(name, points, limit(what, measured, Some(predicted), Bound::AtLeast(1.9))));
+        curves.push(curve(name, points, limit_at(what, measured, Some(predicted), Bound::AtLeast(1.9))));
     }
     Ok(Finding {
         parameter: Axis::logarithmic("pixels in a texel of the finest level", ""),

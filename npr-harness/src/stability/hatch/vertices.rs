@@ -1,6 +1,6 @@
 //! Weights of six tones at the vertices of coarse spheres.
 
-use super::super::setup::{curve, frame, front, limit, side_by_side, stays_within, tones};
+use super::super::setup::{curve, frame, front, limit_at, side_by_side, stays_within, tones};
 use super::super::{Axis, Finding, Sweep};
 use crate::check::Limit as Bound;
 use crate::error::HarnessError;
@@ -75,9 +75,9 @@ fn measure(_: &Executor) -> Result<Finding, HarnessError> {
             "mean of Σ|side|²/24 · (L·E) / (N·E) over the sphere, of second order in 1/n",
         );
         curves.push(if normals == NormalUse::PerVertex {
-            curve(name, found, limit(what, measured, Some(predicted), Bound::AtMost(30.0)))
+            curve(name, found, limit_at(what, measured, Some(predicted), Bound::AtMost(30.0)))
         } else {
-            curve(name, found, limit(what, measured, None, Bound::AtMost(18.0)))
+            curve(name, found, limit_at(what, measured, None, Bound::AtMost(18.0)))
         });
     }
     let scene = Scene::new(embedded::sphere(8));

@@ -6,7 +6,7 @@ use crate::error::HarnessError;
 use crate::executor::Executor;
 use crate::image_lines::{ImageInk, Regions};
 use crate::scene::Scene;
-use crate::stability::ink::{ahead, beside, curve, drawn, last_above, limit, worst};
+use crate::stability::ink::{ahead, beside, curve, drawn, last_above, limit, limit_at, worst};
 use crate::stability::{Axis, Finding, Sweep};
 use crate::style::Lines;
 use crate::view::View;
@@ -64,7 +64,7 @@ fn artist_distance(executor: &Executor) -> Result<Finding, HarnessError> {
         let limit = if per_object {
             let spare_rad = std::f64::consts::FRAC_PI_4 - f64::from(normal_cos).acos();
             let predicted = 1.0 / spare_rad.sin();
-            limit(
+            limit_at(
                 "distance below which lines may vanish, in radii of the object",
                 last_above(&points, 0.0),
                 Bound::AtMost(predicted),

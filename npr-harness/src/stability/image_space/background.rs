@@ -6,7 +6,7 @@ use crate::executor::Executor;
 use crate::image_lines::ImageInk;
 use crate::image_lines::gbuffer::style::{Background, GBuffer, GBufferTarget};
 use crate::scene::Scene;
-use crate::stability::ink::{beside, crossing, curve, drawn, ink, limit, parallel, worst};
+use crate::stability::ink::{beside, crossing, curve, drawn, ink, limit, limit_at, parallel, worst};
 use crate::stability::{Axis, Finding, Sweep};
 use crate::style::Lines;
 use crate::truth::lines::{accuracy, drawn_centreline, true_lines};
@@ -64,7 +64,7 @@ fn plus_z(executor: &Executor) -> Result<Finding, HarnessError> {
         let limit = match background {
             Background::PlusZ => {
                 let predicted = f64::from(NORMAL_COS_CARD_MITCHELL).acos().to_degrees();
-                limit(
+                limit_at(
                     "angle to +z below which a surface has no border, degrees",
                     crossing(&points, 50.0),
                     Bound::AtMost(32.4),

@@ -4,7 +4,9 @@ use crate::check::Limit as Bound;
 use crate::error::HarnessError;
 use crate::executor::Executor;
 use crate::picture::Image;
-use crate::stability::ink::{Random, beside, crossing, curve, geometric, last_above, limit, picture_of, worst};
+use crate::stability::ink::{
+    Random, beside, crossing, curve, geometric, last_above, limit, limit_at, picture_of, worst,
+};
 use crate::stability::{Axis, Finding, Sweep};
 use glam::{DQuat, UVec2};
 use npr_imagespace::ImageSpaceError;
@@ -192,7 +194,7 @@ fn depth_range(_: &Executor) -> Result<Finding, HarnessError> {
         let limit = if let "8 bits" | "16 bits" = name {
             let steps = if name == "8 bits" { 255.0 } else { 65535.0 };
             let predicted = 1.0 + 0.01 * AT * steps;
-            limit(
+            limit_at(
                 "far over near distance up to which gaps of 1 % are told apart at 10 near distances",
                 crossing(&points, 1.0),
                 Bound::AtLeast(0.95 * predicted),

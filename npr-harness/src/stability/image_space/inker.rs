@@ -7,7 +7,7 @@ use crate::figures::Setting;
 use crate::image_lines::ImageInk;
 use crate::image_lines::gbuffer::style::{GBuffer, GBufferTarget};
 use crate::picture::Image;
-use crate::stability::ink::{beside, curve, drawn, geometric, last_above, limit, picture_of};
+use crate::stability::ink::{beside, curve, drawn, geometric, last_above, limit_at, picture_of};
 use crate::stability::{Axis, Finding, Sweep};
 use crate::style::Lines;
 use crate::view::View;
@@ -64,15 +64,15 @@ fn inker_slope(executor: &Executor) -> Result<Finding, HarnessError> {
         let first = points.iter().find(|point| point.1 > 50.0).map_or(1.0, |point| point.0);
         let what = "smallest difference of depth between opposite taps that is ink, of the range";
         let limit = match name {
-            "as printed, depth falling" => limit(what, first, Bound::AtLeast(0.2))
+            "as printed, depth falling" => limit_at(what, first, Bound::AtLeast(0.2))
                 .predicted(0.5f64.sqrt() - 0.5, "d² + d = ¼: the sum of listing 4 without the second square"),
-            "as printed, depth rising" => limit(
+            "as printed, depth rising" => limit_at(
                 "smallest difference of depth between opposite taps that is ink, of the range: there is none",
                 first,
                 Bound::AtLeast(1.0),
             ),
-            "instruction added" => limit(what, first, Bound::AtMost(1e-6)),
-            _ => limit(what, first, Bound::AtLeast(0.03))
+            "instruction added" => limit_at(what, first, Bound::AtMost(1e-6)),
+            _ => limit_at(what, first, Bound::AtLeast(0.03))
                 .predicted(f64::from(DEPTH_DELTA) / 2f64.sqrt(), "2 d² = δ², δ = √(1/512)"),
         };
         curve(name, points, limit)
@@ -102,13 +102,13 @@ fn inker_near(_: &Executor) -> Result<Finding, HarnessError> {
         let measured = last_above(&points, 50.0);
         let what = "encoded depth up to which a flat face that looks at the viewer is ink";
         let limit = match form {
-            InkerForm::Printed => limit(what, measured, Bound::AtMost(0.034)).predicted(
+            InkerForm::Printed => limit_at(what, measured, Bound::AtMost(0.034)).predicted(
                 0.75f64.sqrt() / 2.0 - 0.4,
                 "4 (0.4 + z)² = ¾: the normal term of listing 4 and its constants",
             ),
-            InkerForm::Corrected => limit(what, measured, Bound::AtMost(0.1))
+            InkerForm::Corrected => limit_at(what, measured, Bound::AtMost(0.1))
                 .predicted(0.1, "4 (0.4 + z)² = 1: the normal term of listing 4, with both constants"),
-            InkerForm::Explicit => limit(what, measured, Bound::AtMost(0.0005)),
+            InkerForm::Explicit => limit_at(what, measured, Bound::AtMost(0.0005)),
         };
         curve(name, points, limit)
     });

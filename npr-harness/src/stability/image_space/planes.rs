@@ -6,7 +6,7 @@ use crate::error::HarnessError;
 use crate::executor::Executor;
 use crate::image_lines::{ImageInk, Regions};
 use crate::scene::Scene;
-use crate::stability::ink::{ahead, beside, crossing, curve, drawn, geometric, limit, worst};
+use crate::stability::ink::{ahead, beside, crossing, curve, drawn, geometric, limit, limit_at, worst};
 use crate::stability::{Axis, Finding, Sweep};
 use crate::style::Lines;
 use crate::view::View;
@@ -101,7 +101,7 @@ fn grazing_plane(executor: &Executor) -> Result<Finding, HarnessError> {
     let points = sweep(&|depths| fused_share(&fused(true), depths))?;
     let predicted = (px() / f64::from(BEND)).atan().to_degrees();
     let formula = "atan(pixel / threshold): 1/z changes by pixel · cot(angle) of itself from row to row";
-    let plain = limit(what, crossing(&points, 50.0), Bound::AtMost(1.01 * predicted)).predicted(predicted, formula);
+    let plain = limit_at(what, crossing(&points, 50.0), Bound::AtMost(1.01 * predicted)).predicted(predicted, formula);
     curves.push(curve("first differences of 1/z", points, plain));
 
     for (name, form, counted) in
@@ -112,7 +112,8 @@ fn grazing_plane(executor: &Executor) -> Result<Finding, HarnessError> {
         let threshold = (f64::from(DEPTH_SUM_CARD_MITCHELL) * 255.0).ceil() / 255.0;
         let predicted = (counted * px() / (SPAN * threshold)).atan().to_degrees();
         let formula = "atan(taps · z · pixel / (range · threshold)), a threshold of 6/255";
-        let limit = limit(what, crossing(&points, 50.0), Bound::AtMost(1.1 * predicted)).predicted(predicted, formula);
+        let limit =
+            limit_at(what, crossing(&points, 50.0), Bound::AtMost(1.1 * predicted)).predicted(predicted, formula);
         curves.push(curve(name, points, limit));
     }
 

@@ -5,7 +5,7 @@ use crate::error::HarnessError;
 use crate::executor::Executor;
 use crate::image_lines::gbuffer::texel::gbuffer_region_sum;
 use crate::picture::Image;
-use crate::stability::ink::{Random, beside, curve, limit, picture_of};
+use crate::stability::ink::{Random, beside, curve, limit_at, picture_of};
 use crate::stability::{Axis, Finding, Sweep};
 use glam::UVec2;
 use npr_imagespace::filter::region::ink_region;
@@ -72,21 +72,21 @@ fn region_codes(_: &Executor) -> Result<Finding, HarnessError> {
                 // Three channels of 64 levels: their sum is nearly normal, and two are equal with 1 / (2 √π σ).
                 let deviation = (3.0 * (64.0f64 * 64.0 - 1.0) / 12.0).sqrt();
                 let codes = 2.0 * std::f64::consts::PI.sqrt() * deviation;
-                limit(what, mean_collision(code), Bound::AtLeast(13.0)).predicted(
+                limit_at(what, mean_collision(code), Bound::AtLeast(13.0)).predicted(
                     birthday(codes),
                     "√(π/2 · 2 √π σ): birthdays among sums of three channels of 64 levels, deviation σ",
                 )
             }
-            "24-bit hash of a pair" => limit(what, mean_collision(code), Bound::AtLeast(5200.0))
+            "24-bit hash of a pair" => limit_at(what, mean_collision(code), Bound::AtLeast(5200.0))
                 .predicted(birthday(16_777_215.0), "√(π/2 · 2²⁴): birthdays among 24-bit codes"),
             "24 bits" => {
                 // The first number that has the code of the first.
                 let all = (2u32..).find(|&region| code(region) == code(1)).unwrap_or(u32::MAX) - 1;
-                limit(what, f64::from(all), Bound::AtLeast(16_777_215.0)).predicted(16_777_215.0, pigeonhole)
+                limit_at(what, f64::from(all), Bound::AtLeast(16_777_215.0)).predicted(16_777_215.0, pigeonhole)
             }
             _ => {
                 let codes = if name == "8 bits" { 255.0 } else { 63.0 };
-                limit(what, f64::from(first_collision(1, code)), Bound::AtLeast(codes)).predicted(codes, pigeonhole)
+                limit_at(what, f64::from(first_collision(1, code)), Bound::AtLeast(codes)).predicted(codes, pigeonhole)
             }
         };
         curves.push(curve(name, points, limit));

@@ -11,7 +11,8 @@ use crate::picture::Image;
 use crate::plan::Plan;
 use crate::scene::Scene;
 use crate::stability::ink::{
-    ahead, beside, black_edges, crossing, curve, drawn, enlarged, faceted, ink, last_above, limit, parallel, picture_of,
+    ahead, beside, black_edges, crossing, curve, drawn, enlarged, faceted, ink, last_above, limit_at, parallel,
+    picture_of,
 };
 use crate::stability::{Axis, Finding, Sweep};
 use crate::style::Lines;
@@ -83,7 +84,7 @@ fn facets(executor: &Executor) -> Result<Finding, HarnessError> {
         }
         let predicted = (360.0 / f64::from(cos).acos().to_degrees()).floor();
         let what = "largest number of sides between which there are lines";
-        let limit = limit(what, last_above(&points, 50.0), Bound::AtMost(predicted));
+        let limit = limit_at(what, last_above(&points, 50.0), Bound::AtMost(predicted));
         curves.push(curve(
             name,
             points,
@@ -188,7 +189,7 @@ fn distant_ball(_: &Executor) -> Result<Finding, HarnessError> {
             f64::from(inker.normal_cos) - f64::from(inker.normal_fall) * depth.min(1.0)
         });
         let measured = crossing(&points, 10.0);
-        let limit = limit(
+        let limit = limit_at(
             "radius of a ball below which a tenth of its inside is ink, px",
             measured,
             Bound::AtMost(1.1 * predicted),
@@ -252,7 +253,7 @@ fn model_size(executor: &Executor) -> Result<Finding, HarnessError> {
         };
         let formula =
             "2 · width · length of the lines · size / area, both at 180 px: 2 px for filters, 1 px for edge lines";
-        let limit = limit(what, measured, Bound::AtMost(bound));
+        let limit = limit_at(what, measured, Bound::AtMost(bound));
         curve(name, points, limit.predicted(2.0 * width_px * line_share, formula))
     });
     let curves = curves.collect();

@@ -1,6 +1,6 @@
 //! A highlight that is smaller than the faces of the mesh.
 
-use super::super::setup::{curve, frame, limit, lit, side_by_side, stays_within, tones, whitened};
+use super::super::setup::{curve, frame, limit, limit_at, lit, side_by_side, stays_within, tones, whitened};
 use super::super::{Axis, Finding, Sweep};
 use crate::camera::{Camera, Projection};
 use crate::check::Limit as Bound;
@@ -71,7 +71,7 @@ fn measure(_: &Executor) -> Result<Finding, HarnessError> {
             let measured = stays_within(&points, 0.999);
             let formula = "interpolated values are nowhere above those of the nearest vertex, cos of its angle";
             let what = "largest radius, relative to the nearest vertex's angle, at which a highlight vanishes";
-            curve(name, points, limit(what, measured, Some((1.0, formula)), Bound::AtMost(1.03)))
+            curve(name, points, limit_at(what, measured, Some((1.0, formula)), Bound::AtMost(1.03)))
         } else {
             let measured = points.iter().fold(0.0f64, |most, point| most.max(point.1.abs()));
             let what = "largest share of a highlight that is lost or added";

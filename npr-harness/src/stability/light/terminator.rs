@@ -1,6 +1,6 @@
 //! The terminator of coarse meshes: the faces that are turned away from the light end at edges.
 
-use super::super::setup::{curve, frame, limit, lit, mend, side_by_side, states_image, whitened};
+use super::super::setup::{curve, frame, limit, lit, side_by_side, states_image, whitened};
 use super::super::{Axis, Finding, Sweep};
 use crate::camera::{Camera, Projection};
 use crate::check::Limit as Bound;
@@ -113,7 +113,7 @@ fn measure(_: &Executor) -> Result<Finding, HarnessError> {
             curve(
                 "normals negated in shadow",
                 negated,
-                mend(limit, "decide by the interpolated normal near the terminator"),
+                limit.mend_by("decide by the interpolated normal near the terminator"),
             )
         },
         {
@@ -125,7 +125,7 @@ fn measure(_: &Executor) -> Result<Finding, HarnessError> {
             curve(
                 "shadow states of lines",
                 states,
-                mend(limit, "decide by the interpolated normal near the terminator"),
+                limit.mend_by("decide by the interpolated normal near the terminator"),
             )
         },
     ];

@@ -3,7 +3,7 @@
 //! A chord of a circle with `n` segments lies up to the sagitta R θ²/8 within it, θ = 2π/n. Everything below follows from
 //! that: which point of the chord is seen, and which light it has.
 
-use super::super::setup::{curve, frame, front, limit, lit, side_by_side, stays_within, tones, whitened};
+use super::super::setup::{curve, frame, front, limit_at, lit, side_by_side, stays_within, tones, whitened};
 use super::super::{Axis, Finding, Sweep};
 use crate::camera::{Camera, Projection};
 use crate::check::Limit as Bound;
@@ -144,7 +144,7 @@ fn bands(_: &Executor) -> Result<Finding, HarnessError> {
                 18.0,
             ),
         };
-        curves.push(curve(name, points, limit(what, measured, Some(predicted), Bound::AtMost(bound))));
+        curves.push(curve(name, points, limit_at(what, measured, Some(predicted), Bound::AtMost(bound))));
     }
     let uses = [NormalUse::PerFace, NormalUse::PerVertex, NormalUse::PerPixel];
     Ok(Finding {
@@ -190,7 +190,7 @@ fn of_tones(_: &Executor) -> Result<Finding, HarnessError> {
                 21.0,
             ),
         };
-        curves.push(curve(name, points, limit(what, measured, Some(predicted), Bound::AtMost(bound))));
+        curves.push(curve(name, points, limit_at(what, measured, Some(predicted), Bound::AtMost(bound))));
     }
     Ok(Finding {
         parameter: Axis::logarithmic("segments around a cylinder", ""),

@@ -1,6 +1,6 @@
 //! Faces in one plane that overlap.
 
-use super::super::setup::{colored, curve, frame, front, limit, lit, mend, side_by_side, worst};
+use super::super::setup::{colored, curve, frame, front, limit, lit, side_by_side, worst};
 use super::super::{Axis, Finding, Sweep};
 use crate::check::Limit as Bound;
 use crate::error::HarnessError;
@@ -131,7 +131,7 @@ fn measure(_: &Executor) -> Result<Finding, HarnessError> {
             }
             _ => {
                 let most = if overlap == Overlap::Mark { 0.5 } else { 0.25 };
-                curve(name, points, mend(limit(what, measured, None, Bound::AtMost(most)), MEND))
+                curve(name, points, limit(what, measured, None, Bound::AtMost(most)).mend_by(MEND))
             }
         });
     }
@@ -167,7 +167,7 @@ fn on_device(executor: &Executor) -> Result<Finding, HarnessError> {
         }
         let measured = worst(&points);
         let what = "largest share of the pixels in which the executors show different faces";
-        curves.push(curve(name, points, mend(limit(what, measured, None, Bound::AtMost(1.0)), MEND)));
+        curves.push(curve(name, points, limit(what, measured, None, Bound::AtMost(1.0)).mend_by(MEND)));
     }
     Ok(Finding {
         parameter: Axis::linear("tilt", "degrees"),

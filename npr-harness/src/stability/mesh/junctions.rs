@@ -1,6 +1,6 @@
 //! T-junctions: a vertex of one face in the middle of another's side.
 
-use super::super::setup::{colored, curve, frame, front, limit, mend, tones};
+use super::super::setup::{colored, curve, frame, front, limit, tones};
 use super::super::{Axis, Finding, Sweep};
 use crate::check::Limit as Bound;
 use crate::error::HarnessError;
@@ -64,7 +64,7 @@ fn measure(_: &Executor) -> Result<Finding, HarnessError> {
     let predicted = (1.0, "with one junction no side of the seam has both its ends in common with another");
     let what = "share of a flat seam that is drawn, with one T-junction";
     let limit = limit(what, measured, Some(predicted), Bound::AtMost(1.0));
-    let mended = mend(limit, "collinear boundary edges that cover each other are shared");
+    let mended = limit.mend_by("collinear boundary edges that cover each other are shared");
     Ok(Finding {
         parameter: Axis::linear("T-junctions at a seam", ""),
         error: Axis::linear("share of the seam's length that is drawn as a line", ""),

@@ -1,6 +1,6 @@
 //! Models far from the origin.
 
-use super::super::setup::{curve, first_over, frame, limit, side_by_side};
+use super::super::setup::{curve, first_over, frame, limit_at, side_by_side};
 use super::super::{Axis, Finding, Sweep};
 use crate::camera::{Camera, Framing};
 use crate::check::Limit as Bound;
@@ -94,7 +94,7 @@ fn measure(_: &Executor) -> Result<Finding, HarnessError> {
     ];
     let curves = curves.map(|(name, points, expected, formula, bound)| {
         let (measured, predicted) = (first_over(&points, MOST_PX), first_over(&expected, MOST_PX));
-        curve(name, points, limit(what, measured, Some((predicted, formula)), Bound::AtLeast(bound)))
+        curve(name, points, limit_at(what, measured, Some((predicted, formula)), Bound::AtLeast(bound)))
     });
     let mut images = Vec::new();
     let far = AWAY * 2e6;

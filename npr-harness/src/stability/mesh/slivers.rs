@@ -1,6 +1,6 @@
 //! Faces of no area, or nearly none, at the edges of a prism.
 
-use super::super::setup::{curve, first_over, frame, limit, mend, side_by_side, worst};
+use super::super::setup::{curve, first_over, frame, limit, limit_at, side_by_side, worst};
 use super::super::{Axis, Finding, Sweep};
 use crate::camera::{Camera, Framing};
 use crate::check::Limit as Bound;
@@ -118,15 +118,13 @@ fn measure(_: &Executor) -> Result<Finding, HarnessError> {
         curve(
             "three points nearly on a line",
             with_middle,
-            mend(
-                limit(
-                    "least height of a face, relative to the model, that takes a crease away",
-                    opens,
-                    Some(least),
-                    Bound::AtLeast(5e-9),
-                ),
-                "treat what is thinner than any pixel like a face of no area",
-            ),
+            limit_at(
+                "least height of a face, relative to the model, that takes a crease away",
+                opens,
+                Some(least),
+                Bound::AtLeast(5e-9),
+            )
+            .mend_by("treat what is thinner than any pixel like a face of no area"),
         ),
     ];
     Ok(Finding {

@@ -1,6 +1,6 @@
 //! Welding within a tolerance: seams that open, and plates that collapse.
 
-use super::super::setup::{colored, curve, first_over, frame, front, limit, mend, stays_within};
+use super::super::setup::{colored, curve, first_over, frame, front, limit, limit_at, stays_within};
 use super::super::{Axis, Finding, Sweep};
 use crate::check::Limit as Bound;
 use crate::error::HarnessError;
@@ -73,7 +73,7 @@ fn seams(_: &Executor) -> Result<Finding, HarnessError> {
         curve(
             "within a tolerance",
             welded,
-            limit(
+            limit_at(
                 "gap at which a seam opens, relative to the tolerance",
                 opens,
                 Some((1.0, "a vertex joins a representative at most the tolerance away")),
@@ -83,15 +83,13 @@ fn seams(_: &Executor) -> Result<Finding, HarnessError> {
         curve(
             "exactly, as for drawing",
             exact,
-            mend(
-                limit(
-                    "share of a seam that opens at the smallest gap of f32",
-                    least,
-                    Some((1.0, "only equal positions are one vertex")),
-                    Bound::AtMost(1.0),
-                ),
-                "weld within the mesh's own rounding",
-            ),
+            limit(
+                "share of a seam that opens at the smallest gap of f32",
+                least,
+                Some((1.0, "only equal positions are one vertex")),
+                Bound::AtMost(1.0),
+            )
+            .mend_by("weld within the mesh's own rounding"),
         ),
     ];
     let scene = Scene::new(strips(0.25 * TOLERANCE));
@@ -122,7 +120,7 @@ fn plates(_: &Executor) -> Result<Finding, HarnessError> {
     };
     let points: Vec<(f64, f64)> = RELATIVE.map(|thickness| (thickness, lost(thickness))).to_vec();
     let measured = stays_within(&points, 0.0);
-    let limit = limit(
+    let limit = limit_at(
         "least thickness from which a plate keeps its edges, relative to the tolerance",
         measured,
         Some((1.0, "the two sides of what is at most the tolerance thick are one vertex")),

@@ -5,7 +5,7 @@ use crate::error::HarnessError;
 use crate::executor::Executor;
 use crate::picture::Image;
 use crate::scene::Scene;
-use crate::stability::ink::{Random, beside, crossing, curve, drawn, limit, parallel, worst};
+use crate::stability::ink::{Random, beside, crossing, curve, drawn, limit, limit_at, parallel, worst};
 use crate::stability::{Axis, Finding, Sweep};
 use crate::style::Lines;
 use crate::truth::lines::darkness;
@@ -110,7 +110,7 @@ fn contour_noise(executor: &Executor) -> Result<Finding, HarnessError> {
     let radius_px = f64::from(SIZE_PX) / HEIGHT;
     let predicted = 100.0 * 0.5 * (2.0 * WITHIN_PX / radius_px).sqrt();
     let how = "Chain contours into strokes and filter these by length, or find contours on interpolated normals";
-    let off_limit = limit(
+    let off_limit = limit_at(
         "noise at which a tenth of the ink is off the contour, % of an edge's length",
         crossing(&off, 10.0),
         Bound::AtLeast(6.8),

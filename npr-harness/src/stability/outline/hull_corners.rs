@@ -5,7 +5,7 @@ use crate::error::HarnessError;
 use crate::executor::Executor;
 use crate::hull_lines::HullLines;
 use crate::scene::Scene;
-use crate::stability::ink::{beside, crossing, curve, drawn, faceted, ink_along, limit, parallel};
+use crate::stability::ink::{beside, crossing, curve, drawn, faceted, ink_along, limit_at, parallel};
 use crate::stability::{Axis, Finding, Sweep};
 use crate::style::Lines;
 use crate::truth::lines::darkness;
@@ -79,7 +79,7 @@ fn hull_corners(executor: &Executor) -> Result<Finding, HarnessError> {
                 let measured = crossing(&points, 50.0);
                 // Two sides of the pyramid are wedges that are moved apart: the gap is as wide all along.
                 let predicted = 2.0 * (0.25 / WIDTH_PX).atan().to_degrees();
-                limit(
+                limit_at(
                     "turn of the outline at which half of the band is missing at the corner, degrees",
                     measured,
                     Bound::AtLeast(0.95),
@@ -88,7 +88,7 @@ fn hull_corners(executor: &Executor) -> Result<Finding, HarnessError> {
             }
             HullNormals::Welded => {
                 let measured = crossing(&points, 10.0);
-                limit(
+                limit_at(
                     "turn of the outline at which the band beside a corner is 10 % too thin, degrees",
                     measured,
                     Bound::AtLeast(49.0),

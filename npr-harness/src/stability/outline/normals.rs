@@ -6,7 +6,7 @@ use crate::executor::Executor;
 use crate::figures::Setting;
 use crate::picture::Image;
 use crate::printed_fins::PrintedLines;
-use crate::stability::ink::{Random, beside, curve, drawn, enlarged, geometric, last_above, limit};
+use crate::stability::ink::{Random, beside, curve, drawn, enlarged, geometric, last_above, limit, limit_at};
 use crate::stability::{Axis, Finding, Sweep};
 use crate::style::Lines;
 use crate::view::View;
@@ -91,7 +91,7 @@ fn silhouette_normals(_: &Executor) -> Result<Finding, HarnessError> {
         let points: Vec<(f64, f64)> = angles_deg.iter().map(|&angle| (angle, share(angle))).collect();
         let measured = last_above(&points, 0.0);
         let predicted = error_rad.to_degrees();
-        let limit = limit(
+        let limit = limit_at(
             "largest angle to tangency at which an edge is misjudged, degrees",
             measured,
             // No rounding of f32 in the decoders adds more than a fiftieth.

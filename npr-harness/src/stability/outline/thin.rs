@@ -6,7 +6,7 @@ use crate::executor::Executor;
 use crate::hull_lines::HullLines;
 use crate::image_lines::ImageInk;
 use crate::scene::Scene;
-use crate::stability::ink::{beside, black_edges, crossing, curve, drawn, enlarged, ink, limit, parallel};
+use crate::stability::ink::{beside, black_edges, crossing, curve, drawn, enlarged, ink, limit, limit_at, parallel};
 use crate::stability::{Axis, Finding, Sweep};
 use crate::style::Lines;
 use crate::truth::lines::{accuracy, drawn_centreline, true_lines};
@@ -56,7 +56,7 @@ fn thin_bars(executor: &Executor) -> Result<Finding, HarnessError> {
             // Of a row of centres the bar covers a share of its thickness, in one run for each pixel that it rises.
             let reach = 2.0 * (WITHIN_PX + 1.0);
             let predicted = 0.95 * SLOPE_RAD.cos() - reach * SLOPE_RAD.tan();
-            limit(what, crossing(&points, 5.0), Bound::AtMost(0.8)).predicted(
+            limit_at(what, crossing(&points, 5.0), Bound::AtMost(0.8)).predicted(
                 predicted,
                 "0.95 cos φ − 5 tan φ: runs of centres within the bar, and on either side a pixel of the filter and 1.5 px \
                  within which a line counts as found",

@@ -8,8 +8,8 @@ use crate::hull_lines::HullLines;
 use crate::printed_fins::PrintedLines;
 use crate::scene::Scene;
 use crate::stability::ink::{
-    Random, ahead, beside, black_edges, crossing, curve, drawn, geometric, ink, ink_along, limit, parallel, plate,
-    worst,
+    Random, ahead, beside, black_edges, crossing, curve, drawn, geometric, ink, ink_along, limit, limit_at, parallel,
+    plate, worst,
 };
 use crate::stability::{Axis, Finding, Sweep};
 use crate::style::Lines;
@@ -123,7 +123,7 @@ fn width_distance(executor: &Executor) -> Result<Finding, HarnessError> {
             // f/(f − n) (1 − n/w) = 0.9
             let predicted = 1.0 / (1.0 - 0.9 * (1.0 - 1.0 / FAR));
             let measured = crossing(&points, 10.0);
-            limit(
+            limit_at(
                 "distance at which a line is 10 % too thin, in distances of the near plane",
                 measured,
                 Bound::AtMost(9.5),
@@ -183,7 +183,7 @@ fn width_tilt(executor: &Executor) -> Result<Finding, HarnessError> {
             limit("largest error of the width, %", worst(&points), Bound::AtMost(1.0))
         } else {
             let measured = crossing(&points, 50.0);
-            limit(
+            limit_at(
                 "angle of the normal out of the picture's plane at which half of the width is left, degrees",
                 measured,
                 Bound::AtLeast(59.0),
@@ -270,7 +270,7 @@ fn near_plane(executor: &Executor) -> Result<Finding, HarnessError> {
         } else {
             let least = if name == "inverted hull" { 6.3 } else { 9.7 };
             let what = "distance behind the eye at which a tenth of the ink differs, in distances of the near plane";
-            limit(what, crossing(&points, 10.0), Bound::AtLeast(least))
+            limit_at(what, crossing(&points, 10.0), Bound::AtLeast(least))
         };
         curves.push(curve(name, points, limit));
     }

@@ -1,6 +1,6 @@
 //! The eye in shadow, and lights far away.
 
-use super::super::setup::{curve, faceted, first_over, limit, side_by_side, worst};
+use super::super::setup::{curve, faceted, first_over, limit, limit_at, side_by_side, worst};
 use super::super::{Axis, Finding, Sweep};
 use super::counts::{Count, Volumes, looking, on_ground, receivers};
 use crate::check::Limit as Bound;
@@ -81,7 +81,7 @@ fn inside(_: &Executor) -> Result<Finding, HarnessError> {
         curve(
             "counted in front of the surface",
             pass,
-            limit(
+            limit_at(
                 "depth of the eye in the shadow from which the picture is wrong",
                 enters,
                 Some((

@@ -1,6 +1,6 @@
 //! Shadow maps on a device.
 
-use super::super::setup::{curve, faceted, limit, side_by_side, states_image, stays_within, worst};
+use super::super::setup::{curve, faceted, limit, limit_at, side_by_side, states_image, stays_within, worst};
 use super::super::{Axis, Finding};
 use super::counts::{looking, on_ground, shot};
 use crate::camera::{Camera, Projection};
@@ -168,7 +168,7 @@ pub(super) fn gaps(device: &Device<'_>) -> Result<Finding, HarnessError> {
         }
     }
     let measured = stays_within(&points, 0.0);
-    let limit = limit(
+    let limit = limit_at(
         "least width of a gap from which none is lost, texels",
         measured,
         Some((1.0, "a gap of a texel, 2 R / side, contains a texel's centre")),

@@ -1,6 +1,6 @@
 //! Volumes of meshes with holes.
 
-use super::super::setup::{curve, first_over, limit, side_by_side, worst};
+use super::super::setup::{curve, first_over, limit, limit_at, side_by_side, worst};
 use super::super::{Axis, Finding, Sweep};
 use super::counts::{Count, Volumes, looking, on_ground, receivers};
 use crate::check::Limit as Bound;
@@ -96,7 +96,7 @@ fn measure(_: &Executor) -> Result<Finding, HarnessError> {
         curve(
             "sides from the contour",
             contour,
-            limit(
+            limit_at(
                 "radius of the hole from which shadow leaks, degrees",
                 leaks,
                 Some((
