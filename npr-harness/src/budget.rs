@@ -26,6 +26,7 @@ pub use table::{Amounts, Cost, CostTable, Entry, Expected, ShadeKey};
 use crate::error::HarnessError;
 use crate::shade::Shade;
 use crate::style::{Lines, Style};
+use crate::variant::Part;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
@@ -46,6 +47,16 @@ pub enum Measure {
 impl Measure {
     /// All measures.
     pub const ALL: [Self; 3] = [Self::Lines, Self::Tone, Self::Shadows];
+
+    /// The measure of what a part errs in; `None` for samples, which are a part of tones.
+    pub fn of_part(part: Part) -> Option<Self> {
+        match part {
+            Part::Lines => Some(Self::Lines),
+            Part::Light | Part::Strokes => Some(Self::Tone),
+            Part::Shadows => Some(Self::Shadows),
+            Part::Samples => None,
+        }
+    }
 
     /// The name, as in `--max-error`.
     pub fn name(self) -> &'static str {

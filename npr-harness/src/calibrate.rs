@@ -237,11 +237,8 @@ fn expected(executors: &[Executor], priced: &[Priced], progress: &dyn Fn(f64)) -
         let mut surveys: Vec<((Part, Option<ShadeKey>), Survey<'_>)> = Vec::new();
         for (index, (setup, expected)) in all.iter_mut().enumerate() {
             progress((number * (count as usize / subjects.len()) + index) as f64 / count);
-            let (measure, executor) = match expected.part {
-                Part::Lines => (Measure::Lines, &cpu),
-                Part::Light | Part::Strokes | Part::Samples => (Measure::Tone, &cpu),
-                Part::Shadows => (Measure::Shadows, on_adapter.unwrap_or(&cpu)),
-            };
+            let measure = Measure::of_part(expected.part).expect("samples are no part of the list");
+            let executor = on_adapter.filter(|_| measure == Measure::Shadows).unwrap_or(&cpu);
             let key = (expected.part, expected.shade);
             let asked = priced.iter().find(|priced| (priced.part, priced.shade) == key).expect("it is of one of them");
             let at = surveys.iter().position(|(known, _)| *known == key).unwrap_or_else(|| {

@@ -43,6 +43,17 @@ impl Part {
     /// All parts.
     pub const ALL: [Self; 5] = [Self::Lines, Self::Light, Self::Strokes, Self::Shadows, Self::Samples];
 
+    /// The name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Lines => "lines",
+            Self::Light => "light",
+            Self::Strokes => "strokes",
+            Self::Shadows => "shadows",
+            Self::Samples => "samples",
+        }
+    }
+
     /// The ways to make it.
     pub fn variants(self) -> Vec<Variant> {
         match self {

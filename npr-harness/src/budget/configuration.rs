@@ -61,27 +61,26 @@ pub fn configurations(scene: &Scene, setup: &Setup, view: &View, table: &CostTab
         let shade = ShadeKey::of(&setup.style.shade);
         let on_surface = if matches!(setup.style.shade, Shade::Hatch(_)) { Part::Strokes } else { Part::Light };
         let amounts = amounts(setup.samples);
+        // What a style has in a way of its own is expected to cost and to err like the way nearest to it.
+        let known = |part, variant| cost_name(part, if variant == AS_GIVEN { as_given(part) } else { variant }, &setup);
+        let shade_of = |part| (part == on_surface).then_some(shade);
         for executor in &table.executors {
             let cost = |&(part, variant): &(Part, &'static str)| {
-                let shade = (part == on_surface).then_some(shade);
-                // What was not measured for lines as they are given is expected to cost what lines in the image do.
-                let variant = cost_name(part, if variant == AS_GIVEN { as_given(part) } else { variant }, &setup);
-                Some((part, table.ms(executor, part, &variant, shade, setup.samples, &amounts)?))
+                let variant = known(part, variant);
+                Some((part, table.ms(executor, part, &variant, shade_of(part), setup.samples, &amounts)?))
             };
             let paid = variants.iter().filter(|(part, _)| *part != Part::Samples);
             let Some(costs_ms) = paid.map(cost).collect::<Option<Vec<_>>>() else { continue };
             let cost_ms: f64 = costs_ms.iter().map(|(_, ms)| ms).sum();
-            let error = |part: Part, shade: Option<ShadeKey>| {
-                let (_, variant) = variants.iter().find(|(of, _)| *of == part)?;
-                let variant = cost_name(part, if *variant == AS_GIVEN { as_given(part) } else { variant }, &setup);
-                table.error(part, &variant, shade, setup.samples)
+            // The CPU follows the rays that are the truth.
+            let is_exact = |measure| measure == Measure::Shadows && executor == "cpu";
+            let error = |&(part, variant): &(Part, &'static str)| {
+                let measure = Measure::of_part(part)?;
+                let error = table.error(part, &known(part, variant), shade_of(part), setup.samples)?;
+                Some((measure, if is_exact(measure) { 0.0 } else { error }))
             };
-            let is_ray_caster = executor == "cpu";
-            let errors = [
-                (Measure::Lines, error(Part::Lines, None)),
-                (Measure::Tone, error(on_surface, Some(shade))),
-                (Measure::Shadows, error(Part::Shadows, None).map(|e| if is_ray_caster { 0.0 } else { e })),
-            ];
+            let mut errors: Vec<(Measure, f64)> = variants.iter().filter_map(error).collect();
+            errors.sort_by_key(|(measure, _)| *measure);
             all.push(Configuration {
                 executor: executor.clone(),
                 setup: setup.clone(),
@@ -89,7 +88,7 @@ pub fn configurations(scene: &Scene, setup: &Setup, view: &View, table: &CostTab
                 costs_ms,
                 cost_ms,
                 cost_plain: cost_ms / plain_ms,
-                errors: errors.into_iter().filter_map(|(measure, error)| Some((measure, error?))).collect(),
+                errors,
             });
         }
     }

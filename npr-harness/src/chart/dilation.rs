@@ -3,8 +3,8 @@
 //! The truth is made from the picture of the same lines undilated: a pixel is ink if a line pixel lies within the radius.
 
 use super::frames::{Candidate, Drawn, part_of, rows};
-use super::lab::on_white;
 use super::{Chart, Lab, Row};
+use crate::check::one_px_style;
 use crate::error::HarnessError;
 use crate::image_lines::ImageInk;
 use crate::image_lines::gbuffer::style::{GBuffer, InkStep, MOST_STEPS, StepKind};
@@ -65,7 +65,7 @@ fn ink(dilation: Option<Disc>, step: Option<InkStep>) -> Setup {
     let mut steps = [None; MOST_STEPS];
     steps[0] = step;
     let gbuffer = Some(GBuffer { steps, ..GBuffer::default() });
-    Setup { style: on_white(Lines::image(ImageInk { gbuffer, dilation, ..ImageInk::default() })), samples: 1 }
+    Setup { style: one_px_style(Lines::image(ImageInk { gbuffer, dilation, ..ImageInk::default() })), samples: 1 }
 }
 
 fn errors(image: &Image, undilated: &Image, radius_px: u32) -> Vec<(String, f64)> {

@@ -6,9 +6,6 @@ use crate::error::HarnessError;
 use crate::executor::Executor;
 use crate::measure::Rounds;
 use crate::scene::Scene;
-use crate::shade::Shade;
-use crate::style::{Lines, Style, style};
-use glam::Vec3;
 use std::path::Path;
 
 /// A chart.
@@ -96,9 +93,4 @@ pub fn subject_of_file(
     let scene = Scene::from(npr_mesh::load(path, loading)?);
     let name = path.file_stem().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     Ok(Subject::framed(&name, scene, size, &Framing::default()))
-}
-
-/// White paper and surfaces that are not painted, for measurements of lines alone.
-pub(super) fn on_white(lines: Lines) -> Style {
-    Style { paper: Vec3::ONE, shade: Shade::Paper, lines, ..style("cartoon").expect("a style of this crate") }
 }

@@ -4,9 +4,9 @@
 //! boundaries, creases and the curves where surfaces intersect.
 
 use super::frames::{Candidate, Drawn, candidates, part_of, rows};
-use super::lab::on_white;
 use super::{Chart, Lab, Row, Subject};
 use crate::camera::{Camera, Projection};
+use crate::check::{WITHIN_PX, one_px_style};
 use crate::error::HarnessError;
 use crate::executor::{Executor, Picture};
 use crate::hull_lines::HullLines;
@@ -35,20 +35,16 @@ pub(super) const CHART: Chart = Chart {
 
 /// The error of the axis.
 pub(super) const F1: &str = "1 - F1";
-/// The distance within which lines agree, px.
-const WITHIN_PX: f64 = 1.5;
 /// The movement between the pictures of a pan, px.
 const PAN_PX: f64 = 0.25;
 /// The number of pictures of a pan.
 const PAN: usize = 3;
-/// The crease angle of the lines, rad.
-const CREASE_RAD: f64 = std::f64::consts::FRAC_PI_4;
 
 /// The lines that all variants are asked for.
 pub(super) fn asked(width_px: f32) -> Setup {
     let width_px = widths_px(width_px, width_px, width_px, 0.0);
     let lines = Lines::edges(LineStyle { width_px, ink: [0.0, 0.0, 0.0, 1.0] });
-    Setup { style: Style { crease_angle_rad: CREASE_RAD as f32, ..on_white(lines) }, samples: 1 }
+    Setup { style: one_px_style(lines), samples: 1 }
 }
 
 /// The variants of lines, and edge lines with several samples.
@@ -95,8 +91,8 @@ pub(super) fn error_of_style(
     setup: &Setup,
     truth: &TrueLines,
 ) -> Result<f64, HarnessError> {
-    let style = Style { lines: in_black(setup.style.lines), shadow: None, ..on_white(Lines::NONE) };
-    let style = Style { crease_angle_rad: setup.style.crease_angle_rad, ..style };
+    let crease_angle_rad = setup.style.crease_angle_rad;
+    let style = Style { crease_angle_rad, ..one_px_style(in_black(setup.style.lines)) };
     let view = View { samples: setup.samples, ..view };
     let image = executor.render(&Picture::new(scene, &style, view), &|_| {})?;
     let drawn = drawn_centreline(&darkness(&image), view.size.0, view.size.1);
@@ -126,8 +122,8 @@ fn in_black(lines: Lines) -> Lines {
 
 /// Pictures from cameras that move to the right.
 fn pan(subject: &Subject, size: (u32, u32)) -> Vec<Truth> {
-    let flat = subject.scene.flattened();
-    let Subject { camera, .. } = subject;
+    let Subject { scene, camera, .. } = subject;
+    let style = asked(1.0).style;
     let [right, ..] = camera.axes();
     // World units a pixel at the target.
     let per_px = match camera.projection {
@@ -137,8 +133,7 @@ fn pan(subject: &Subject, size: (u32, u32)) -> Vec<Truth> {
     let truth = |step: usize| {
         let by = right * (step as f64 * PAN_PX * per_px);
         let camera = Camera { eye: camera.eye + by, target: camera.target + by, ..*camera };
-        let mut lines = true_lines(&flat, &camera, size, CREASE_RAD);
-        lines.segments.extend(true_intersections(&flat, &camera, size, CREASE_RAD).segments);
+        let lines = asked_of_style(scene, &View::new(camera, size), &style);
         let coverage = coverage(&lines, 1.0);
         Truth { camera, lines, coverage }
     };

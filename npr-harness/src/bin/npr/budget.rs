@@ -1,5 +1,6 @@
 //! Budgets as arguments, and the cost table that they need.
 
+use crate::shot::Shot;
 use crate::terminal::{progress_bar, tell};
 use clap::Args;
 use npr_harness::budget::{
@@ -8,7 +9,7 @@ use npr_harness::budget::{
 use npr_harness::calibrate::calibrate;
 use npr_harness::chart::survey::Survey;
 use npr_harness::error::HarnessError;
-use npr_harness::executor::{Backend, Executor};
+use npr_harness::executor::{Backend, Candidates, Executor, Work};
 use npr_harness::plan::{Plan, Reason, part_of_pass};
 use npr_harness::scene::Scene;
 use npr_harness::variant::{Part, Setup};
@@ -35,10 +36,13 @@ pub struct BudgetOptions {
     calibration: Option<PathBuf>,
 }
 
-/// A choice and its executor.
-pub struct Chosen {
-    pub choice: Choice,
+/// How a picture is made.
+pub struct Settled {
+    pub setup: Setup,
+    pub view: View,
     pub executor: Executor,
+    /// What a budget chose, if there is one.
+    pub choice: Option<Choice>,
 }
 
 impl BudgetOptions {
@@ -59,8 +63,21 @@ impl BudgetOptions {
         Ok(Some(Budget { max_errors: self.max_error.clone().unwrap_or_default(), max_time }))
     }
 
-    /// Chooses how to make a picture, on `executor` or, unless `backend` rules it out, on the CPU.
-    pub fn choose(
+    /// Settles how the picture of a shot is made: within the budget on an adapter or, unless the backend rules it out, on
+    /// the CPU; without one as the style has it, on what is expected to be sooner.
+    pub fn settle(&self, scene: &Scene, shot: &Shot, candidates: Candidates) -> Result<Settled, HarnessError> {
+        let setup = Setup { style: shot.style.clone(), samples: shot.samples };
+        let view = shot.view(scene);
+        match self.budget()? {
+            Some(budget) => self.chosen(scene, &setup, &view, candidates.choose(), shot.backend, &budget),
+            None => {
+                let work = Work::new(scene, &setup.style, view.size, setup.samples);
+                Ok(Settled { setup, view, executor: candidates.choose_for(&work), choice: None })
+            }
+        }
+    }
+
+    fn chosen(
         &self,
         scene: &Scene,
         setup: &Setup,
@@ -68,7 +85,7 @@ impl BudgetOptions {
         executor: Executor,
         backend: Backend,
         budget: &Budget,
-    ) -> Result<Chosen, HarnessError> {
+    ) -> Result<Settled, HarnessError> {
         budget.max_errors.check(&setup.style)?;
         let mut executors = candidates(executor, backend);
         let table = match &self.calibration {
@@ -87,7 +104,9 @@ impl BudgetOptions {
         let choice = within(&all, budget, |configuration, measure| survey.measure(configuration, measure))?;
         drop(survey);
         let at = usable.iter().position(|name| *name == choice.chosen.executor).expect("only usable ones were kept");
-        Ok(Chosen { choice, executor: executors.swap_remove(at) })
+        let setup = choice.chosen.setup.clone();
+        let view = View { samples: setup.samples, ..*view };
+        Ok(Settled { setup, view, executor: executors.swap_remove(at), choice: Some(choice) })
     }
 }
 
@@ -176,18 +195,8 @@ fn errors(of: &[(Measure, f64)]) -> String {
     if all.is_empty() { "nothing that errs".into() } else { all }
 }
 
-fn part_name(part: Part) -> &'static str {
-    match part {
-        Part::Lines => "lines",
-        Part::Light => "light",
-        Part::Strokes => "strokes",
-        Part::Shadows => "shadows",
-        Part::Samples => "samples",
-    }
-}
-
 fn short(configuration: &Configuration) -> String {
-    let parts = configuration.variants.iter().map(|(part, variant)| format!("{} {variant}", part_name(*part)));
+    let parts = configuration.variants.iter().map(|(part, variant)| format!("{} {variant}", part.name()));
     format!(
         "{:.2} plain passes ({:.1} ms), {}: {}, on {}",
         configuration.cost_plain,
@@ -201,12 +210,7 @@ fn short(configuration: &Configuration) -> String {
 /// What a part of a configuration is expected to cost and to err.
 fn expected(configuration: &Configuration, part: Part) -> String {
     let per_plain = configuration.cost_ms / configuration.cost_plain;
-    let measure = match part {
-        Part::Lines => Some(Measure::Lines),
-        Part::Light | Part::Strokes => Some(Measure::Tone),
-        Part::Shadows => Some(Measure::Shadows),
-        Part::Samples => None,
-    };
+    let measure = Measure::of_part(part);
     let cost = configuration.costs_ms.iter().find(|(of, _)| *of == part).map(|(_, ms)| ms);
     let error = configuration.errors.iter().find(|(of, _)| Some(*of) == measure);
     let cost = cost.map(|ms| format!("{:.2} plain passes ({ms:.1} ms)", ms / per_plain)).unwrap_or_default();
@@ -221,7 +225,7 @@ pub fn summary(choice: &Choice, plan: &Plan) -> String {
     let mut text = format!("  chosen  of {of} ways, on {}\n", chosen.executor);
     let is_hatched = chosen.variants.iter().any(|(part, _)| *part == Part::Strokes);
     for &(part, variant) in &chosen.variants {
-        let _ = writeln!(text, "  part    {:<10} {variant:<32} {}", part_name(part), expected(chosen, part));
+        let _ = writeln!(text, "  part    {:<10} {variant:<32} {}", part.name(), expected(chosen, part));
         for Reason { pass, why } in plan.passes.iter().filter(|reason| part_of_pass(reason.pass, is_hatched) == part) {
             let _ = writeln!(text, "            {pass:<36} {why}");
         }
@@ -248,13 +252,10 @@ pub fn listed(choice: &Choice) -> serde_json::Value {
         of.iter().map(|(measure, error)| (measure.name().to_owned(), json!(error))).collect()
     };
     let of = |configuration: &Configuration| {
-        let variants: serde_json::Map<String, serde_json::Value> = configuration
-            .variants
-            .iter()
-            .map(|(part, variant)| (part_name(*part).to_owned(), json!(variant)))
-            .collect();
+        let variants: serde_json::Map<String, serde_json::Value> =
+            configuration.variants.iter().map(|(part, variant)| (part.name().to_owned(), json!(variant))).collect();
         let costs: serde_json::Map<String, serde_json::Value> =
-            configuration.costs_ms.iter().map(|(part, ms)| (part_name(*part).to_owned(), json!(ms))).collect();
+            configuration.costs_ms.iter().map(|(part, ms)| (part.name().to_owned(), json!(ms))).collect();
         json!({
             "executor": configuration.executor, "variants": variants, "parts_ms": costs,
             "ms": configuration.cost_ms, "plain_passes": configuration.cost_plain,

@@ -1,13 +1,12 @@
 //! `npr chart`: accuracy against speed.
 
-use crate::loading::Loading;
+use crate::measured::{Measured, check_names};
 use crate::paths;
 use crate::terminal::{progress_bar, say};
 use clap::Args;
 use npr_harness::chart::{Table, charts};
 use npr_harness::error::HarnessError;
 use npr_harness::report::{make, tables};
-use npr_harness::suggest::nearest;
 use std::path::PathBuf;
 
 #[derive(Args)]
@@ -18,34 +17,18 @@ pub struct Options {
     /// Only this chart, by name. May be repeated.
     #[arg(long, value_name = "NAME")]
     chart: Vec<String>,
-    /// Small pictures, one scene and few rounds.
-    #[arg(long)]
-    quick: bool,
-    /// Models; without any, built-in scenes.
-    #[arg(value_name = "MODEL")]
-    models: Vec<PathBuf>,
     #[command(flatten)]
-    loading: Loading,
+    measured: Measured,
 }
 
 /// Measures the charts, and writes a table of all and a diagram of each.
 pub fn run(options: &Options) -> Result<bool, HarnessError> {
-    options.loading.check(&options.models)?;
+    let measuring = options.measured.options()?;
     paths::check_output_folder(&options.output)?;
     let mut wanted = charts();
-    if let Some(unknown) = options.chart.iter().find(|name| !wanted.iter().any(|chart| chart.name == **name)) {
-        let known: Vec<_> = wanted.iter().map(|chart| chart.name).collect();
-        let nearest = nearest(unknown, known.iter().copied()).map(str::to_owned);
-        let (name, known) = (unknown.clone(), known.join(", "));
-        return Err(HarnessError::UnknownMeasurement { kind: "chart", name, nearest, known });
-    }
+    let known: Vec<_> = wanted.iter().map(|chart| chart.name).collect();
+    check_names("chart", &options.chart, &known)?;
     wanted.retain(|chart| options.chart.is_empty() || options.chart.iter().any(|name| name == chart.name));
-    let measuring = make::Options {
-        quick: options.quick,
-        models: options.models.clone(),
-        loading: options.loading.options(),
-        ..make::Options::default()
-    };
     let executors = make::executors()?;
     let subjects = measuring.subjects()?;
     let mut table = Table { machine: make::machine(&executors), ..Table::default() };

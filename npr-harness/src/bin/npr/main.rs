@@ -12,6 +12,7 @@ mod figures;
 mod gallery;
 mod inspect;
 mod loading;
+mod measured;
 mod paths;
 mod picture;
 mod plan;

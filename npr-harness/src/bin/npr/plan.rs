@@ -1,14 +1,13 @@
 //! `npr plan`.
 
-use crate::budget::{self, BudgetOptions};
+use crate::budget::{self, BudgetOptions, Settled};
 use crate::shot::{Prepared, ShotOptions};
 use crate::terminal::{announce, say};
 use clap::Args;
 use npr_harness::error::HarnessError;
-use npr_harness::executor::{Candidates, Picture, Work};
+use npr_harness::executor::{Candidates, Picture};
 use npr_harness::plan::resources::total_bytes;
 use npr_harness::plan::{Plan, Reason, Resource, ResourceKind};
-use npr_harness::variant::Setup;
 use serde_json::json;
 
 #[derive(Args)]
@@ -24,29 +23,18 @@ pub struct Options {
 
 /// Prints how a picture would be made: within a budget, or as the style has it.
 pub fn run(options: &Options) -> Result<bool, HarnessError> {
-    let budget = options.budget.budget()?;
+    options.budget.budget()?;
     let shot = options.shot.check()?;
     let backend = shot.backend;
     let looking = std::thread::spawn(move || Candidates::find(backend));
     let Prepared { scene, .. } = options.shot.prepare()?;
     let candidates = looking.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
-    let mut setup = Setup { style: shot.style.clone(), samples: shot.samples };
-    let mut view = shot.view(&scene);
-    let (executor, choice) = match &budget {
-        Some(budget) => {
-            let chosen = options.budget.choose(&scene, &setup, &view, candidates.choose(), backend, budget)?;
-            setup = chosen.choice.chosen.setup.clone();
-            view.samples = setup.samples;
-            (chosen.executor, Some(chosen.choice))
-        }
-        None => (candidates.choose_for(&Work::new(&scene, &setup.style, view.size, setup.samples)), None),
-    };
+    let Settled { setup, view, executor, choice } = options.budget.settle(&scene, &shot, candidates)?;
     announce(&executor);
     let picture = Picture { memory_bytes: shot.memory_bytes, ..Picture::new(&scene, &setup.style, view) };
     let plan = picture.plan(executor.capabilities())?;
     let resources = plan.resources(&scene, &executor.capabilities())?;
     if options.json {
-        let listed = |of: &[Reason]| of.iter().map(|r| json!({"pass": r.pass, "why": r.why})).collect::<Vec<_>>();
         say(format_args!(
             "{}\n",
             json!({
@@ -70,12 +58,20 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
     } else {
         text.push_str(&plan.to_string());
     }
-    text.push_str(&format!("  memory  {:>12} bytes besides the scene\n", total_bytes(&resources)));
-    for resource in &resources {
-        text.push_str(&format!("  memory  {resource}\n"));
-    }
+    text.push_str(&memory(&resources));
     say(format_args!("{text}"))?;
     Ok(true)
+}
+
+/// Passes or methods as JSON.
+pub fn listed(of: &[Reason]) -> Vec<serde_json::Value> {
+    of.iter().map(|reason| json!({"pass": reason.pass, "why": reason.why})).collect()
+}
+
+/// What resources take in memory, a line each after that of all.
+pub fn memory(resources: &[Resource]) -> String {
+    let each: String = resources.iter().map(|resource| format!("  memory  {resource}\n")).collect();
+    format!("  memory  {:>12} bytes besides the scene\n{each}", total_bytes(resources))
 }
 
 /// A resource as JSON.

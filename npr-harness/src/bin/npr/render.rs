@@ -1,18 +1,16 @@
 //! `npr render`.
 
-use crate::budget::{self, BudgetOptions};
+use crate::budget::{self, BudgetOptions, Settled};
 use crate::picture::Destination;
-use crate::plan::listed_resource;
+use crate::plan::{listed, listed_resource, memory};
 use crate::shot::{Prepared, ShotOptions, elapsed_ms};
 use crate::terminal::{announce, progress_bar, say};
 use clap::Args;
 use npr_harness::capabilities::Capabilities;
 use npr_harness::error::HarnessError;
-use npr_harness::executor::{Candidates, Executor, Picture, Rendered, Work};
-use npr_harness::plan::Reason;
+use npr_harness::executor::{Candidates, Executor, Picture, Rendered};
 use npr_harness::plan::resources::total_bytes;
 use npr_harness::scene::Mesh;
-use npr_harness::variant::Setup;
 use serde_json::json;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -42,7 +40,7 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
     if options.json && matches!(destination, Destination::StandardOutput) {
         return Err(HarnessError::StandardOutputTwice);
     }
-    let budget = options.budget.budget()?;
+    options.budget.budget()?;
     let shot = options.shot.check()?;
     let backend = shot.backend;
     // On another thread, so that the model is loaded while the driver starts.
@@ -50,22 +48,10 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
     let Prepared { scene, warnings, loaded_ms, mut prepared_ms } = options.shot.prepare()?;
     let start = Instant::now();
     let candidates = looking.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
-    let mut setup = Setup { style: shot.style.clone(), samples: shot.samples };
-    let mut view = shot.view(&scene);
     // The part of the device's start that did not overlap loading.
     let device_ms = elapsed_ms(start);
     let start = Instant::now();
-    let mut choice = None;
-    let mut executor = match &budget {
-        Some(budget) => {
-            let chosen = options.budget.choose(&scene, &setup, &view, candidates.choose(), backend, budget)?;
-            setup = chosen.choice.chosen.setup.clone();
-            view.samples = setup.samples;
-            choice = Some(chosen.choice);
-            chosen.executor
-        }
-        None => candidates.choose_for(&Work::new(&scene, &setup.style, shot.view(&scene).size, setup.samples)),
-    };
+    let Settled { setup, view, mut executor, choice } = options.budget.settle(&scene, &shot, candidates)?;
     announce(&executor);
     let style = &setup.style;
     let picture = Picture { memory_bytes: shot.memory_bytes, ..Picture::new(&scene, style, view) };
@@ -93,7 +79,6 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
         if options.json || options.plan { plan.resources(&scene, &executor.capabilities())? } else { Vec::new() };
     let (edges, folds) = (placed(|mesh| mesh.edges().edges.len()), placed(|mesh| mesh.edges().folds.len()));
     if options.json {
-        let listed = |of: &[Reason]| of.iter().map(|r| json!({"pass": r.pass, "why": r.why})).collect::<Vec<_>>();
         let warnings: Vec<_> = warnings.iter().map(|w| json!({"text": w.text, "count": w.count})).collect();
         say(format_args!(
             "{}\n",
@@ -133,10 +118,7 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
         }
         if options.plan {
             summary.push_str(&plan.to_string());
-            summary.push_str(&format!("  memory  {:>12} bytes besides the scene\n", total_bytes(&resources)));
-            for resource in &resources {
-                summary.push_str(&format!("  memory  {resource}\n"));
-            }
+            summary.push_str(&memory(&resources));
         }
         destination.summarize(&summary)?;
     }

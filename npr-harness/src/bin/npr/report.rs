@@ -1,6 +1,6 @@
 //! `npr report`: everything that the laboratory measures, on one page.
 
-use crate::loading::Loading;
+use crate::measured::Measured;
 use crate::paths;
 use crate::terminal::{progress_bar, say};
 use clap::Args;
@@ -14,9 +14,6 @@ pub struct Options {
     /// The folder, which is made if need be. Finished parts of an earlier run are used again.
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
-    /// Small pictures, one scene, few rounds and few checks.
-    #[arg(long)]
-    quick: bool,
     /// Measure everything again.
     #[arg(long)]
     fresh: bool,
@@ -26,16 +23,13 @@ pub struct Options {
     /// The charts.csv of an earlier run: what became better or worse.
     #[arg(long, value_name = "OLD.csv")]
     compare: Option<PathBuf>,
-    /// Models for charts and checks; without any, built-in scenes.
-    #[arg(value_name = "MODEL")]
-    models: Vec<PathBuf>,
     #[command(flatten)]
-    loading: Loading,
+    measured: Measured,
 }
 
 /// Measures, and writes `index.html` and `charts.csv`; false if a check or a limit fails.
 pub fn run(options: &Options) -> Result<bool, HarnessError> {
-    options.loading.check(&options.models)?;
+    let measuring = options.measured.options()?;
     paths::check_output_folder(&options.output)?;
     if let Some(docs) = &options.docs {
         paths::check_output_folder(docs)?;
@@ -45,13 +39,7 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
         // Its faults are known before anything is measured.
         changes(old, &npr_harness::chart::Table::default())?;
     }
-    let measuring = make::Options {
-        quick: options.quick,
-        models: options.models.clone(),
-        loading: options.loading.options(),
-        fresh: options.fresh,
-        build: build(),
-    };
+    let measuring = make::Options { fresh: options.fresh, build: build(), ..measuring };
     let bar = progress_bar("report");
     let (mut contents, table) = make::run(&options.output, &measuring, &|progress| {
         // A stage is named as soon as it begins.

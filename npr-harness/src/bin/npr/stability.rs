@@ -1,12 +1,12 @@
 //! `npr stability`: the failure atlas.
 
+use crate::measured::check_names;
 use crate::paths;
 use crate::terminal::{progress_bar, say};
 use clap::Args;
 use npr_harness::error::HarnessError;
 use npr_harness::report::{Contents, make, page, tables};
 use npr_harness::stability::sweeps;
-use npr_harness::suggest::nearest;
 use std::path::PathBuf;
 
 #[derive(Args)]
@@ -23,12 +23,8 @@ pub struct Options {
 pub fn run(options: &Options) -> Result<bool, HarnessError> {
     paths::check_output_folder(&options.output)?;
     let mut wanted = sweeps();
-    if let Some(unknown) = options.names.iter().find(|name| !wanted.iter().any(|sweep| sweep.name == **name)) {
-        let known: Vec<_> = wanted.iter().map(|sweep| sweep.name).collect();
-        let nearest = nearest(unknown, known.iter().copied()).map(str::to_owned);
-        let (name, known) = (unknown.clone(), known.join(", "));
-        return Err(HarnessError::UnknownMeasurement { kind: "sweep", name, nearest, known });
-    }
+    let known: Vec<_> = wanted.iter().map(|sweep| sweep.name).collect();
+    check_names("sweep", &options.names, &known)?;
     wanted.retain(|sweep| options.names.is_empty() || options.names.iter().any(|name| name == sweep.name));
     let executors = make::executors()?;
     let bar = progress_bar("sweeps");
