@@ -31,7 +31,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
 
-/// What errs in a picture.
+/// An error measure of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Measure {
@@ -48,7 +48,7 @@ impl Measure {
     /// All measures.
     pub const ALL: [Self; 3] = [Self::Lines, Self::Tone, Self::Shadows];
 
-    /// The measure of what a part errs in; `None` for samples, which are a part of tones.
+    /// The error measure of a part; `None` for samples, whose effect is part of the tone's error.
     pub fn of_part(part: Part) -> Option<Self> {
         match part {
             Part::Lines => Some(Self::Lines),
@@ -125,7 +125,7 @@ pub enum MaxTime {
 }
 
 impl MaxErrors {
-    /// Checks that a style has what every measure is of.
+    /// Checks that the style has the part that each measure applies to.
     ///
     /// # Errors
     /// [`HarnessError::NothingErrs`].
@@ -202,12 +202,14 @@ pub fn within(
     let choice = |chosen: &Configuration, measured| {
         let front = front_of(all);
         let cheaper = front.iter().rev().find(|other| other.cost_plain < chosen.cost_plain);
-        let better =
-            front.iter().find(|other| other.badness() < chosen.badness() && other.cost_plain >= chosen.cost_plain);
+        let better = front
+            .iter()
+            .find(|other| other.total_error() < chosen.total_error() && other.cost_plain >= chosen.cost_plain);
         Choice { chosen: chosen.clone(), measured, cheaper: cheaper.cloned(), better: better.cloned(), of: all.len() }
     };
     if budget.max_errors.0.is_empty() {
-        let best = fitting.iter().min_by(|a, b| a.badness().total_cmp(&b.badness())).expect("there is one that fits");
+        let best =
+            fitting.iter().min_by(|a, b| a.total_error().total_cmp(&b.total_error())).expect("there is one that fits");
         return Ok(choice(best, Vec::new()));
     }
     // The least that any configuration errs in the first measure that is not kept to.

@@ -40,7 +40,7 @@ const WIDTHS_PX: [f32; 2] = [1.0, 3.0];
 /// the machine for a while slows both.
 const CHUNK: usize = 12;
 
-/// Something whose cost is found.
+/// A variant whose cost is measured.
 struct Priced {
     part: Part,
     name: String,
@@ -67,7 +67,7 @@ pub fn calibrate(executors: &[Executor], progress: &(dyn Fn(f64) + Sync)) -> Res
     Ok(CostTable { version: env!("CARGO_PKG_VERSION").into(), executors, entries, expected })
 }
 
-/// Everything whose cost is found.
+/// All variants whose costs are measured.
 fn priced() -> Vec<Priced> {
     let mut all: Vec<Priced> = Vec::new();
     let mut add = |part: Part, shade: Option<ShadeKey>, base: &Setup, samples: u32| {

@@ -116,7 +116,7 @@ pub fn plain() -> Setup {
 
 /// The lines that a style asks for, whatever draws them.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AskedLines {
+pub struct RequestedLines {
     /// The width of silhouettes and boundaries, px.
     pub width_px: f32,
     /// The width of creases, px; 0 for none.
@@ -129,7 +129,7 @@ pub struct AskedLines {
     pub opacity: f32,
 }
 
-impl AskedLines {
+impl RequestedLines {
     /// The lines of a style that has lines of one kind; `None` for others, and where lines are more than that: shadows
     /// have them, an artist directs them, or they come from formats that the style names.
     pub fn of(style: &Style) -> Option<Self> {

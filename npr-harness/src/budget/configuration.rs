@@ -8,7 +8,7 @@ use crate::variant::{Part, Setup, Variant};
 use crate::view::View;
 use std::borrow::Cow;
 
-/// A part as the style itself has it, where it cannot be made in another way.
+/// The name for a part that no variant can replace, and that stays as the style defines it.
 const AS_GIVEN: &str = "as the style has it";
 
 /// A way to make a picture, and what is expected of it.
@@ -32,7 +32,7 @@ pub struct Configuration {
 
 impl Configuration {
     /// The sum of the expected errors in their units ([`Measure::unit`]).
-    pub fn badness(&self) -> f64 {
+    pub fn total_error(&self) -> f64 {
         self.errors.iter().map(|(measure, error)| error / measure.unit()).sum()
     }
 
@@ -47,8 +47,8 @@ impl Configuration {
     }
 }
 
-/// Every way to make a picture that the table knows the cost of, the cheapest first. Ways
-/// that are no plan's to choose ([`Variant::in_budget`]) are left out.
+/// All combinations of variants and executors for a picture whose cost is in the table, cheapest first. Variants that a
+/// plan must not choose ([`Variant::in_budget`]) are excluded.
 pub fn configurations(scene: &Scene, setup: &Setup, view: &View, table: &CostTable) -> Vec<Configuration> {
     let pixels = f64::from(view.size.0) * f64::from(view.size.1);
     let faces = scene.face_count() as f64;
@@ -61,7 +61,7 @@ pub fn configurations(scene: &Scene, setup: &Setup, view: &View, table: &CostTab
         let shade = ShadeKey::of(&setup.style.shade);
         let on_surface = if matches!(setup.style.shade, Shade::Hatch(_)) { Part::Strokes } else { Part::Light };
         let amounts = amounts(setup.samples);
-        // What a style has in a way of its own is expected to cost and to err like the way nearest to it.
+        // The costs and errors of the most similar variant stand for a part that stays as the style defines it.
         let known = |part, variant| cost_name(part, if variant == AS_GIVEN { as_given(part) } else { variant }, &setup);
         let shade_of = |part| (part == on_surface).then_some(shade);
         for executor in &table.executors {
@@ -153,11 +153,11 @@ fn has(part: Part, setup: &Setup) -> bool {
     }
 }
 
-/// The configurations that no other one beats in both expected cost and [`Configuration::badness`], by cost.
+/// The configurations that no other one beats in both expected cost and [`Configuration::total_error`], by cost.
 pub fn front_of(all: &[Configuration]) -> Vec<Configuration> {
     let mut front: Vec<Configuration> = Vec::new();
     for configuration in all {
-        if front.last().is_none_or(|last| configuration.badness() < last.badness()) {
+        if front.last().is_none_or(|last| configuration.total_error() < last.total_error()) {
             front.push(configuration.clone());
         }
     }

@@ -7,7 +7,7 @@ use crate::variant::Part;
 use npr_toon::ramp::RampBlend;
 use serde::{Deserialize, Serialize};
 
-/// The costs and errors of a machine. Plain data: the laboratory fills it, and it is read from a file.
+/// The measured costs and expected errors on a machine. Plain data, filled by the laboratory and stored in a file.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CostTable {
     /// The version of this crate that measured it.
@@ -20,7 +20,7 @@ pub struct CostTable {
     pub expected: Vec<Expected>,
 }
 
-/// A cost.
+/// The cost of a variant.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Entry {
     /// The executor.
@@ -39,7 +39,7 @@ pub struct Entry {
     pub cost: Cost,
 }
 
-/// An error that is expected.
+/// The expected error of a variant.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Expected {
     /// The part.
@@ -85,9 +85,9 @@ impl Cost {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ShadeKey {
-    /// Not at all.
+    /// Surfaces are not painted.
     Paper,
-    /// Without bands: the plain pass.
+    /// Diffuse light without bands: the plain pass.
     Lambert,
     /// Bands.
     Toon,

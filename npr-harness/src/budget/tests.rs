@@ -87,7 +87,7 @@ fn within_an_error_the_cheapest_is_chosen_by_what_is_measured() {
     let cheaper = choice.cheaper.expect("there is a cheaper one");
     assert!(cheaper.cost_plain < choice.chosen.cost_plain);
     let better = choice.better.expect("there is a better one");
-    assert!(better.badness() < choice.chosen.badness() && better.cost_plain > choice.chosen.cost_plain);
+    assert!(better.total_error() < choice.chosen.total_error() && better.cost_plain > choice.chosen.cost_plain);
 }
 
 #[test]
@@ -151,5 +151,25 @@ fn budgets_of_errors_are_read_and_refused() {
     ] {
         let error = read(text).expect_err(text);
         assert!(error.contains(what), "{text}: {error}");
+    }
+}
+
+#[test]
+fn a_budget_for_what_a_style_does_not_have_is_refused() {
+    let check = |name: &str, errors: &str| {
+        let style = style(name).expect("a style of this crate");
+        errors.parse::<MaxErrors>().expect("a budget").check(&style)
+    };
+    assert!(check("cartoon", "lines=0.1,tone=0.1").is_ok());
+    assert!(check("toon-shadow", "lines=0.1,tone=0.1,shadows=0.1").is_ok());
+    for (name, errors, what) in [
+        ("lambert", "lines=0.1", "lines"),
+        ("lines", "tone=0.1", "tone"),
+        ("cartoon", "tone=0.1,shadows=0.1", "shadows"),
+    ] {
+        match check(name, errors) {
+            Err(HarnessError::NothingErrs { style, measure }) => assert_eq!((style.as_str(), measure), (name, what)),
+            other => panic!("{other:?}"),
+        }
     }
 }

@@ -1,4 +1,4 @@
-//! Formats of a G-buffer: how small a gap in depth or an angle between normals they tell apart.
+//! Formats of a G-buffer: how small a gap in depth or an angle between normals they distinguish.
 //!
 //! The gap is the smallest by which two depths must differ so that they have different codes wherever they lie, over the
 //! subject's range of depths, as a share of the range: found by bisection of the encoder, not from its formula. The
@@ -20,13 +20,13 @@ pub(super) const CHART: Chart = Chart {
     name: "formats",
     title: "Formats of a G-buffer",
     error: ERROR,
-    about: "Depth: the smallest gap that is told apart at any distance, as a share of the scene's depth. Normals: the \
+    about: "Depth: the smallest gap that is distinguished at any distance, as a share of the scene's depth. Normals: the \
             largest angle by which one is off, as a share of a right angle. The other of the two is stored as floats.",
     choices: &[],
     run,
 };
 
-const ERROR: &str = "smallest difference told apart";
+const ERROR: &str = "smallest difference distinguished";
 /// Depths that are tried within the range.
 const PLACES: u32 = 64;
 /// Directions that are tried.

@@ -46,8 +46,7 @@ impl Drawn<'_> {
     }
 }
 
-/// Finds the errors of a candidate on an executor; `None` if the executor cannot make it, or makes it as another
-/// candidate.
+/// Finds the errors of a candidate on an executor; `None` if the executor renders it like another candidate.
 pub(super) type Judge<'a> = dyn FnMut(&Drawn<'_>) -> Result<Option<Errors>, HarnessError> + 'a;
 
 /// Errors by name, that of the chart's axis first.

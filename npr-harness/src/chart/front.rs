@@ -13,7 +13,7 @@ pub struct Dominated {
     pub clearly: bool,
 }
 
-/// Errors that differ by less than this share are the same: executors round otherwise.
+/// The relative difference below which errors count as equal, because executors round differently.
 const SAME: f64 = 1e-3;
 
 /// The indices of the points that no other point dominates, by ascending time. A point dominates another one if neither

@@ -53,9 +53,9 @@ pub struct Lab<'a> {
     pub size: (u32, u32),
     /// How often.
     pub rounds: Rounds,
-    /// Told of each variant that an executor cannot make, and why.
+    /// Called with each variant that an executor cannot render, and the reason.
     pub skipped: &'a dyn Fn(&str),
-    /// Told the share that is done, 0..=1.
+    /// Called with the fraction done, 0..=1.
     pub progress: &'a (dyn Fn(f64) + Sync),
 }
 

@@ -17,7 +17,7 @@ use crate::shadow::ShadowLines;
 use crate::style::{Lines, Style};
 use crate::truth::lines::{TrueLines, accuracy, darkness, drawn_centreline, true_intersections, true_lines};
 use crate::truth::pieces::{coverage, pieces};
-use crate::variant::{AskedLines, Part, Setup};
+use crate::variant::{Part, RequestedLines, Setup};
 use crate::view::View;
 use glam::Vec3;
 use npr_imagespace::composite::Composite;
@@ -102,7 +102,7 @@ pub(super) fn error_of_style(
 /// The exact lines that a style asks for.
 pub(super) fn asked_of_style(scene: &Scene, view: &View, style: &Style) -> TrueLines {
     let flat = scene.flattened();
-    let creases = AskedLines::of(style).is_none_or(|asked| asked.crease_px > 0.0);
+    let creases = RequestedLines::of(style).is_none_or(|asked| asked.crease_px > 0.0);
     let crease_rad = if creases { f64::from(style.crease_angle_rad) } else { std::f64::consts::PI };
     let mut lines = true_lines(&flat, &view.camera, view.size, crease_rad);
     lines.segments.extend(true_intersections(&flat, &view.camera, view.size, crease_rad).segments);

@@ -18,7 +18,7 @@ pub(super) const CHART: Chart = Chart {
 
 const TONE: &str = "RMSE of the tone";
 const SIDE: u32 = 128;
-/// The number of levels that are too small for a tone of whole texels: of 4, 2 and 1 texels.
+/// The number of coarsest levels that are not measured: sides of 4, 2 and 1 texels are too few for the tones.
 const SMALLEST: usize = 3;
 
 fn run(lab: &Lab<'_>) -> Result<Vec<Row>, HarnessError> {

@@ -1,7 +1,7 @@
 //! Edge lines as a way to draw lines.
 
 use crate::style::Lines;
-use crate::variant::{AskedLines, Variant};
+use crate::variant::{RequestedLines, Variant};
 use npr_outline::line_style::{LineStyle, widths_px};
 
 /// Ways to draw lines. Which executor finds them depends on capabilities.
@@ -11,8 +11,8 @@ pub(crate) const VARIANTS: &[Variant] = &[Variant {
     historical: false,
     in_budget: true,
     apply: |setup| {
-        AskedLines::drawn(setup, |asked| {
-            let AskedLines { width_px, crease_px, border_px, color, opacity } = *asked;
+        RequestedLines::drawn(setup, |asked| {
+            let RequestedLines { width_px, crease_px, border_px, color, opacity } = *asked;
             let width_px = widths_px(width_px, width_px, crease_px, border_px);
             Some(Lines::edges(LineStyle { width_px, ink: color.extend(opacity).to_array() }))
         })

@@ -2,7 +2,7 @@
 
 use super::HullLines;
 use crate::style::Lines;
-use crate::variant::{AskedLines, Setup, Variant};
+use crate::variant::{RequestedLines, Setup, Variant};
 use npr_outline::hull::HullNormals;
 
 /// Ways to draw lines.
@@ -24,8 +24,8 @@ pub(crate) const VARIANTS: &[Variant] = &[
 ];
 
 fn hull(setup: &Setup, normals: HullNormals) -> Option<Setup> {
-    AskedLines::drawn(setup, |asked| {
-        let AskedLines { width_px, color, opacity, .. } = *asked;
+    RequestedLines::drawn(setup, |asked| {
+        let RequestedLines { width_px, color, opacity, .. } = *asked;
         (opacity == 1.0).then(|| Lines::hull(HullLines { width_px, ink: color, normals }))
     })
 }

@@ -3,7 +3,7 @@
 use super::gbuffer::style::{Background, GBuffer, GBufferTarget, SeparateTargets};
 use super::{ImageInk, InkScale, Regions};
 use crate::style::Lines;
-use crate::variant::{AskedLines, Setup, Variant};
+use crate::variant::{RequestedLines, Setup, Variant};
 use npr_imagespace::composite::Composite;
 use npr_imagespace::filter::depth::{DEPTH_ANY_OUTLINING_SKETCH, DEPTH_SUM_CARD_MITCHELL, DepthPlain};
 use npr_imagespace::filter::fused::{DepthTest, FusedFilter};
@@ -37,7 +37,7 @@ fn scale_px(scale: InkScale) -> f32 {
 
 /// The asked lines, found in the image.
 fn found(setup: &Setup, ink: ImageInk) -> Option<Setup> {
-    AskedLines::drawn(setup, |asked| {
+    RequestedLines::drawn(setup, |asked| {
         let radius_px = (asked.width_px / scale_px(ink.scale) - FOUND_PX) / 2.0;
         // Lines cannot be thinner than they are found, and half a pixel more needs no disc.
         let dilation = (radius_px >= 0.25).then_some(Disc { radius_px, antialias: true });
@@ -143,10 +143,10 @@ pub(crate) const VARIANTS: &[Variant] = &[
     way("image, normals alone", &[], |setup| {
         fused(setup, FusedFilter { normal_cos: FusedFilter::default().normal_cos, ..NONE })
     }),
-    way("image, bends of depth alone", &[], |setup| {
+    way("image, second differences of depth alone", &[], |setup| {
         fused(setup, FusedFilter { depth: Some(DepthTest::default()), ..NONE })
     }),
-    way("image, steps of depth alone", &[], |setup| {
+    way("image, first differences of depth alone", &[], |setup| {
         let depth = Some(DepthTest { step: DEPTH_ANY_OUTLINING_SKETCH, plain: true });
         fused(setup, FusedFilter { depth, ..NONE })
     }),
@@ -192,13 +192,15 @@ pub(crate) const VARIANTS: &[Variant] = &[
         separate(setup, None, DepthFormat::Packed4x8)
     }),
     own("separate, depth of half floats", &["DepthFormat::Half"], |setup| separate(setup, None, DepthFormat::Half)),
-    own("separate, relative steps of depth", &["SeparateDepthTest::Step"], |setup| {
+    own("separate, relative first differences", &["SeparateDepthTest::Step"], |setup| {
         let test = SeparateDepthTest::Step { step: DEPTH_ANY_OUTLINING_SKETCH };
         tested(setup, None, DepthFormat::Float, Some(test))
     }),
-    own("separate, sum of steps", &["SeparateDepthTest::Plain", "DepthPlain::Sum"], |setup| {
+    own("separate, sum of first differences", &["SeparateDepthTest::Plain", "DepthPlain::Sum"], |setup| {
         plain(setup, DepthPlain::Sum)
     }),
-    historical("separate, sum of two steps", &["DepthPlain::SumPrinted"], |setup| plain(setup, DepthPlain::SumPrinted)),
-    own("separate, largest step", &["DepthPlain::Any"], |setup| plain(setup, DepthPlain::Any)),
+    historical("separate, sum of two first differences", &["DepthPlain::SumPrinted"], |setup| {
+        plain(setup, DepthPlain::SumPrinted)
+    }),
+    own("separate, largest first difference", &["DepthPlain::Any"], |setup| plain(setup, DepthPlain::Any)),
 ];

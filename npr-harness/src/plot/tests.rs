@@ -67,7 +67,7 @@ fn curves_example() -> Curves {
         predicted,
     };
     Curves {
-        title: "Depth gap that is still told apart".into(),
+        title: "Depth gap that is still distinguished".into(),
         x: axis("distance, radii", true),
         y: axis("smallest gap, radii", true),
         curves: vec![

@@ -2,7 +2,7 @@
 
 use super::PrintedLines;
 use crate::style::Lines;
-use crate::variant::{AskedLines, Setup, Variant};
+use crate::variant::{RequestedLines, Setup, Variant};
 
 /// Ways to draw lines. What formats of normals change is a chart of its own.
 pub(crate) const VARIANTS: &[Variant] = &[
@@ -23,8 +23,8 @@ pub(crate) const VARIANTS: &[Variant] = &[
 ];
 
 fn fins(setup: &Setup, fins: PrintedLines) -> Option<Setup> {
-    AskedLines::drawn(setup, |asked| {
-        let AskedLines { width_px, color, opacity, .. } = *asked;
+    RequestedLines::drawn(setup, |asked| {
+        let RequestedLines { width_px, color, opacity, .. } = *asked;
         (opacity == 1.0).then(|| Lines::printed(PrintedLines { width_px, ink: color, ..fins }))
     })
 }

@@ -76,7 +76,7 @@ pub struct Limit {
     pub what: String,
     /// The number that was measured.
     pub measured: f64,
-    /// Whether it is a value of the sweep's parameter, so that a diagram marks it; otherwise it is an error.
+    /// Whether the number is a value of the sweep's parameter, which diagrams mark on its axis; otherwise it is an error.
     pub is_of_parameter: bool,
     /// The number that a formula predicts, and the formula with its source.
     pub predicted: Option<(f64, String)>,

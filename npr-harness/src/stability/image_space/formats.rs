@@ -136,7 +136,7 @@ fn depth_gaps(_: &Executor) -> Result<Finding, HarnessError> {
         let distances = geometric(2.0, 500.0, 13);
         let points = distances.into_iter().map(|at| (at, depth.gap(at))).collect();
         let (predicted, formula) = predicted_gap(name, AT, FAR);
-        let what = "smallest gap that is always told apart at 100 times the near distance, in near distances";
+        let what = "smallest gap that is always distinguished at 100 times the near distance, in near distances";
         let limit = limit(what, depth.gap(AT), Bound::AtMost(1.05 * predicted)).predicted(predicted, formula);
         curves.push(curve(name, points, limit));
     }
@@ -144,7 +144,7 @@ fn depth_gaps(_: &Executor) -> Result<Finding, HarnessError> {
     let cards = |(_, depth): (_, Depth)| cards(depth);
     Ok(Finding {
         parameter: Axis::logarithmic("distance over that of the near plane", ""),
-        error: Axis::logarithmic("smallest gap told apart, over the near distance", ""),
+        error: Axis::logarithmic("smallest gap distinguished, over the near distance", ""),
         curves,
         pictures: vec![(
             "Cards of which each is 1 % farther away than the one before, from 50 times the near distance of a range of \
@@ -195,14 +195,15 @@ fn depth_range(_: &Executor) -> Result<Finding, HarnessError> {
             let steps = if name == "8 bits" { 255.0 } else { 65535.0 };
             let predicted = 1.0 + 0.01 * AT * steps;
             limit_at(
-                "far over near distance up to which gaps of 1 % are told apart at 10 near distances",
+                "far over near distance up to which gaps of 1 % are distinguished at 10 near distances",
                 crossing(&points, 1.0),
                 Bound::AtLeast(0.95 * predicted),
             )
             .predicted(predicted, "1 + 0.1 (2ⁿ − 1): a step is a tenth of the near distance")
         } else {
             let (predicted, formula) = predicted_gap(name, AT, last);
-            let what = "largest gap that is not told apart at 10 near distances, for any far plane, % of the distance";
+            let what =
+                "largest gap that is not distinguished at 10 near distances, for any far plane, % of the distance";
             let predicted = 100.0 * predicted / AT;
             // The arithmetic of the 24-bit codes is that of f32, which has no more bits.
             let spare = if name == "24 bits of 1/z" { 1.4 } else { 1.05 };
@@ -213,7 +214,7 @@ fn depth_range(_: &Executor) -> Result<Finding, HarnessError> {
     let [near, far] = [10_000.0, 100_000.0].map(|far| depths(far).map(|depths| cards(depths[1].1)));
     Ok(Finding {
         parameter: Axis::logarithmic("far over near distance", ""),
-        error: Axis::logarithmic("smallest gap told apart at 10 near distances, of the distance", "%"),
+        error: Axis::logarithmic("smallest gap distinguished at 10 near distances, of the distance", "%"),
         curves,
         pictures: vec![(
             "Cards 1 % apart from 50 near distances on, in 16 bits: the far plane at 10 000 and at 100 000 near distances."
