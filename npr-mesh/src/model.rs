@@ -32,6 +32,9 @@ pub struct Model {
     /// was cut from. Faces of one polygon are adjacent and the indices ascend. An edge between two faces of one
     /// polygon is a diagonal added by triangulation and never a line.
     pub face_polygon: Vec<u32>,
+    /// The line segments that the file itself draws, each between two vertices: polylines of an `.obj` file, primitives
+    /// of lines in glTF. They are drawn as lines wherever surfaces do not hide them, and are no edges of faces.
+    pub lines: Vec<[u32; 2]>,
     /// The materials; at least as many as [`Model::face_material`] refers to.
     pub materials: Vec<Material>,
     /// The images that the materials refer to.
@@ -156,7 +159,7 @@ impl Model {
         }
     }
 
-    /// Appends the vertices, faces and polygons of another model, without its materials and meshes.
+    /// Appends the vertices, faces, polygons and lines of another model, without its materials and meshes.
     pub(crate) fn append_geometry(&mut self, other: &Model) {
         let first_vertex = self.positions.len() as u32;
         append_optional(&mut self.uvs, self.positions.len(), &other.uvs, other.positions.len(), Vec2::ZERO);
@@ -175,11 +178,13 @@ impl Model {
         self.positions.extend_from_slice(&other.positions);
         self.normals.extend_from_slice(&other.normals);
         self.faces.extend(other.faces.iter().map(|f| f.map(|v| v + first_vertex)));
+        self.lines.extend(other.lines.iter().map(|line| line.map(|v| v + first_vertex)));
     }
 
-    /// The corners of the axis-aligned bounding box of all vertices that faces use, or `None` without faces.
+    /// The corners of the axis-aligned bounding box of all vertices that faces and lines use, or `None` without either.
     pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
-        let mut corners = self.faces.iter().flatten().map(|&v| self.positions[v as usize]);
+        let used = self.faces.iter().flatten().chain(self.lines.iter().flatten());
+        let mut corners = used.map(|&v| self.positions[v as usize]);
         let first = corners.next()?;
         Some(corners.fold((first, first), |(low, high), p| (low.min(p), high.max(p))))
     }
