@@ -246,12 +246,14 @@ fn subdivision_interpolates_and_keeps_polygons() {
         face_material: vec![0, 0],
         face_mesh: vec![0, 1],
         face_polygon: vec![7, 7],
+        lines: vec![[0, 2]],
         materials: vec![Material::default()],
         textures: vec![],
     };
     let fine = subdivide_midpoint(&square);
     assert_eq!((fine.faces.len(), fine.positions.len()), (8, 9));
     assert_eq!(fine.face_polygon, [7; 8]);
+    assert_eq!(fine.lines, [[0, 2]]);
     assert_eq!(fine.face_mesh, [0, 0, 0, 0, 1, 1, 1, 1]);
     assert_eq!(fine.positions[..4], square.positions);
     // The midpoints of 0-1, 1-2, 2-0, 2-3, 3-0, in this order.
