@@ -51,6 +51,7 @@
 //! - M. Newell's teapot: [`embedded::teapot`]. Sources of algorithms are cited where they are used.
 #![warn(missing_docs)]
 
+pub mod coplanar;
 pub mod edges;
 pub mod embedded;
 mod error;

@@ -32,6 +32,9 @@ pub struct Model {
     /// was cut from. Faces of one polygon are adjacent and the indices ascend. An edge between two faces of one
     /// polygon is a diagonal added by triangulation and never a line.
     pub face_polygon: Vec<u32>,
+    /// Per face, or empty: whether only its front is shown, whatever its material says, since another face is at its place
+    /// ([`crate::coplanar`]). No loader sets it.
+    pub one_sided: Vec<bool>,
     /// The line segments that the file itself draws, each between two vertices: polylines of an `.obj` file, primitives
     /// of lines in glTF. They are drawn as lines wherever surfaces do not hide them, and are no edges of faces.
     pub lines: Vec<[u32; 2]>,
@@ -120,6 +123,12 @@ impl Model {
         self.materials.get(*self.face_material.get(face as usize)? as usize)
     }
 
+    /// Whether the back of a face is shown.
+    pub fn shows_back(&self, face: u32) -> bool {
+        let is_one_sided = self.one_sided.get(face as usize) == Some(&true);
+        !is_one_sided && self.material_of(face).is_none_or(|material| material.double_sided)
+    }
+
     /// If faces have no material ([`Model::face_material`] is empty), adds [`Material::default`] and assigns it to
     /// all faces.
     pub fn fill_face_material(&mut self) {
@@ -175,6 +184,8 @@ impl Model {
                 self.face_polygon.extend(other.face_polygon.iter().map(|p| first_polygon + p));
             }
         }
+        let (ours, theirs) = (self.faces.len(), other.faces.len());
+        append_optional(&mut self.one_sided, ours, &other.one_sided, theirs, false);
         self.positions.extend_from_slice(&other.positions);
         self.normals.extend_from_slice(&other.normals);
         self.faces.extend(other.faces.iter().map(|f| f.map(|v| v + first_vertex)));

@@ -112,6 +112,7 @@ pub fn tessellate(model: &Model, segments: u32) -> Result<Model, TessellateError
         face_material: repeat(&model.face_material),
         face_mesh: repeat(&model.face_mesh),
         face_polygon: Vec::new(),
+        one_sided: (model.one_sided.iter()).flat_map(|&one| std::iter::repeat_n(one, (n * n) as usize)).collect(),
         lines: model.lines.clone(),
         materials: model.materials.clone(),
         textures: model.textures.clone(),

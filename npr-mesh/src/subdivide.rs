@@ -50,6 +50,7 @@ pub fn subdivide_midpoint(model: &Model) -> Model {
         face_material: four_each(&model.face_material),
         face_mesh: four_each(&model.face_mesh),
         face_polygon: four_each(&model.face_polygon),
+        one_sided: model.one_sided.iter().flat_map(|&one_sided| [one_sided; 4]).collect(),
         lines: model.lines.clone(),
         materials: model.materials.clone(),
         textures: model.textures.clone(),

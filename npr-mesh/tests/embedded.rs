@@ -246,6 +246,7 @@ fn subdivision_interpolates_and_keeps_polygons() {
         face_material: vec![0, 0],
         face_mesh: vec![0, 1],
         face_polygon: vec![7, 7],
+        one_sided: vec![false, true],
         lines: vec![[0, 2]],
         materials: vec![Material::default()],
         textures: vec![],
@@ -253,6 +254,7 @@ fn subdivision_interpolates_and_keeps_polygons() {
     let fine = subdivide_midpoint(&square);
     assert_eq!((fine.faces.len(), fine.positions.len()), (8, 9));
     assert_eq!(fine.face_polygon, [7; 8]);
+    assert_eq!(fine.one_sided, [false, false, false, false, true, true, true, true]);
     assert_eq!(fine.lines, [[0, 2]]);
     assert_eq!(fine.face_mesh, [0, 0, 0, 0, 1, 1, 1, 1]);
     assert_eq!(fine.positions[..4], square.positions);

@@ -1,0 +1,184 @@
+//! Builds the model whose coplanar faces are separated.
+
+use super::layers::Seen;
+use super::overlap::Projection;
+use crate::Model;
+use glam::{DVec3, Vec2, Vec3, Vec4};
+use std::collections::HashMap;
+
+/// The faces of the result.
+pub(super) struct Output {
+    /// Whether it differs from the model that it is made from.
+    pub is_changed: bool,
+    /// What is made of the faces that do not stay as they are.
+    fates: HashMap<u32, Fate>,
+}
+
+enum Fate {
+    /// The face as a whole.
+    Whole(Seen),
+    /// Pieces, in the winding of the face.
+    Pieces(Vec<([Corner; 3], Seen)>),
+}
+
+/// A corner of a piece.
+#[derive(Clone, Copy)]
+struct Corner {
+    position: Vec3,
+    /// The weights of the corners of the face that it is on.
+    weights: [f64; 3],
+}
+
+impl Output {
+    pub fn new() -> Self {
+        Self { is_changed: false, fates: HashMap::new() }
+    }
+
+    /// Keeps a whole face as far as it is seen.
+    pub fn keep(&mut self, face: u32, seen: Seen) {
+        self.fates.insert(face, Fate::Whole(seen));
+    }
+
+    /// Replaces a face by pieces, of which there are none yet.
+    pub fn cut(&mut self, face: u32) {
+        self.fates.insert(face, Fate::Pieces(Vec::new()));
+        self.is_changed = true;
+    }
+
+    /// Adds a piece of a face, with corners in the winding of the face.
+    pub fn add_piece(&mut self, model: &Model, face: u32, corners: [DVec3; 3], seen: Seen, along: Projection) {
+        let Some(Fate::Pieces(pieces)) = self.fates.get_mut(&face) else { return };
+        let of_face = model.faces[face as usize].map(|vertex| model.positions[vertex as usize].as_dvec3());
+        let [a, b, c] = of_face.map(|corner| along.project(corner));
+        let corner = |position: DVec3| {
+            let at = along.project(position);
+            let [u, v, w] = [(b - at).perp_dot(c - at), (c - at).perp_dot(a - at), (a - at).perp_dot(b - at)];
+            Corner { position: position.as_vec3(), weights: [u, v, w].map(|x| (x / (u + v + w)).clamp(0.0, 1.0)) }
+        };
+        pieces.push((corners.map(corner), seen));
+    }
+
+    pub fn into_model(mut self, model: &Model) -> Option<Model> {
+        let has_pieces = self.is_changed;
+        let mut builder = Builder::new(model);
+        let mut sources = Vec::with_capacity(model.faces.len());
+        for face in 0..model.faces.len() as u32 {
+            let vertices = model.faces[face as usize];
+            match self.fates.remove(&face) {
+                None => builder.push(vertices, model.one_sided.get(face as usize) == Some(&true)),
+                Some(Fate::Whole(seen)) => {
+                    self.is_changed |= seen != Seen { front: true, back: model.shows_back(face) };
+                    builder.push_seen(vertices, seen, model.shows_back(face));
+                }
+                Some(Fate::Pieces(pieces)) => {
+                    for (corners, seen) in pieces {
+                        if seen.front || seen.back {
+                            let vertices = corners.map(|corner| builder.vertex(vertices, corner));
+                            builder.push_seen(vertices, seen, model.shows_back(face));
+                        }
+                    }
+                }
+            }
+            sources.resize(builder.made.faces.len(), face as usize);
+        }
+        if !self.is_changed {
+            return None;
+        }
+        let mut made = builder.made;
+        let of_sources = |values: &[u32]| match values {
+            [] => Vec::new(),
+            _ => sources.iter().map(|&face| values[face]).collect(),
+        };
+        made.face_material = of_sources(&model.face_material);
+        made.face_mesh = of_sources(&model.face_mesh);
+        made.face_polygon = of_sources(&model.face_polygon);
+        if made.face_polygon.is_empty() && has_pieces {
+            made.face_polygon = sources.iter().map(|&face| face as u32).collect();
+        }
+        if !made.one_sided.contains(&true) {
+            made.one_sided.clear();
+        }
+        Some(made)
+    }
+}
+
+struct Builder<'a> {
+    model: &'a Model,
+    /// Without the arrays of faces other than the corners and sides.
+    made: Model,
+    /// The added vertices, by all that they consist of.
+    added: HashMap<[u32; 12], u32>,
+}
+
+impl<'a> Builder<'a> {
+    fn new(model: &'a Model) -> Self {
+        let made = Model {
+            faces: Vec::with_capacity(model.faces.len()),
+            face_material: Vec::new(),
+            face_mesh: Vec::new(),
+            face_polygon: Vec::new(),
+            one_sided: Vec::with_capacity(model.faces.len()),
+            ..model.clone()
+        };
+        Self { model, made, added: HashMap::new() }
+    }
+
+    fn push(&mut self, vertices: [u32; 3], is_one_sided: bool) {
+        self.made.faces.push(vertices);
+        self.made.one_sided.push(is_one_sided);
+    }
+
+    /// Adds a face as far as it is seen. `shows_back`: whether its back was shown before.
+    fn push_seen(&mut self, vertices: [u32; 3], seen: Seen, shows_back: bool) {
+        match seen {
+            Seen { front: true, back } => self.push(vertices, shows_back && !back),
+            Seen { front: false, back: true } => {
+                // Its back becomes the front of a one-sided face.
+                let [a, b, c] = vertices.map(|vertex| self.turned(vertex));
+                self.push([a, c, b], true);
+            }
+            Seen { front: false, back: false } => {}
+        }
+    }
+
+    /// The vertex at a corner of a piece of a face with these vertices.
+    fn vertex(&mut self, of_face: [u32; 3], corner: Corner) -> u32 {
+        let own = of_face.into_iter().find(|&vertex| self.model.positions[vertex as usize] == corner.position);
+        own.unwrap_or_else(|| {
+            let weights = corner.weights.map(|weight| weight as f32);
+            let of = of_face.map(|vertex| vertex as usize);
+            let (normals, uvs, colors) = (&self.model.normals, &self.model.uvs, &self.model.colors);
+            let normal: Vec3 = (0..3).map(|i| normals[of[i]] * weights[i]).sum();
+            let normal = normal.try_normalize().unwrap_or(normals[of[0]]);
+            let uv = if uvs.is_empty() { Vec2::ZERO } else { (0..3).map(|i| uvs[of[i]] * weights[i]).sum() };
+            let color = if colors.is_empty() { Vec4::ONE } else { (0..3).map(|i| colors[of[i]] * weights[i]).sum() };
+            self.add(corner.position, normal, uv, color)
+        })
+    }
+
+    /// A vertex like another, with the opposite normal.
+    fn turned(&mut self, vertex: u32) -> u32 {
+        let made = &self.made;
+        let at = vertex as usize;
+        let uv = made.uvs.get(at).copied().unwrap_or_default();
+        let color = made.colors.get(at).copied().unwrap_or(Vec4::ONE);
+        self.add(made.positions[at], -made.normals[at], uv, color)
+    }
+
+    fn add(&mut self, position: Vec3, normal: Vec3, uv: Vec2, color: Vec4) -> u32 {
+        let all = [&position.to_array()[..], &normal.to_array(), &uv.to_array(), &color.to_array()].concat();
+        let key = std::array::from_fn(|i| all[i].to_bits());
+        let made = &mut self.made;
+        *self.added.entry(key).or_insert_with(|| {
+            made.positions.push(position);
+            made.normals.push(normal);
+            if !made.uvs.is_empty() {
+                made.uvs.push(uv);
+            }
+            if !made.colors.is_empty() {
+                made.colors.push(color);
+            }
+            made.positions.len() as u32 - 1
+        })
+    }
+}
