@@ -279,7 +279,14 @@ impl FrameContext<'_> {
                 && !self.is_cut_out(hit, x, y)
                 && !self.is_inset(hit, x, y)
         };
-        self.scene.closest(origin, direction, self.plan.view.camera.depth_range(), is_solid)
+        let nearest = self.scene.closest(origin, direction, self.plan.view.camera.depth_range(), is_solid)?;
+        if !self.scene.placed(nearest.object).1.has_layers() {
+            return Some(nearest);
+        }
+        // Of faces at one place, whose distances are equal up to rounding, the later is seen.
+        let slack = 1e-12 * nearest.t.abs();
+        let at_place = self.scene.all(origin, direction, (nearest.t - slack, nearest.t + slack), is_solid);
+        at_place.into_iter().filter(|hit| hit.object == nearest.object).max_by_key(|hit| hit.face)
     }
 
     fn trace_pixel(&self, solid: Option<&Hit>, x: u32, y: u32) -> DVec4 {
@@ -294,8 +301,11 @@ impl FrameContext<'_> {
             let nearer = (range.0, solid.map_or(range.1, |hit| hit.t));
             let is_blended =
                 |hit: &Hit| self.is_shown(hit) && self.is_blended(hit) && self.scene.keeps(origin + direction * hit.t);
-            for hit in self.scene.all(origin, direction, nearer, is_blended).iter().rev() {
-                let over = self.paint(hit, x, y);
+            let mut hits = self.scene.all(origin, direction, nearer, is_blended);
+            // Of coincident ones the later is above; a stable sort keeps their order.
+            hits.sort_by(|a, b| b.t.total_cmp(&a.t));
+            for hit in hits {
+                let over = self.paint(&hit, x, y);
                 color = color.lerp(over.truncate(), over.w);
             }
         }

@@ -6,7 +6,7 @@ use crate::plan::{PaintPlan, Plan};
 use crate::scene::{Mesh, Object, Scene};
 use crate::texel_format::level_count;
 use npr_mesh::{AlphaMode, Model};
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -126,6 +126,8 @@ fn split_by_region(faces: &[[u32; 3]], face_region: &[u32], vertices: usize) -> 
 pub(crate) struct Batch {
     /// The index in the mesh of the first of these materials.
     pub(crate) material: usize,
+    /// Whether only the fronts of its faces are shown, whatever the material says.
+    pub(crate) one_sided: bool,
     pub(crate) indices: Range<u32>,
 }
 
@@ -140,33 +142,35 @@ pub(crate) fn add_batches(
     first_vertex: u32,
     indices: &mut Vec<u32>,
 ) -> Vec<Batch> {
-    let (model, edges) = (mesh.model(), mesh.edges());
+    let model = mesh.model();
     let material = |face: u32| model.face_material[face as usize] as usize;
+    let one_sided = |face: u32| model.one_sided.get(face as usize) == Some(&true);
+    let look = |face: u32| (duplicates[material(face)], one_sided(face));
     let mut solid: Vec<u32> =
         (0..faces.len() as u32).filter(|&f| model.materials[material(f)].alpha_mode != AlphaMode::Blend).collect();
     // The sort is stable: the faces of a material keep the order of the file, in which neighbours share vertices.
-    solid.sort_by_key(|&face| duplicates[material(face)]);
-    // A duplicate face never passes the depth test after the face with the same corners, so it is dropped; some files
-    // have half a million of them. Alpha-tested duplicates are kept, because the first face may be discarded where the
-    // second is visible.
-    if !edges.further_faces.is_empty() || edges.skipped.iter().any(|&skipped| skipped) {
-        let mut seen = HashSet::new();
-        solid.retain(|&face| {
-            let corners = model.faces[face as usize].map(|v| edges.representative[v as usize]);
-            let material = material(face);
-            matches!(model.materials[material].alpha_mode, AlphaMode::Mask { .. })
-                || seen.insert((duplicates[material], corners))
-        });
+    solid.sort_by_key(|&face| look(face));
+    // Of coincident faces the first drawn is seen, and the later in the file is to be. Those that are hidden whole are
+    // gone; what is left of cut-outs has to be drawn before what is seen through them.
+    if mesh.has_layers() {
+        let is_cut_out = |face: u32| matches!(model.materials[material(face)].alpha_mode, AlphaMode::Mask { .. });
+        solid.sort_by_key(|&face| if is_cut_out(face) { (false, u32::MAX - face) } else { (true, 0) });
     }
     let mut batches: Vec<Batch> = Vec::new();
     indices.reserve(3 * solid.len());
+    let mut last = None;
     for face in solid {
         let start = indices.len() as u32;
         indices.extend(faces[face as usize].map(|vertex| first_vertex + vertex));
         match batches.last_mut() {
-            Some(batch) if duplicates[batch.material] == duplicates[material(face)] => batch.indices.end += 3,
-            _ => batches.push(Batch { material: material(face), indices: start..start + 3 }),
+            Some(batch) if last == Some(look(face)) => batch.indices.end += 3,
+            _ => batches.push(Batch {
+                material: material(face),
+                one_sided: one_sided(face),
+                indices: start..start + 3,
+            }),
         }
+        last = Some(look(face));
     }
     batches
 }

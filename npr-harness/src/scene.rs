@@ -377,6 +377,12 @@ impl Scene {
         &self.materials[self.material_number(object, face)]
     }
 
+    /// Whether the back of an object's face is shown.
+    pub fn shows_back(&self, object: u32, face: u32) -> bool {
+        let is_one_sided = self.placed(object).1.model().one_sided.get(face as usize) == Some(&true);
+        !is_one_sided && self.material(object, face).double_sided
+    }
+
     /// The corners of an object's face.
     pub(crate) fn face_corners(&self, object: u32, face: u32) -> [DVec3; 3] {
         let (object, mesh) = self.placed(object);

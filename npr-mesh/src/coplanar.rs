@@ -25,8 +25,8 @@ use crate::weld::weld_within;
 use crate::{AlphaMode, Model};
 use arrangement::{Pieces, arrange};
 use glam::{DVec3, Vec3};
-use layers::{Layer, seen};
-use output::Output;
+use layers::{Layer, Seen, seen};
+use output::{Output, Part};
 use overlap::{Flat, Projection, overlapping};
 use planes::Plane;
 use std::collections::HashMap;
@@ -139,15 +139,15 @@ impl Groups {
         else {
             return;
         };
+        let along = Projection::new(plane.normal);
         if let [stack] = *group {
-            let faces = &self.stacks[stack];
-            let layers = layers(model, faces, plane.normal);
-            faces.iter().zip(seen(&layers)).for_each(|(&face, seen)| output.keep(face, seen));
+            let [a, b, c] = self.flats[stack].corners;
+            let corners = if self.flats[stack].normal.dot(plane.normal) > 0.0 { [a, b, c] } else { [a, c, b] };
+            Place { corners, faces: &self.stacks[stack] }.select(model, plane.normal, along, output);
             return;
         }
         let corners: Vec<DVec3> = group.iter().flat_map(|&stack| corners_of(model, self.stacks[stack][0])).collect();
         let (mut points, triangles) = joined(&corners, 2.0 * self.rounding);
-        let along = Projection::new(plane.normal);
         let Some(Pieces { added, pieces }) = arrange(&points, &triangles, along, self.rounding, budget) else { return };
         // Rounded here, once for all faces of a piece.
         points.extend(added.iter().map(|point| point.as_vec3().as_dvec3()));
@@ -157,10 +157,37 @@ impl Groups {
                 piece.of.iter().flat_map(|&at| &self.stacks[group[at as usize]]).copied().collect();
             faces.sort_unstable();
             let corners = piece.corners.map(|point| points[point as usize]);
-            let layers = layers(model, &faces, plane.normal);
-            for ((&face, layer), seen) in faces.iter().zip(&layers).zip(seen(&layers)) {
-                let [a, b, c] = corners;
-                output.add_piece(model, face, if layer.front { [a, b, c] } else { [a, c, b] }, seen, along);
+            Place { corners, faces: &faces }.select(model, plane.normal, along, output);
+        }
+    }
+}
+
+/// A triangle that several faces cover.
+struct Place<'a> {
+    /// Counter-clockwise seen against the normal of the plane.
+    corners: [DVec3; 3],
+    /// In the order of the file.
+    faces: &'a [u32],
+}
+
+impl Place<'_> {
+    /// Adds what is seen of the faces to the result.
+    fn select(&self, model: &Model, normal: DVec3, along: Projection, output: &mut Output) {
+        let layers = layers(model, self.faces, normal);
+        let seen = seen(&layers);
+        let is_up = |layer: &Layer, seen: &Seen| if layer.front { seen.front } else { seen.back };
+        let up = layers.iter().zip(&seen).filter(|(layer, seen)| is_up(layer, seen)).count();
+        let down = seen.iter().filter(|seen| seen.front).count() + seen.iter().filter(|seen| seen.back).count() - up;
+        // Faces that are seen through each other have equal corners in the same order, so that they have equal depths.
+        let is_shared = up > 1 || down > 1;
+        for ((&face, layer), &seen) in self.faces.iter().zip(&layers).zip(&seen) {
+            let [a, b, c] = self.corners;
+            let is_turned = is_shared && !layer.front && seen.front && seen.back;
+            let corners = if layer.front { [a, b, c] } else { [a, c, b] };
+            if is_shared || output.is_cut(face) {
+                output.add_piece(model, face, along, Part { corners, seen, is_turned });
+            } else {
+                output.keep(face, seen);
             }
         }
     }

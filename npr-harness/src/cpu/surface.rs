@@ -35,7 +35,7 @@ impl FrameContext<'_> {
     }
 
     pub(super) fn is_shown(&self, hit: &Hit) -> bool {
-        hit.front || self.material(hit).double_sided
+        hit.front || self.scene.shows_back(hit.object, hit.face)
     }
 
     pub(super) fn is_blended(&self, hit: &Hit) -> bool {

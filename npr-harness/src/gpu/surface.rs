@@ -118,6 +118,8 @@ struct Inking {
 /// Faces of one material, of one or several objects.
 struct Drawn<'a> {
     material: usize,
+    /// Whether only fronts are shown, whatever the material says.
+    one_sided: bool,
     indices: Range<u32>,
     instances: wgpu::BufferSlice<'a>,
     count: u32,
@@ -378,7 +380,10 @@ impl SurfacePass {
         };
         let instances = uploaded.instances.borrow();
         let duplicates = &uploaded.materials.duplicates;
-        let look = |&[object, face]: &[u32; 2]| (object, duplicates[scene.material_number(object, face)]);
+        let look = |&[object, face]: &[u32; 2]| {
+            let one_sided = scene.placed(object).1.model().one_sided.get(face as usize) == Some(&true);
+            (object, duplicates[scene.material_number(object, face)], one_sided)
+        };
         let blended_runs: Vec<&[[u32; 2]]> = blended.chunk_by(|a, b| look(a) == look(b)).collect();
         let solid_draws: usize = instances.runs().iter().map(|run| uploaded.batches[run.mesh].len()).sum();
         let (draws, limit) = (solid_draws + blended_runs.len(), uploaded.most_draws);
@@ -396,7 +401,6 @@ impl SurfacePass {
         let mut set = None;
         let mut draw = |pass: &mut wgpu::RenderPass<'_>, drawn: Drawn<'_>, colored: bool, blended: bool| {
             let material = &scene.materials()[drawn.material];
-            let double_sided = material.double_sided;
             // Blended surfaces are ignored by lines in the image.
             let inking = plan.image.as_ref().filter(|_| targets.texels.is_some() && !blended).map(|image| {
                 let line_kind = image.line_kinds[drawn.material];
@@ -415,7 +419,7 @@ impl SurfacePass {
                 paint,
                 looked_up: is_looked_up(scene, drawn.material) && wanted,
                 by_alpha: by_alpha && material.texture.is_some(),
-                cull_back: plan.cull_back || !double_sided,
+                cull_back: plan.cull_back || drawn.one_sided || !material.double_sided,
                 mirrored: drawn.mirrored,
                 blended,
                 shader,
@@ -460,6 +464,7 @@ impl SurfacePass {
             for batch in &uploaded.batches[run.mesh] {
                 let drawn = Drawn {
                     material: first + if is_one { 0 } else { batch.material },
+                    one_sided: batch.one_sided,
                     indices: batch.indices.clone(),
                     instances: instances.slice(run),
                     count: run.objects.len() as u32,
@@ -476,9 +481,10 @@ impl SurfacePass {
         let mut start = 0;
         for run in blended_runs {
             let end = start + 3 * run.len() as u32;
-            let (object, material) = look(&run[0]);
+            let (object, material, one_sided) = look(&run[0]);
             let drawn = Drawn {
                 material,
+                one_sided,
                 indices: start..end,
                 instances: instances.slice_of(object),
                 count: 1,
@@ -588,7 +594,12 @@ impl SurfacePass {
             depth_stencil: Some(wgpu::DepthStencilState {
                 format: variant.depth,
                 depth_write_enabled: Some(!blended),
-                depth_compare: Some(wgpu::CompareFunction::Greater),
+                // A blended face is seen on an opaque one at its place.
+                depth_compare: Some(if blended {
+                    wgpu::CompareFunction::GreaterEqual
+                } else {
+                    wgpu::CompareFunction::Greater
+                }),
                 stencil: Default::default(),
                 bias: Default::default(),
             }),

@@ -4,7 +4,7 @@ use crate::derived::Derived;
 use crate::rays::RayCaster;
 use glam::{DVec3, Vec3};
 use npr_mesh::edges::{self, EdgeKind, EdgeOptions, Edges};
-use npr_mesh::{AlphaMode, Model};
+use npr_mesh::{AlphaMode, Model, coplanar};
 use std::sync::OnceLock;
 
 /// A model and the data derived from it. Its positions are relative to a local origin and scaled by a power of two
@@ -22,7 +22,8 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// Finds a model's edges and prepares it. Faces without material get [`npr_mesh::Material::default`].
+    /// Finds a model's edges and prepares it. Faces without material get [`npr_mesh::Material::default`]. Of faces that
+    /// overlap in one plane those are kept that are seen ([`npr_mesh::coplanar`]).
     pub fn new(mut model: Model) -> Self {
         model.fill_face_material();
         let bounds = model.bounds();
@@ -35,6 +36,7 @@ impl Mesh {
                 *position = if here.is_finite() { here } else { Vec3::ZERO };
             }
         }
+        let model = coplanar::separate(&model).unwrap_or(model);
         let edges = find_edges(&model);
         Self { origin, scale, ..Self::with_edges(model, edges) }
     }
@@ -58,7 +60,7 @@ impl Mesh {
         }
     }
 
-    /// The triangles. A position in file units is the stored position divided by [`Mesh::scale`], plus
+    /// The triangles, of which those that overlap in one plane are separated. A position in file units is the stored position divided by [`Mesh::scale`], plus
     /// [`Mesh::origin`].
     pub fn model(&self) -> &Model {
         &self.model
@@ -125,6 +127,12 @@ impl Mesh {
     /// Whether any face is blended over what is behind it.
     pub(crate) fn has_blend(&self) -> bool {
         self.model.materials.iter().any(|m| m.alpha_mode == AlphaMode::Blend)
+    }
+
+    /// Whether a cut-out face may be at the place of another face.
+    pub(crate) fn has_layers(&self) -> bool {
+        self.model.materials.iter().any(|m| matches!(m.alpha_mode, AlphaMode::Mask { .. }))
+            && (!self.edges.further_faces.is_empty() || self.edges.skipped.contains(&true))
     }
 
     /// Data that the techniques derive from the mesh and cache.

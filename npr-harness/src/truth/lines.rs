@@ -394,8 +394,8 @@ impl<'a> Visibility<'a> {
     }
 
     fn is_solid(&self, hit: &Hit) -> bool {
-        let material = self.scene.material(hit.object, hit.face);
-        (hit.front || material.double_sided) && material.alpha_mode != AlphaMode::Blend
+        (hit.front || self.scene.shows_back(hit.object, hit.face))
+            && self.scene.material(hit.object, hit.face).alpha_mode != AlphaMode::Blend
     }
 
     /// The depth from a point of the faces `own` to the next surface behind it, world units; infinite if there is none.

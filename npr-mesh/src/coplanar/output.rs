@@ -8,8 +8,8 @@ use std::collections::HashMap;
 
 /// The faces of the result.
 pub(super) struct Output {
-    /// Whether it differs from the model that it is made from.
-    pub is_changed: bool,
+    /// Whether any face is cut.
+    is_cut: bool,
     /// What is made of the faces that do not stay as they are.
     fates: HashMap<u32, Fate>,
 }
@@ -17,8 +17,22 @@ pub(super) struct Output {
 enum Fate {
     /// The face as a whole.
     Whole(Seen),
-    /// Pieces, in the winding of the face.
-    Pieces(Vec<([Corner; 3], Seen)>),
+    Pieces(Vec<Piece>),
+}
+
+/// A part of a face.
+pub(super) struct Part {
+    /// In the winding of the face.
+    pub corners: [DVec3; 3],
+    pub seen: Seen,
+    /// Whether the opposite winding and normals replace its own, which change nothing if both its sides are seen.
+    pub is_turned: bool,
+}
+
+struct Piece {
+    corners: [Corner; 3],
+    seen: Seen,
+    is_turned: bool,
 }
 
 /// A corner of a piece.
@@ -31,7 +45,7 @@ struct Corner {
 
 impl Output {
     pub fn new() -> Self {
-        Self { is_changed: false, fates: HashMap::new() }
+        Self { is_cut: false, fates: HashMap::new() }
     }
 
     /// Keeps a whole face as far as it is seen.
@@ -42,12 +56,16 @@ impl Output {
     /// Replaces a face by pieces, of which there are none yet.
     pub fn cut(&mut self, face: u32) {
         self.fates.insert(face, Fate::Pieces(Vec::new()));
-        self.is_changed = true;
+        self.is_cut = true;
     }
 
-    /// Adds a piece of a face, with corners in the winding of the face.
-    pub fn add_piece(&mut self, model: &Model, face: u32, corners: [DVec3; 3], seen: Seen, along: Projection) {
-        let Some(Fate::Pieces(pieces)) = self.fates.get_mut(&face) else { return };
+    /// Whether a face is replaced by pieces.
+    pub fn is_cut(&self, face: u32) -> bool {
+        matches!(self.fates.get(&face), Some(Fate::Pieces(_)))
+    }
+
+    /// Adds a piece of a face.
+    pub fn add_piece(&mut self, model: &Model, face: u32, along: Projection, part: Part) {
         let of_face = model.faces[face as usize].map(|vertex| model.positions[vertex as usize].as_dvec3());
         let [a, b, c] = of_face.map(|corner| along.project(corner));
         let corner = |position: DVec3| {
@@ -55,36 +73,50 @@ impl Output {
             let [u, v, w] = [(b - at).perp_dot(c - at), (c - at).perp_dot(a - at), (a - at).perp_dot(b - at)];
             Corner { position: position.as_vec3(), weights: [u, v, w].map(|x| (x / (u + v + w)).clamp(0.0, 1.0)) }
         };
-        pieces.push((corners.map(corner), seen));
+        let piece = Piece { corners: part.corners.map(corner), seen: part.seen, is_turned: part.is_turned };
+        match self.fates.get_mut(&face) {
+            Some(Fate::Pieces(pieces)) => pieces.push(piece),
+            _ => {
+                self.fates.insert(face, Fate::Pieces(vec![piece]));
+            }
+        }
     }
 
+    /// The result; `None` if it is the model itself.
     pub fn into_model(mut self, model: &Model) -> Option<Model> {
-        let has_pieces = self.is_changed;
         let mut builder = Builder::new(model);
         let mut sources = Vec::with_capacity(model.faces.len());
         for face in 0..model.faces.len() as u32 {
             let vertices = model.faces[face as usize];
+            let is_one_sided = model.one_sided.get(face as usize) == Some(&true);
+            let shows_back = model.shows_back(face);
             match self.fates.remove(&face) {
-                None => builder.push(vertices, model.one_sided.get(face as usize) == Some(&true)),
-                Some(Fate::Whole(seen)) => {
-                    self.is_changed |= seen != Seen { front: true, back: model.shows_back(face) };
-                    builder.push_seen(vertices, seen, model.shows_back(face));
-                }
+                None => builder.push(vertices, is_one_sided),
+                Some(Fate::Whole(seen)) => builder.push_seen(vertices, seen, is_one_sided, shows_back),
                 Some(Fate::Pieces(pieces)) => {
-                    for (corners, seen) in pieces {
-                        if seen.front || seen.back {
-                            let vertices = corners.map(|corner| builder.vertex(vertices, corner));
-                            builder.push_seen(vertices, seen, model.shows_back(face));
+                    for Piece { corners, seen, is_turned } in pieces {
+                        if !(seen.front || seen.back) {
+                            continue;
+                        }
+                        let vertices = corners.map(|corner| builder.vertex(vertices, corner));
+                        if is_turned {
+                            let [a, b, c] = vertices.map(|vertex| builder.turned(vertex));
+                            builder.push([a, c, b], false);
+                        } else {
+                            builder.push_seen(vertices, seen, is_one_sided, shows_back);
                         }
                     }
                 }
             }
             sources.resize(builder.made.faces.len(), face as usize);
         }
-        if !self.is_changed {
+        let mut made = builder.made;
+        if !made.one_sided.contains(&true) {
+            made.one_sided.clear();
+        }
+        if made.faces == model.faces && made.one_sided == model.one_sided {
             return None;
         }
-        let mut made = builder.made;
         let of_sources = |values: &[u32]| match values {
             [] => Vec::new(),
             _ => sources.iter().map(|&face| values[face]).collect(),
@@ -92,11 +124,8 @@ impl Output {
         made.face_material = of_sources(&model.face_material);
         made.face_mesh = of_sources(&model.face_mesh);
         made.face_polygon = of_sources(&model.face_polygon);
-        if made.face_polygon.is_empty() && has_pieces {
+        if made.face_polygon.is_empty() && self.is_cut {
             made.face_polygon = sources.iter().map(|&face| face as u32).collect();
-        }
-        if !made.one_sided.contains(&true) {
-            made.one_sided.clear();
         }
         Some(made)
     }
@@ -128,10 +157,10 @@ impl<'a> Builder<'a> {
         self.made.one_sided.push(is_one_sided);
     }
 
-    /// Adds a face as far as it is seen. `shows_back`: whether its back was shown before.
-    fn push_seen(&mut self, vertices: [u32; 3], seen: Seen, shows_back: bool) {
+    /// Adds a face as far as it is seen. `is_one_sided` and `shows_back` are those of the face before.
+    fn push_seen(&mut self, vertices: [u32; 3], seen: Seen, is_one_sided: bool, shows_back: bool) {
         match seen {
-            Seen { front: true, back } => self.push(vertices, shows_back && !back),
+            Seen { front: true, back } => self.push(vertices, is_one_sided || shows_back && !back),
             Seen { front: false, back: true } => {
                 // Its back becomes the front of a one-sided face.
                 let [a, b, c] = vertices.map(|vertex| self.turned(vertex));
