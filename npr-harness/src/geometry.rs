@@ -164,11 +164,9 @@ pub(crate) fn add_batches(
         indices.extend(faces[face as usize].map(|vertex| first_vertex + vertex));
         match batches.last_mut() {
             Some(batch) if last == Some(look(face)) => batch.indices.end += 3,
-            _ => batches.push(Batch {
-                material: material(face),
-                one_sided: one_sided(face),
-                indices: start..start + 3,
-            }),
+            _ => {
+                batches.push(Batch { material: material(face), one_sided: one_sided(face), indices: start..start + 3 })
+            }
         }
         last = Some(look(face));
     }

@@ -3,6 +3,7 @@
 //! A mesh is prepared once and may be placed by any number of objects. Moving an object only rebuilds its matrices and,
 //! at the next ray cast, the hierarchy over the objects' boxes; no work is proportional to the mesh's size.
 
+mod coincident;
 mod hierarchy;
 mod mesh;
 mod object;
@@ -30,6 +31,8 @@ use std::sync::{Arc, OnceLock};
 #[derive(Clone)]
 pub struct Scene {
     meshes: Vec<Arc<Mesh>>,
+    /// The meshes of the file, of which some make way for those of objects with coincident faces.
+    file_meshes: Vec<Arc<Mesh>>,
     objects: Vec<Object>,
     /// The origin of the scene's positions, in file units: 0, or the centre of the bounding box of all objects where
     /// that is far from 0. It is subtracted in f64, so distant scenes lose no precision.
@@ -59,7 +62,7 @@ pub struct Scene {
     /// coincident surfaces of different objects the first one drawn is visible.
     drawing_order: Vec<u32>,
     rank: Vec<u32>,
-    /// Counts changes of materials, after which an upload is out of date.
+    /// Counts changes of materials and of meshes, after which an upload is out of date.
     materials_version: u64,
     /// The hierarchy over the objects' boxes; unused with a single object.
     hierarchy: OnceLock<BoxHierarchy>,
@@ -119,6 +122,7 @@ impl Scene {
         let bounds = placed.iter().filter_map(world_box).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
         let (origin, scale) = bounds.map_or((DVec3::ZERO, 1.0), |(low, high)| mesh::normalization(low, high));
         let mut scene = Self {
+            file_meshes: meshes.clone(),
             meshes,
             objects: Vec::new(),
             origin,
@@ -146,6 +150,7 @@ impl Scene {
         }
         scene.bounds = scene.box_around_objects();
         scene.reference_radius = scene.radius();
+        scene.separate_objects();
         scene.sort_objects();
         Ok(scene)
     }
@@ -197,14 +202,15 @@ impl Scene {
 
     /// The transform from the stored positions of a mesh to scene space.
     fn scene_from_mesh(&self, mesh: usize, world_from_mesh: &DAffine3) -> DAffine3 {
-        let (mesh, DAffine3 { matrix3, translation }) = (&self.meshes[mesh], *world_from_mesh);
+        let (mesh, DAffine3 { matrix3, translation }) = (&self.file_meshes[mesh], *world_from_mesh);
         DAffine3 {
             matrix3: matrix3 * (self.scale / mesh.scale()),
             translation: (matrix3 * mesh.origin() + translation - self.origin) * self.scale,
         }
     }
 
-    /// Moves an object. `world_from_mesh` is in file units. The scene's origin and scale do not change.
+    /// Moves an object. `world_from_mesh` is in file units. The scene's origin and scale do not change. Where faces of two
+    /// objects coincided before or do now, these objects' meshes change, and an upload to a device is out of date.
     ///
     /// # Errors
     /// [`HarnessError::ObjectTransform`] where the transform is singular or places the object farther away than 10¹⁵ units
@@ -213,22 +219,28 @@ impl Scene {
     /// # Panics
     /// If there is no such object.
     pub fn place(&mut self, object: usize, world_from_mesh: &DAffine3) -> Result<(), HarnessError> {
-        let mesh = self.objects[object].mesh;
+        let of = &self.objects[object];
+        let mesh = of.unseparated.as_ref().map_or(of.mesh, |unseparated| unseparated.mesh);
         let scene_from_mesh = self.scene_from_mesh(mesh, world_from_mesh);
         if !object::is_invertible(&scene_from_mesh) {
             return Err(HarnessError::ObjectTransform { object, fault: "is singular, or nearly so" });
         }
-        let of_mesh = self.meshes[mesh].bounds().map(|(low, high)| (low.as_dvec3(), high.as_dvec3()));
+        let of_mesh = self.file_meshes[mesh].bounds().map(|(low, high)| (low.as_dvec3(), high.as_dvec3()));
         let (low, high) = of_mesh.map_or_else(Default::default, |bounds| object::placed_box(&scene_from_mesh, bounds));
         let farthest = low.abs().max(high.abs()).max_element();
         if farthest.is_nan() || farthest > FARTHEST {
             return Err(HarnessError::ObjectTransform { object, fault: "places it too far away" });
         }
+        let had_own_meshes = self.join_objects();
         let was_mirrored = self.objects[object].is_mirrored();
         self.objects[object].place(scene_from_mesh);
         self.bounds = self.box_around_objects();
         self.hierarchy = OnceLock::new();
-        if self.objects[object].is_mirrored() != was_mirrored {
+        let have_own_meshes = self.separate_objects();
+        if had_own_meshes || have_own_meshes {
+            self.materials_version += 1;
+        }
+        if had_own_meshes || have_own_meshes || self.objects[object].is_mirrored() != was_mirrored {
             self.sort_objects();
         }
         Ok(())
@@ -302,7 +314,7 @@ impl Scene {
         self.materials_version
     }
 
-    /// The meshes.
+    /// The meshes. Objects whose faces coincide with those of others have one of their own.
     pub fn meshes(&self) -> &[Arc<Mesh>] {
         &self.meshes
     }
@@ -644,8 +656,11 @@ impl Scene {
             model.textures.clear();
             flat.append(&model);
         }
+        // With these edges and faces, which are separated already.
+        let mesh = Arc::new(Mesh::with_edges(flat.clone(), edges));
         let mut scene = Self::new(flat);
-        scene.meshes = vec![Arc::new(Mesh::with_edges(scene.meshes[0].model().clone(), edges))];
+        scene.meshes = vec![mesh];
+        scene.file_meshes.clone_from(&scene.meshes);
         (scene.origin, scene.scale, scene.clip) = (self.origin, self.scale, self.clip);
         (scene.materials, scene.textures, scene.line_kinds) = (materials, self.textures.clone(), line_kinds);
         scene.reference_radius = self.reference_radius;

@@ -23,7 +23,7 @@ mod planes;
 
 use crate::weld::weld_within;
 use crate::{AlphaMode, Model};
-use arrangement::{Pieces, arrange};
+use arrangement::{Piece, Pieces, arrange};
 use glam::{DVec3, Vec3};
 use layers::{Layer, Seen, seen};
 use output::{Output, Part};
@@ -38,7 +38,19 @@ pub const ROUNDING: f64 = 4.0 * f32::EPSILON as f64;
 /// more places stay as they are.
 const CROSSINGS: usize = 1 << 18;
 
-/// The model with its coplanar faces separated by the rule above; `None` if no faces overlap.
+/// A model whose coplanar faces are separated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Separated {
+    /// The model.
+    pub model: Model,
+    /// Per face of it: the face that it is, or that it is a piece of.
+    pub sources: Vec<u32>,
+    /// The faces, ascending, of the model before that share their place with others that they hide, are hidden by or are
+    /// seen through.
+    pub coincident: Vec<u32>,
+}
+
+/// The model with its coplanar faces separated by the rule above; `None` if no face hides another.
 ///
 /// Pieces of a face have its material, mesh and polygon, stand where it stood in the order of the file, and have corners
 /// of their own where it has none, with interpolated normals, texture coordinates and colours. A face that is not
@@ -57,19 +69,19 @@ const CROSSINGS: usize = 1 << 18;
 ///     faces: vec![[0, 1, 2], [0, 2, 3], [1, 2, 3], [1, 3, 0]],
 ///     ..Model::default()
 /// };
-/// let separated = coplanar::separate(&model).expect("faces overlap");
+/// let separated = coplanar::separate(&model).expect("faces overlap").model;
 /// assert_eq!(separated.faces.len(), 4); // the pieces of the second square
 /// assert_eq!(separated.face_polygon, [2, 2, 3, 3]);
 /// assert!(coplanar::separate(&separated).is_none());
 /// ```
-pub fn separate(model: &Model) -> Option<Model> {
+pub fn separate(model: &Model) -> Option<Separated> {
     let groups = Groups::find(model)?;
     let mut output = Output::new();
     let mut budget = CROSSINGS;
     for group in &groups.groups {
         groups.separate(model, group, &mut budget, &mut output);
     }
-    output.into_model(model)
+    output.finish(model)
 }
 
 /// Faces with the same corners, and the groups of those that overlap.
@@ -140,55 +152,83 @@ impl Groups {
             return;
         };
         let along = Projection::new(plane.normal);
-        if let [stack] = *group {
+        let faces_of = |stacks: &mut dyn Iterator<Item = usize>| {
+            let mut faces: Vec<u32> = stacks.flat_map(|stack| &self.stacks[stack]).copied().collect();
+            faces.sort_unstable();
+            faces
+        };
+        let faces = faces_of(&mut group.iter().copied());
+        let places = if let [stack] = *group {
             let [a, b, c] = self.flats[stack].corners;
-            let corners = if self.flats[stack].normal.dot(plane.normal) > 0.0 { [a, b, c] } else { [a, c, b] };
-            Place { corners, faces: &self.stacks[stack] }.select(model, plane.normal, along, output);
+            vec![Place::new(model, plane.normal, [a, b, c], faces.clone())]
+        } else {
+            let corners: Vec<DVec3> =
+                group.iter().flat_map(|&stack| corners_of(model, self.stacks[stack][0])).collect();
+            let (mut points, triangles) = joined(&corners, 2.0 * self.rounding);
+            let Some(Pieces { added, pieces }) = arrange(&points, &triangles, along, self.rounding, budget) else {
+                return;
+            };
+            // Rounded here, once for all faces of a piece.
+            points.extend(added.iter().map(|point| point.as_vec3().as_dvec3()));
+            let place = |Piece { corners, of }: &Piece| {
+                let faces = faces_of(&mut of.iter().map(|&at| group[at as usize]));
+                Place::new(model, plane.normal, corners.map(|point| points[point as usize]), faces)
+            };
+            pieces.iter().map(place).collect()
+        };
+        // Where nothing hides anything that would be shown, all stay as they are.
+        if places.iter().all(|place| place.is_natural(model)) {
             return;
         }
-        let corners: Vec<DVec3> = group.iter().flat_map(|&stack| corners_of(model, self.stacks[stack][0])).collect();
-        let (mut points, triangles) = joined(&corners, 2.0 * self.rounding);
-        let Some(Pieces { added, pieces }) = arrange(&points, &triangles, along, self.rounding, budget) else { return };
-        // Rounded here, once for all faces of a piece.
-        points.extend(added.iter().map(|point| point.as_vec3().as_dvec3()));
-        group.iter().flat_map(|&stack| &self.stacks[stack]).for_each(|&face| output.cut(face));
-        for piece in &pieces {
-            let mut faces: Vec<u32> =
-                piece.of.iter().flat_map(|&at| &self.stacks[group[at as usize]]).copied().collect();
-            faces.sort_unstable();
-            let corners = piece.corners.map(|point| points[point as usize]);
-            Place { corners, faces: &faces }.select(model, plane.normal, along, output);
-        }
+        let is_cut = group.len() > 1;
+        faces.iter().for_each(|&face| output.change(face, is_cut));
+        places.iter().for_each(|place| place.select(model, along, is_cut, output));
     }
 }
 
 /// A triangle that several faces cover.
-struct Place<'a> {
+struct Place {
     /// Counter-clockwise seen against the normal of the plane.
     corners: [DVec3; 3],
     /// In the order of the file.
-    faces: &'a [u32],
+    faces: Vec<u32>,
+    layers: Vec<Layer>,
+    seen: Vec<Seen>,
+    /// Whether several faces are seen from one side, through each other.
+    is_shared: bool,
 }
 
-impl Place<'_> {
-    /// Adds what is seen of the faces to the result.
-    fn select(&self, model: &Model, normal: DVec3, along: Projection, output: &mut Output) {
-        let layers = layers(model, self.faces, normal);
+impl Place {
+    fn new(model: &Model, normal: DVec3, corners: [DVec3; 3], faces: Vec<u32>) -> Self {
+        let layers = layers(model, &faces, normal);
         let seen = seen(&layers);
         let is_up = |layer: &Layer, seen: &Seen| if layer.front { seen.front } else { seen.back };
         let up = layers.iter().zip(&seen).filter(|(layer, seen)| is_up(layer, seen)).count();
-        let down = seen.iter().filter(|seen| seen.front).count() + seen.iter().filter(|seen| seen.back).count() - up;
-        // Faces that are seen through each other have equal corners in the same order, so that they have equal depths.
-        let is_shared = up > 1 || down > 1;
-        for ((&face, layer), &seen) in self.faces.iter().zip(&layers).zip(&seen) {
-            let [a, b, c] = self.corners;
-            let is_turned = is_shared && !layer.front && seen.front && seen.back;
-            let corners = if layer.front { [a, b, c] } else { [a, c, b] };
-            if is_shared || output.is_cut(face) {
-                output.add_piece(model, face, along, Part { corners, seen, is_turned });
-            } else {
+        let of_all = seen.iter().filter(|seen| seen.front).count() + seen.iter().filter(|seen| seen.back).count();
+        let [a, b, c] = corners;
+        let is_counter_clockwise = (b - a).cross(c - a).dot(normal) > 0.0;
+        let corners = if is_counter_clockwise { [a, b, c] } else { [a, c, b] };
+        Self { corners, faces, layers, seen, is_shared: up > 1 || of_all - up > 1 }
+    }
+
+    /// Whether all faces are seen as they would be alone, and none through another.
+    fn is_natural(&self, model: &Model) -> bool {
+        let alone = |face: u32| Seen { front: true, back: model.shows_back(face) };
+        !self.is_shared && self.faces.iter().zip(&self.seen).all(|(&face, &seen)| seen == alone(face))
+    }
+
+    /// Adds what is seen of the faces to the result.
+    fn select(&self, model: &Model, along: Projection, is_cut: bool, output: &mut Output) {
+        for ((&face, layer), &seen) in self.faces.iter().zip(&self.layers).zip(&self.seen) {
+            if !(is_cut || self.is_shared) {
                 output.keep(face, seen);
+                continue;
             }
+            // Faces that are seen through each other have equal corners in the same order, so that depths are equal.
+            let is_turned = self.is_shared && !layer.front && seen.front && seen.back;
+            let [a, b, c] = self.corners;
+            let corners = if layer.front { [a, b, c] } else { [a, c, b] };
+            output.add_piece(model, face, along, Part { corners, seen, is_turned });
         }
     }
 }

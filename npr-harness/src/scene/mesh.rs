@@ -36,7 +36,7 @@ impl Mesh {
                 *position = if here.is_finite() { here } else { Vec3::ZERO };
             }
         }
-        let model = coplanar::separate(&model).unwrap_or(model);
+        let model = coplanar::separate(&model).map_or(model, |separated| separated.model);
         let edges = find_edges(&model);
         Self { origin, scale, ..Self::with_edges(model, edges) }
     }

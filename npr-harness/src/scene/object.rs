@@ -1,5 +1,6 @@
 //! A mesh placed in a scene.
 
+use super::coincident::Unseparated;
 use super::mesh::Mesh;
 use crate::derived::Derived;
 use glam::{DAffine3, DMat3, DVec3, DVec4, Vec3};
@@ -29,6 +30,8 @@ pub struct Object {
     /// The lines along its edges.
     pub lines: ObjectLines,
     pub(super) mesh: usize,
+    /// What it is made from, if its mesh is one of its own.
+    pub(super) unseparated: Option<Unseparated>,
     /// The index of its first material in the scene, and whether all of its faces use that material.
     pub(super) first_material: usize,
     pub(super) one_material: bool,
@@ -98,6 +101,7 @@ impl Object {
             name,
             lines: ObjectLines::OfStyle,
             mesh,
+            unseparated: None,
             first_material,
             one_material: false,
             lights: None,

@@ -1,5 +1,6 @@
 //! Builds the model whose coplanar faces are separated.
 
+use super::Separated;
 use super::layers::Seen;
 use super::overlap::Projection;
 use crate::Model;
@@ -48,20 +49,15 @@ impl Output {
         Self { is_cut: false, fates: HashMap::new() }
     }
 
+    /// Announces a face that shares its place with others. Nothing of it is there until it is kept or pieces are added.
+    pub fn change(&mut self, face: u32, is_cut: bool) {
+        self.fates.insert(face, Fate::Pieces(Vec::new()));
+        self.is_cut |= is_cut;
+    }
+
     /// Keeps a whole face as far as it is seen.
     pub fn keep(&mut self, face: u32, seen: Seen) {
         self.fates.insert(face, Fate::Whole(seen));
-    }
-
-    /// Replaces a face by pieces, of which there are none yet.
-    pub fn cut(&mut self, face: u32) {
-        self.fates.insert(face, Fate::Pieces(Vec::new()));
-        self.is_cut = true;
-    }
-
-    /// Whether a face is replaced by pieces.
-    pub fn is_cut(&self, face: u32) -> bool {
-        matches!(self.fates.get(&face), Some(Fate::Pieces(_)))
     }
 
     /// Adds a piece of a face.
@@ -74,16 +70,15 @@ impl Output {
             Corner { position: position.as_vec3(), weights: [u, v, w].map(|x| (x / (u + v + w)).clamp(0.0, 1.0)) }
         };
         let piece = Piece { corners: part.corners.map(corner), seen: part.seen, is_turned: part.is_turned };
-        match self.fates.get_mut(&face) {
-            Some(Fate::Pieces(pieces)) => pieces.push(piece),
-            _ => {
-                self.fates.insert(face, Fate::Pieces(vec![piece]));
-            }
+        if let Some(Fate::Pieces(pieces)) = self.fates.get_mut(&face) {
+            pieces.push(piece);
         }
     }
 
     /// The result; `None` if it is the model itself.
-    pub fn into_model(mut self, model: &Model) -> Option<Model> {
+    pub fn finish(mut self, model: &Model) -> Option<Separated> {
+        let mut coincident: Vec<u32> = self.fates.keys().copied().collect();
+        coincident.sort_unstable();
         let mut builder = Builder::new(model);
         let mut sources = Vec::with_capacity(model.faces.len());
         for face in 0..model.faces.len() as u32 {
@@ -108,7 +103,7 @@ impl Output {
                     }
                 }
             }
-            sources.resize(builder.made.faces.len(), face as usize);
+            sources.resize(builder.made.faces.len(), face);
         }
         let mut made = builder.made;
         if !made.one_sided.contains(&true) {
@@ -119,15 +114,15 @@ impl Output {
         }
         let of_sources = |values: &[u32]| match values {
             [] => Vec::new(),
-            _ => sources.iter().map(|&face| values[face]).collect(),
+            _ => sources.iter().map(|&face| values[face as usize]).collect(),
         };
         made.face_material = of_sources(&model.face_material);
         made.face_mesh = of_sources(&model.face_mesh);
         made.face_polygon = of_sources(&model.face_polygon);
         if made.face_polygon.is_empty() && self.is_cut {
-            made.face_polygon = sources.iter().map(|&face| face as u32).collect();
+            made.face_polygon = sources.clone();
         }
-        Some(made)
+        Some(Separated { model: made, sources, coincident })
     }
 }
 

@@ -76,7 +76,7 @@ impl Soup {
 
     /// Compares what is shown with what is expected at random points, those near a side aside.
     fn check(&self, random: &mut Random, most_expected: usize) {
-        let separated = separate(&self.model);
+        let separated = separate(&self.model).map(|separated| separated.model);
         let model = separated.as_ref().unwrap_or(&self.model);
         for _ in 0..200 {
             let at = DVec2::new(random.unit(), random.unit()) * 2.4 - 1.2;
@@ -225,9 +225,33 @@ fn two_layers_of_a_fine_grid_are_separated_square_by_square() {
             if number % 2 == 0 { [corner, corner + 1, corner + 41] } else { [corner + 1, corner + 42, corner + 41] };
     }
     model.append(&other);
-    let separated = separate(&model).expect("all faces overlap");
+    let separated = separate(&model).expect("all faces overlap").model;
     assert_eq!(separated.faces.len(), 4 * 1600);
     assert!(separated.face_mesh.iter().all(|&mesh| mesh == 1), "the later layer is seen");
+}
+
+#[test]
+fn faces_that_are_never_seen_together_stay_whole() {
+    // The bottom of a box on a larger floor: each is seen from its own front only.
+    let mut random = Random(1);
+    let square = [DVec2::NEG_ONE, DVec2::new(1.0, -1.0), DVec2::ONE, DVec2::new(-1.0, 1.0)];
+    let [a, b, c, d] = square;
+    let [e, f, g, h] = square.map(|corner| corner * 0.5);
+    let mut soup = Soup::new(vec![[a, b, c], [a, c, d], [e, g, f], [e, h, g]], turn(&mut random), DVec3::ZERO);
+    assert!(separate(&soup.model).is_some());
+    soup.model.materials.iter_mut().for_each(|material| material.double_sided = false);
+    assert!(separate(&soup.model).is_none());
+}
+
+#[test]
+fn sources_and_coincident_faces_are_named() {
+    let square = [DVec2::NEG_ONE, DVec2::new(1.0, -1.0), DVec2::ONE, DVec2::new(-1.0, 1.0)];
+    let [a, b, c, _] = square;
+    let beside = [DVec2::new(3.0, 3.0), DVec2::new(4.0, 3.0), DVec2::new(3.0, 4.0)];
+    let soup = Soup::new(vec![beside, [a, b, c], [b, c, a]], DQuat::IDENTITY, DVec3::ZERO);
+    let separated = separate(&soup.model).expect("a face is there twice");
+    assert_eq!((separated.sources, separated.coincident), (vec![0, 2], vec![1, 2]));
+    assert!(separated.model.face_polygon.is_empty(), "nothing is cut");
 }
 
 #[test]
@@ -239,7 +263,7 @@ fn pieces_interpolate_what_their_corners_have() {
     let uv = |position: &Vec3| Vec3::new(0.5, 0.25, 0.0) * *position;
     soup.model.uvs = soup.model.positions.iter().map(|position| uv(position).truncate()).collect();
     soup.model.colors = soup.model.positions.iter().map(|position| position.extend(1.0)).collect();
-    let separated = separate(&soup.model).expect("the mark is on the square");
+    let separated = separate(&soup.model).expect("the mark is on the square").model;
     for (vertex, position) in separated.positions.iter().enumerate() {
         assert!(separated.uvs[vertex].abs_diff_eq(uv(position).truncate(), 1e-6));
         assert!(separated.colors[vertex].abs_diff_eq(position.extend(1.0), 1e-6));
