@@ -10,13 +10,13 @@ fn positions_in_f32_are_displaced_by_half_a_px_50_000_sizes_from_the_origin_and_
 }
 
 #[test]
-fn faces_in_one_plane_show_through_each_other_unless_their_corners_are_equal() {
+fn of_faces_in_one_plane_no_pixel_shows_the_other() {
     let curves = ["cut along the same diagonal", "cut along the other diagonal", "a mark on a sheet", "back to back"];
     holds("coincident-faces", &curves);
 }
 
 #[test]
-fn executors_differ_where_faces_lie_in_one_plane() {
+fn executors_show_the_same_of_faces_in_one_plane() {
     let curves = ["cut along the same diagonal", "cut along the other diagonal", "a mark on a sheet", "back to back"];
     holds("coincident-faces-executors", &curves);
 }
