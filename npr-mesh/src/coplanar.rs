@@ -27,7 +27,7 @@ use arrangement::{Piece, Pieces, arrange};
 use glam::{DVec3, Vec3};
 use layers::{Layer, Seen, seen};
 use output::{Output, Part};
-use overlap::{Flat, Projection, overlapping};
+use overlap::{Flat, Projection, normal_and_height, overlapping};
 use planes::Plane;
 use std::collections::HashMap;
 
@@ -102,12 +102,10 @@ impl Groups {
         let (center, size) = (low.midpoint(high), (high - low).length());
         let flat = |face: u32| Flat::new(corners_of(model, face), rounding);
         let plane = |face: u32| {
-            let flat = flat(face)?;
-            Some(Plane {
-                normal: flat.normal,
-                distance: flat.normal.dot((flat.corners[0] - center) / size),
-                error: rounding / flat.height,
-            })
+            let corners = corners_of(model, face);
+            let (normal, height) = normal_and_height(corners)?;
+            let distance = normal.dot((corners[0] - center) / size);
+            (height > rounding).then(|| Plane { normal, distance, error: rounding / height })
         };
         let planes: Vec<Option<Plane>> = (0..model.faces.len() as u32).map(plane).collect();
         let candidates = planes::shared(&planes);

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 /// The maximum number of boxes in a leaf.
-const LEAF: usize = 4;
+const LEAF: usize = 8;
 
 /// Boxes, halved at the median of their centres along the longest side until [`LEAF`] are left.
 ///
@@ -49,6 +49,34 @@ impl BoxTree {
             } else {
                 let items = &self.items[node.next as usize..][..node.count as usize];
                 items.iter().filter(|item| !apart(item.0)).for_each(|&(_, number)| visit(number));
+            }
+        }
+    }
+
+    /// Calls `visit` once with each two boxes that have a point in common.
+    pub fn pairs(&self, mut visit: impl FnMut(u32, u32)) {
+        let mut open = Vec::with_capacity(64);
+        for (leaf, node) in self.nodes.iter().enumerate().filter(|(_, node)| node.count > 0) {
+            let items = &self.items[node.next as usize..][..node.count as usize];
+            open.extend((!self.nodes.is_empty()).then_some(0));
+            while let Some(at) = open.pop() {
+                let other = &self.nodes[at as usize];
+                if other.low.cmpgt(node.high).any() || other.high.cmplt(node.low).any() {
+                    continue;
+                }
+                if other.count == 0 {
+                    open.extend([other.next, at + 1]);
+                } else if at as usize >= leaf {
+                    let others = &self.items[other.next as usize..][..other.count as usize];
+                    for (number, &([low, high], first)) in items.iter().enumerate() {
+                        let from = if at as usize == leaf { number + 1 } else { 0 };
+                        for &([other_low, other_high], second) in &others[from..] {
+                            if !(other_low.cmpgt(high).any() || other_high.cmplt(low).any()) {
+                                visit(first, second);
+                            }
+                        }
+                    }
+                }
             }
         }
     }
@@ -103,6 +131,16 @@ mod tests {
             let expected: Vec<usize> = (0..boxes.len()).filter(|&other| touches(&boxes[other])).collect();
             assert_eq!(found, expected, "box {number}");
         }
+        let mut pairs = Vec::new();
+        tree.pairs(|a, b| pairs.push((a.min(b) as usize, a.max(b) as usize)));
+        pairs.sort_unstable();
+        let touches =
+            |a: usize, b: usize| !(boxes[a][0].cmpgt(boxes[b][1]).any() || boxes[a][1].cmplt(boxes[b][0]).any());
+        let expected: Vec<(usize, usize)> = (0..boxes.len())
+            .flat_map(|a| (a + 1..boxes.len()).map(move |b| (a, b)))
+            .filter(|&(a, b)| touches(a, b))
+            .collect();
+        assert_eq!(pairs, expected);
         BoxTree::new(Vec::new()).touching([DVec3::ZERO, DVec3::ONE], |_| unreachable!("there is no box"));
     }
 }

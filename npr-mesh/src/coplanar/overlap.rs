@@ -18,15 +18,20 @@ pub(super) struct Flat {
 impl Flat {
     /// `None` if the triangle is no higher than `rounding` over its longest side, so that it has no certain plane.
     pub fn new(corners: [DVec3; 3], rounding: f64) -> Option<Self> {
+        let (normal, height) = normal_and_height(corners).filter(|(_, height)| *height > rounding)?;
         let [a, b, c] = corners;
-        let sides = [b - a, c - b, a - c];
-        let normal = sides[0].cross(c - a);
-        let length = normal.length();
-        let height = length / sides.map(DVec3::length).into_iter().fold(0.0, f64::max);
-        let normal = normal / length;
-        let across = sides.map(|side| side.cross(normal).normalize());
-        (height > rounding && height.is_finite()).then_some(Self { corners, normal, height, across })
+        let across = [b - a, c - b, a - c].map(|side| side.cross(normal).normalize());
+        Some(Self { corners, normal, height, across })
     }
+}
+
+/// The unit normal of a triangle and its height over the longest side; `None` without area.
+pub(super) fn normal_and_height([a, b, c]: [DVec3; 3]) -> Option<(DVec3, f64)> {
+    let normal = (b - a).cross(c - a);
+    let length = normal.length();
+    let longest = (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared()).sqrt();
+    let height = length / longest;
+    (height > 0.0 && height.is_finite()).then(|| (normal / length, height))
 }
 
 /// Calls `visit` with each pair of triangles that lie in one plane and overlap, as far as `rounding`, the largest error
@@ -45,15 +50,12 @@ pub(super) fn overlapping(flats: &[Flat], rounding: f64, mut visit: impl FnMut(u
         );
         [low - slack, high + slack]
     };
-    let tree = BoxTree::new(flats.iter().map(around));
-    for (number, flat) in flats.iter().enumerate() {
-        tree.touching(around(flat), |other| {
-            let other = other as usize;
-            if other > number && overlap(flat, &flats[other], rounding, margin) {
-                visit(number, other);
-            }
-        });
-    }
+    BoxTree::new(flats.iter().map(around)).pairs(|a, b| {
+        let (a, b) = (a as usize, b as usize);
+        if overlap(&flats[a], &flats[b], rounding, margin) {
+            visit(a, b);
+        }
+    });
 }
 
 fn overlap(a: &Flat, b: &Flat, rounding: f64, margin: f64) -> bool {
@@ -118,7 +120,7 @@ mod tests {
 
     fn pairs(flats: &[Flat]) -> Vec<(usize, usize)> {
         let mut found = Vec::new();
-        overlapping(flats, 1e-6, |a, b| found.push((a, b)));
+        overlapping(flats, 1e-6, |a, b| found.push((a.min(b), a.max(b))));
         found.sort_unstable();
         found
     }
