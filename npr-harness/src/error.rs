@@ -316,8 +316,8 @@ pub enum HarnessError {
         /// How many there are.
         meshes: usize,
     },
-    /// A scene whose materials were changed after it was uploaded.
-    #[error("the materials of the scene have changed: it must be uploaded again")]
+    /// A scene whose materials or meshes were changed after it was uploaded.
+    #[error("the materials or coincident faces of the scene have changed: it must be uploaded again")]
     StaleUpload,
     /// A material override that is not compatible with the materials of the mesh.
     #[error(

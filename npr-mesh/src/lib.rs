@@ -28,6 +28,8 @@
 //!   their own.
 //! - Faces are counter-clockwise seen from outside in the space of their mesh. A mirroring transform does not turn a
 //!   mesh inside out: [`Model::transformed`] reverses the faces.
+//! - Of faces that overlap in one plane the one turned to the eye is seen, then the later in the file ([`coplanar`], which
+//!   is not applied when a file is loaded).
 //! - There is a rule for non-manifold edges, opposite windings, faces of zero area and duplicate faces, see
 //!   [`edges`]. None of them removes a line that should be visible.
 //! - Files are not trusted: indices, lengths, types and numbers are checked before use, and sizes are checked against
