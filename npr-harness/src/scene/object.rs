@@ -197,7 +197,7 @@ impl Object {
     }
 
     /// The scene-space bounding box of a mesh-space box; tight if the transform maps axes to axes.
-    pub(super) fn box_around(&self, (low, high): (Vec3, Vec3)) -> (DVec3, DVec3) {
+    pub(crate) fn box_around(&self, (low, high): (Vec3, Vec3)) -> (DVec3, DVec3) {
         placed_box(&self.placement.scene_from_mesh, (low.as_dvec3(), high.as_dvec3()))
     }
 }
