@@ -326,7 +326,11 @@ mod tests {
     fn cameras() -> [Camera; 2] {
         let corners = (0..8u8).map(|i| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32));
         [Some(0.6), None].map(|fov_y_rad| {
-            Camera::framed(corners.clone(), 1.5, &Framing { fov_y_rad, yaw_rad: 0.7, pitch_rad: 0.4, ..Framing::default() })
+            Camera::framed(
+                corners.clone(),
+                1.5,
+                &Framing { fov_y_rad, yaw_rad: 0.7, pitch_rad: 0.4, ..Framing::default() },
+            )
         })
     }
 

@@ -220,7 +220,10 @@ impl Outliers {
         let all = scene.face_count();
         let take = if faces == 1 { "takes" } else { "take" };
         let percent = 100.0 * (1.0 - self.rest_share);
-        format!("{} of {all}{parts}, {farthest}, far from the rest, {take} {percent:.1} % of the extent", count(faces, "face"))
+        format!(
+            "{} of {all}{parts}, {farthest}, far from the rest, {take} {percent:.1} % of the extent",
+            count(faces, "face")
+        )
     }
 }
 

@@ -606,9 +606,8 @@ impl Scene {
     /// The [`Scene::corners`] of the subject.
     pub fn framed_corners(&self) -> impl Iterator<Item = Vec3> + Clone + '_ {
         let subject = self.subject;
-        let is_inside = move |point: &Vec3| {
-            subject.is_none_or(|(low, high)| point.cmpge(low).all() && point.cmple(high).all())
-        };
+        let is_inside =
+            move |point: &Vec3| subject.is_none_or(|(low, high)| point.cmpge(low).all() && point.cmple(high).all());
         self.corners().filter(is_inside)
     }
 

@@ -86,7 +86,10 @@ impl FramingOptions {
     /// The direction of the view and its size. The target needs the scene: [`Self::of_scene`].
     pub fn checked(&self, style: &Style) -> Result<Framing, HarnessError> {
         if self.ground && style.shadow.is_none() {
-            tell(&format!("npr: warning: --ground shows nothing: no light of the style {:?} casts shadows", style.name));
+            tell(&format!(
+                "npr: warning: --ground shows nothing: no light of the style {:?} casts shadows",
+                style.name
+            ));
         }
         Ok(Framing {
             yaw_rad: checked("yaw", self.yaw, -1e6, 1e6, "-1e6..=1e6 degrees")?.to_radians(),

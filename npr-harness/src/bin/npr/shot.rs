@@ -124,7 +124,15 @@ impl ShotOptions {
         // The executor depends on the model, but a picture too large for either is rejected at once.
         check_picture(&style, self.size, samples, backend == Backend::Gpu, memory as u64)?;
         checked("segments", f64::from(self.segments), 1.0, 1024.0, "1..=1024")?;
-        Ok(Shot { style, backend, samples, memory_bytes: memory as u64, size: self.size, framing, options: &self.framing })
+        Ok(Shot {
+            style,
+            backend,
+            samples,
+            memory_bytes: memory as u64,
+            size: self.size,
+            framing,
+            options: &self.framing,
+        })
     }
 
     /// Loads the model, and says what there is to warn of.
