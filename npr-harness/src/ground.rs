@@ -134,3 +134,57 @@ impl Plan {
 
 /// The name of the pass.
 pub(crate) const GROUND: &str = "ground";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use npr_mesh::embedded::cube;
+
+    fn ground(light: DVec4) -> Option<GroundPlan> {
+        GroundPlan::new(&Scene::new(cube()), light)
+    }
+
+    #[test]
+    fn the_rectangle_holds_the_shadow_and_a_lit_margin() {
+        let scene = Scene::new(cube());
+        let (low, high) = scene.bounds().expect("it has faces");
+        let side = f64::from(high.x - low.x);
+        let toward_light = DVec3::new(3.0, 1.0, -0.5).normalize();
+        let GroundPlan { height, low: least, high: most } = ground(toward_light.extend(0.0)).expect("a ground");
+        let margin = MARGIN * scene.radius();
+        assert!(height < f64::from(low.y) && height > f64::from(low.y) - 1e-3 * side);
+        // The shadow of the upper side is three sides to the left, and half of one to the front.
+        let expected = [low.x.into(), high.x.into(), low.z.into(), high.z.into()];
+        let [left, right, back, front]: [f64; 4] = expected;
+        for (found, expected) in [
+            (least.x, left - 3.0 * side - margin),
+            (most.x, right + margin),
+            (least.y, back - margin),
+            (most.y, front + 0.5 * side + margin),
+        ] {
+            assert!((found - expected).abs() < 1e-3 * side, "{found} {expected}");
+        }
+    }
+
+    #[test]
+    fn grazing_light_and_lamps_beside_the_model_have_a_finite_ground() {
+        let scene = Scene::new(cube());
+        let farthest = FARTHEST * scene.radius() + scene.middle().length();
+        let grazing = DVec3::new(1.0, 1e-5, 0.3).normalize().extend(0.0);
+        let beside = (scene.middle() + DVec3::X * 3.0 * scene.radius()).extend(1.0);
+        for light in [grazing, beside] {
+            let GroundPlan { low, high, .. } = ground(light).expect("a ground");
+            assert!(low.abs().max(high.abs()).max_element() <= farthest, "{low} {high}");
+            assert!(low.x < -10.0 * scene.radius(), "{low}");
+        }
+    }
+
+    #[test]
+    fn light_from_below_or_along_the_ground_has_none() {
+        let below = DVec3::new(0.0, -10.0, 0.0);
+        for light in [DVec3::NEG_Y.extend(0.0), DVec3::X.extend(0.0), DVec4::ZERO, below.extend(1.0)] {
+            assert_eq!(ground(light), None, "{light}");
+        }
+        assert!(ground(DVec3::Y.extend(0.0)).is_some());
+    }
+}

@@ -37,7 +37,7 @@ pub struct Outlier {
 pub struct Outliers {
     /// From the nearest to the farthest; at least one.
     pub parts: Vec<Outlier>,
-    /// A box in scene space with everything else and none of the outliers, for [`Scene::set_subject`].
+    /// The bounding box of everything else in scene space, for [`Scene::set_subject`]. No outlier is near it.
     pub rest: (Vec3, Vec3),
     /// The diagonal of the rest's bounding box over that of the whole scene, at most a quarter.
     pub rest_share: f64,
@@ -98,8 +98,7 @@ pub fn find(scene: &Scene) -> Option<Outliers> {
         let are_few = faces <= LARGEST_SHARE * all_faces && area <= LARGEST_SHARE * all_area;
         if are_few && size > 0.0 && nearest > LEAST_RADII * radius && diagonal >= LEAST_SHRINKING * size {
             let outlier = |part: &Part| Outlier { object: part.object, faces: part.faces, at: part.middle() };
-            // No outlier is within a radius of the rest, so that rounding to f32 leaves none out and lets none in.
-            let rest = ((rest.0 - 0.1 * size).as_vec3(), (rest.1 + 0.1 * size).as_vec3());
+            let rest = (rest.0.as_vec3(), rest.1.as_vec3());
             let parts = parts[number..].iter().map(outlier).collect();
             return Some(Outliers { parts, rest, rest_share: size / diagonal });
         }

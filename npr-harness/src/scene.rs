@@ -603,11 +603,14 @@ impl Scene {
         self.subject.or(self.bounds)
     }
 
-    /// The [`Scene::corners`] of the subject.
+    /// The [`Scene::corners`] of the subject: those within its box, or no more than a thousandth of its diagonal outside.
     pub fn framed_corners(&self) -> impl Iterator<Item = Vec3> + Clone + '_ {
-        let subject = self.subject;
+        let around = self.subject.map(|(low, high)| {
+            let slack = 1e-3 * (high - low).length();
+            (low - slack, high + slack)
+        });
         let is_inside =
-            move |point: &Vec3| subject.is_none_or(|(low, high)| point.cmpge(low).all() && point.cmple(high).all());
+            move |point: &Vec3| around.is_none_or(|(low, high)| point.cmpge(low).all() && point.cmple(high).all());
         self.corners().filter(is_inside)
     }
 
