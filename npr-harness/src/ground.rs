@@ -8,7 +8,9 @@
 
 use crate::plan::{Plan, Reason};
 use crate::scene::Scene;
-use glam::{DVec2, DVec3, DVec4, Vec3};
+#[cfg(feature = "gpu")]
+use glam::Vec3;
+use glam::{DVec2, DVec3, DVec4};
 
 /// The distance of the plane below the lowest point, in radii of the subject. Larger than the rounding of depths, so that
 /// a face that lies on the ground is in front of it; far less than a pixel.
@@ -94,6 +96,7 @@ impl GroundPlan {
         DVec2::new(at.x, at.z) / tile
     }
 
+    #[cfg(feature = "gpu")]
     fn bounds(&self) -> (Vec3, Vec3) {
         let [low, _, high, _] = self.corners();
         (low.min(high).as_vec3(), low.max(high).as_vec3())
@@ -101,6 +104,7 @@ impl GroundPlan {
 }
 
 /// The box of everything that a picture with this ground shows: of the scene, and of the ground.
+#[cfg(feature = "gpu")]
 pub(crate) fn bounds_with(ground: Option<&GroundPlan>, scene: &Scene) -> Option<(Vec3, Vec3)> {
     let (low, high) = scene.bounds()?;
     Some(ground.map_or((low, high), |ground| {

@@ -402,6 +402,11 @@ fn what_belongs_to_the_model_is_no_outlier() {
         ("an antenna", joined([cube(), cuboid([-0.01, 1.0, -0.01], [0.01, 60.0, 0.01])])),
         ("a near leaf", joined([cube(), stray(Vec3::X * 3.0, 0.1)])),
         ("a sun and a planet", joined([cube(), cuboid([60.0, 0.0, 0.0], [60.1, 0.1, 0.1])])),
+        ("two leaves of a small model", joined([cube(), stray(Vec3::X * 50.0, 0.1), stray(Vec3::X * 60.0, 0.1)])),
+        (
+            "a wall far away",
+            joined((0..20).map(|i| moved(2.0 * i as f32)).chain([stray(Vec3::new(0.0, 0.0, 900.0), 100.0)])),
+        ),
         ("a row", joined((0..40).map(|i| moved(10.0 * i as f32)))),
         ("a triangle", stray(Vec3::ZERO, 1.0)),
         ("a flat field", joined((0..100).map(|i| stray(Vec3::new((i % 10) as f32, 0.0, (i / 10) as f32), 0.9)))),
@@ -643,6 +648,32 @@ fn edge_lines_are_the_same_with_a_ground() {
         let lost = without.rgba8.chunks(4).zip(with.rgba8.chunks(4)).filter(|(a, b)| b[0] > a[0] + 2).count();
         assert_eq!(lost, 0, "no pixel is brighter with a ground");
         assert!(differing(&without, &with, 16) > 50);
+    }
+}
+
+/// What is below the ground, since it is not framed, is hidden by it; its lines are not.
+#[test]
+fn the_ground_hides_no_edge_lines() {
+    let mut style = lit_from_above("cartoon");
+    style.shadow = named("toon-shadow").shadow;
+    let mut scene =
+        Scene::new(joined([cuboid([-1.0, 0.0, -1.0], [1.0, 1.0, 1.0]), cuboid([-1.4, -0.8, -1.4], [1.4, -0.4, 1.4])]));
+    scene.set_subject(Some((Vec3::new(-1.0, 0.0, -1.0), Vec3::ONE)));
+    let camera = framed(&scene, &above());
+    let dark = |image: &Image| image.rgba8.chunks(4).map(|pixel| pixel[0] < 60).collect::<Vec<_>>();
+    let mut pictures = Vec::new();
+    for executor in executors() {
+        scene.ground = false;
+        let without = rendered(&executor, &scene, &style, &camera, SIZE);
+        scene.ground = true;
+        let with = rendered(&executor, &scene, &style, &camera, SIZE);
+        assert_eq!(dark(&without), dark(&with), "{}", executor.describe());
+        // The lower box is covered by paper.
+        assert!(differing(&without, &with, 16) > 300);
+        pictures.push(with);
+    }
+    if let [on_cpu, on_device] = &pictures[..] {
+        assert_alike(on_cpu, on_device, "what is below");
     }
 }
 
