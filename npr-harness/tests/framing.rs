@@ -701,3 +701,23 @@ fn the_plan_says_why_there_is_a_ground_or_none() {
     let none = plan(&scene, &lit_from_above("toon-shadow"));
     assert!(!none.passes.iter().chain(&none.left_out).any(|reason| is_ground(&reason)));
 }
+
+#[test]
+fn a_shadow_map_leaves_the_ground_lit_beyond_its_range() {
+    let mut style = lit_from_above("toon-shadow");
+    style.lights[0].light = Light::directional(Vec3::new(1.0, 0.25, 0.1));
+    style.lines = npr_harness::style::Lines::NONE;
+    style.shadow.as_mut().expect("shadows").method = ShadowMethod::Map { side: 2048 };
+    let mut scene = Scene::new(plate());
+    scene.ground = true;
+    let camera = framed(&scene, &Framing { distance: 3.5, pitch_rad: 0.7, yaw_rad: -0.2, ..Framing::default() });
+    let pictures: Vec<Image> =
+        executors().iter().map(|executor| rendered(executor, &scene, &style, &camera, SIZE)).collect();
+    if let [on_cpu, on_device] = &pictures[..] {
+        // A map is as coarse as its texels, where light is grazing.
+        let differ = differing(on_cpu, on_device, 16);
+        assert!(differ < 40, "{differ} pixels differ");
+        let paper = bytes(style.paper);
+        assert!(on_cpu.rgba8.chunks(4).filter(|pixel| pixel[..3] != paper).count() > 150);
+    }
+}
