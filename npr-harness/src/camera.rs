@@ -47,6 +47,13 @@ pub struct Framing {
     pub distance: f64,
     /// The vertical field of view, or `None` for a parallel view.
     pub fov_y_rad: Option<f64>,
+    /// The angle by which the camera is turned clockwise about its viewing direction, so that the model leans to the left.
+    /// Lights in the viewer's frame turn with it.
+    pub roll_rad: f64,
+    /// The point in the middle of the picture, in the space of the points that are framed
+    /// ([`Scene::place_here`](crate::scene::Scene::place_here) takes a point of the file there); `None` for the middle of
+    /// what is framed. The distance is still such that everything fits.
+    pub target: Option<DVec3>,
 }
 
 impl Default for Framing {
@@ -56,6 +63,8 @@ impl Default for Framing {
             pitch_rad: 20f64.to_radians(),
             distance: 1.0,
             fov_y_rad: Some(35f64.to_radians()),
+            roll_rad: 0.0,
+            target: None,
         }
     }
 }
@@ -90,13 +99,17 @@ const NEAR: f64 = 0.1;
 impl Camera {
     /// Creates a camera that fits all `points` into the picture, with a margin.
     ///
-    /// - `points`: at least one; world space.
+    /// - `points`: at least one; world space, of a scene [`Scene::framed_corners`](crate::scene::Scene::framed_corners).
     /// - `aspect`: width over height.
     pub fn framed(points: impl Iterator<Item = Vec3> + Clone, aspect: f64, framing: &Framing) -> Self {
         let (yaw, pitch) = (framing.yaw_rad, framing.pitch_rad);
         let back = DVec3::new(yaw.sin() * pitch.cos(), pitch.sin(), yaw.cos() * pitch.cos());
         // In a view straight up or down, the picture's up direction points away from the viewer's feet.
-        let up = DVec3::new(-yaw.sin() * pitch.sin(), pitch.cos(), -yaw.cos() * pitch.sin());
+        let level = DVec3::new(-yaw.sin() * pitch.sin(), pitch.cos(), -yaw.cos() * pitch.sin());
+        let up = match framing.roll_rad {
+            0.0 => level,
+            roll => level * roll.cos() + level.cross(back) * roll.sin(),
+        };
         let right = up.cross(back);
         let in_view = |p: Vec3| {
             let p = p.as_dvec3();
@@ -104,14 +117,17 @@ impl Camera {
         };
         let empty = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         let (low, high) = points.clone().map(in_view).fold(empty, |(l, h), p| (l.min(p), h.max(p)));
-        let middle = (low + high) / 2.0;
+        let center_of = |v: DVec3| right * v.x + up * v.y + back * v.z;
+        let (middle, center) = match framing.target {
+            None => ((low + high) / 2.0, center_of((low + high) / 2.0)),
+            Some(target) => (DVec3::new(target.dot(right), target.dot(up), target.dot(back)), target),
+        };
         let size = match (high - low).max_element() {
             // All points coincide. Any distance works that is large enough to separate the eye from them despite
             // rounding.
             0.0 => middle.length().max(1.0),
             size => size,
         };
-        let center = right * middle.x + up * middle.y + back * middle.z;
         match framing.fov_y_rad {
             Some(fov_y_rad) => {
                 let tan = DVec2::new(aspect, 1.0) * (fov_y_rad / 2.0).tan() * FILL;
@@ -134,9 +150,13 @@ impl Camera {
                 }
             }
             None => {
-                let extent = (high - low).truncate();
+                let extent = match framing.target {
+                    None => high - low,
+                    Some(_) => 2.0 * (high - middle).max(middle - low),
+                };
                 let height = extent.y.max(extent.x / aspect).max(size * 1e-3) / FILL * framing.distance;
-                let depth = size * 2.0;
+                // A target may be in front of everything, or behind it.
+                let depth = 2.0 * size.max(extent.z);
                 Self {
                     eye: center + back * depth,
                     target: center,
@@ -306,7 +326,11 @@ mod tests {
     fn cameras() -> [Camera; 2] {
         let corners = (0..8u8).map(|i| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32));
         [Some(0.6), None].map(|fov_y_rad| {
-            Camera::framed(corners.clone(), 1.5, &Framing { fov_y_rad, yaw_rad: 0.7, pitch_rad: 0.4, distance: 1.0 })
+            Camera::framed(
+                corners.clone(),
+                1.5,
+                &Framing { fov_y_rad, yaw_rad: 0.7, pitch_rad: 0.4, ..Framing::default() },
+            )
         })
     }
 

@@ -5,6 +5,7 @@
 //! supersampled; that picture is the ground truth for measurements of accuracy.
 
 pub mod frame;
+mod ground;
 pub mod primary_hits;
 mod shade;
 mod surface;
@@ -25,6 +26,7 @@ use crate::scene::Scene;
 use crate::shadow::cpu::ShadowAt;
 use crate::view::{View, size_px};
 use glam::{DVec2, DVec3, DVec4};
+use ground::GroundHit;
 use primary_hits::Hits;
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -252,14 +254,19 @@ impl FrameContext<'_> {
     ) {
         for x in 0..width {
             let solid = hits.map_or_else(|| self.first_solid(x, y), |hits| hits[x as usize]);
+            let ground = self.ground_at(solid.as_ref(), x, y);
             if let Some((color, depth)) = &mut picture {
-                color[x as usize] = self.trace_pixel(solid.as_ref(), x, y);
+                color[x as usize] = self.trace_pixel(solid.as_ref(), ground.as_ref(), x, y);
                 depth[x as usize] = solid.map_or(0.0, |hit| self.plan.view.camera.buffer_depth(hit.t));
             }
-            match &mut texels {
-                Some(TexelRow::Packed(texels)) => texels[x as usize] = self.texel(solid.as_ref(), x, y),
-                Some(TexelRow::Unquantised(texels)) => texels[x as usize] = self.gbuffer_texel(solid.as_ref(), x, y),
-                None => {}
+            match (&mut texels, &ground) {
+                (Some(TexelRow::Packed(texels)), Some(ground)) => texels[x as usize] = self.ground_texel(ground),
+                (Some(TexelRow::Unquantised(texels)), Some(_)) => texels[x as usize] = self.ground_gbuffer_texel(),
+                (Some(TexelRow::Packed(texels)), None) => texels[x as usize] = self.texel(solid.as_ref(), x, y),
+                (Some(TexelRow::Unquantised(texels)), None) => {
+                    texels[x as usize] = self.gbuffer_texel(solid.as_ref(), x, y)
+                }
+                (None, _) => {}
             }
         }
     }
@@ -289,10 +296,11 @@ impl FrameContext<'_> {
         at_place.into_iter().filter(|hit| hit.object == nearest.object).max_by_key(|hit| hit.face)
     }
 
-    fn trace_pixel(&self, solid: Option<&Hit>, x: u32, y: u32) -> DVec4 {
+    fn trace_pixel(&self, solid: Option<&Hit>, ground: Option<&GroundHit>, x: u32, y: u32) -> DVec4 {
         let paper = self.plan.paper.as_dvec3();
-        let mut color = match solid {
-            Some(hit) if self.plan.paint.is_some() => self.paint(hit, x, y).truncate(),
+        let mut color = match (ground, solid) {
+            (Some(ground), _) => self.paint_ground(ground, x, y),
+            (None, Some(hit)) if self.plan.paint.is_some() => self.paint(hit, x, y).truncate(),
             _ => paper,
         };
         if self.plan.blended {

@@ -5,6 +5,7 @@
 
 mod adapter;
 pub(crate) mod context;
+mod ground;
 pub(crate) mod index_format;
 pub(crate) mod instances;
 mod materials;
@@ -24,6 +25,7 @@ pub use targets::Targets;
 
 use crate::edge_lines::{EdgeLineMethod, EdgeLinePlan};
 use crate::error::HarnessError;
+use crate::ground::bounds_with;
 use crate::hull_lines::gpu::{self as hull_lines, HullLinePass, HullTargets};
 use crate::image_lines::gpu::{InkFrame, InkPasses};
 use crate::picture::Image;
@@ -222,7 +224,7 @@ impl<'a> GpuRenderer<'a> {
                 device,
                 image,
                 camera: &view.camera,
-                bounds: scene.bounds(),
+                bounds: bounds_with(plan.ground(), scene),
                 ink,
                 picture: targets.drawn(),
                 picture_size: (targets.width, targets.height),

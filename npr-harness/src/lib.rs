@@ -17,7 +17,7 @@
 //!
 //! | for | modules |
 //! | --- | --- |
-//! | what is shown | [`scene`], [`camera`], [`view`], [`lights`], [`facets`], [`texture`], [`color`] |
+//! | what is shown | [`scene`], [`camera`], [`view`], [`outliers`], [`ground`], [`lights`], [`facets`], [`texture`], [`color`] |
 //! | how it looks | [`style`], and a module for each technique: [`shade`], [`hatch`], [`edge_lines`], [`printed_fins`], [`hull_lines`], [`image_lines`], [`shadow`] |
 //! | rendering | [`plan`], [`variant`], [`budget`], [`capabilities`], [`picture_limits`], [`executor`], [`gpu`], [`cpu`], [`rays`], [`picture`] |
 //! | measuring | [`truth`], what is exactly right; [`compare`]; [`check`]; [`chart`], accuracy against speed; [`measure`], times of frames; [`stability`], where methods fail; [`plot`]; [`report`] |
@@ -61,12 +61,14 @@ pub mod gallery;
 mod geometry;
 #[cfg(feature = "gpu")]
 pub mod gpu;
+pub mod ground;
 pub mod hatch;
 pub mod hull_lines;
 pub mod image_lines;
 pub mod inspect;
 pub mod lights;
 pub mod measure;
+pub mod outliers;
 pub mod picture;
 pub mod picture_limits;
 pub mod plan;

@@ -18,6 +18,7 @@ use crate::edge_lines::EdgeLinePlan;
 use crate::edge_lines::plan::device_bytes;
 use crate::error::HarnessError;
 use crate::facets::{Facet, facets};
+use crate::ground::GroundPlan;
 use crate::hatch::{HatchGround, HatchPlan};
 use crate::hull_lines::HullPlan;
 use crate::image_lines::ImagePlan;
@@ -191,6 +192,7 @@ impl Plan {
             plan.methods = plan.methods(scene, capabilities)?;
         }
         plan.explain(style, textured);
+        plan.explain_ground(scene);
         Ok(plan)
     }
 
@@ -207,7 +209,8 @@ impl Plan {
         let light = casting_light(&style.lights, scene, &self.view.camera);
         let of_device = || (capabilities.volumes(scene.objects().len()).0, capabilities.float_stencil);
         let technique = ShadowTechnique::new(scene, shadow, light, capabilities.is_adapter().then(of_device))?;
-        Ok(Some(ShadowPlan { light, terminator: shadow.terminator, technique, in_picture, in_lines }))
+        let ground = if scene.ground { GroundPlan::new(scene, light) } else { None };
+        Ok(Some(ShadowPlan { light, terminator: shadow.terminator, technique, in_picture, in_lines, ground }))
     }
 
     /// Chooses the methods by which an adapter performs the passes, or fails if it cannot.

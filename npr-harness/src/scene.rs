@@ -50,12 +50,16 @@ pub struct Scene {
     /// The clipping plane (n, d): only points with n · p + d >= 0, in scene space (see [`Scene::plane_here`]), are
     /// visible. Lines found in the image respect it; lines along edges do not.
     pub clip: Option<DVec4>,
+    /// Whether a plane under the subject catches shadows, in styles whose light casts them: see [`crate::ground`].
+    pub ground: bool,
     /// Per material: the source of its inner lines for styles that use it, [`ImageInk::artist`]. The initial value of
     /// every material is its normals.
     ///
     /// [`ImageInk::artist`]: crate::image_lines::ImageInk::artist
     pub line_kinds: Vec<LineKind>,
     bounds: Option<(Vec3, Vec3)>,
+    /// The part of the scene that is framed, if not all of it is.
+    subject: Option<(Vec3, Vec3)>,
     /// The radius of the scene as it was made, which lengths that must not change with moving objects refer to.
     reference_radius: f64,
     /// The numbers of the objects in the order in which they are drawn, and per object its place in that order. Of
@@ -132,8 +136,10 @@ impl Scene {
             material_colors: Vec::new(),
             textures: Vec::new(),
             clip: None,
+            ground: false,
             line_kinds: Vec::new(),
             bounds: None,
+            subject: None,
             reference_radius: 0.0,
             drawing_order: Vec::new(),
             rank: Vec::new(),
@@ -439,6 +445,11 @@ impl Scene {
         (place - self.origin) * self.scale
     }
 
+    /// Transforms a position from scene space to file space.
+    pub fn place_in_file(&self, place: DVec3) -> DVec3 {
+        place / self.scale + self.origin
+    }
+
     /// Transforms the plane (n, d), n · p + d = 0, from file space to scene space and normalizes n. The sides of the
     /// plane keep their signs. n must not be zero.
     pub fn plane_here(&self, plane: DVec4) -> DVec4 {
@@ -597,6 +608,30 @@ impl Scene {
         self.placed_objects().flat_map(|(object, mesh)| mesh.corners().map(|at| object.point(at).as_vec3()))
     }
 
+    /// Takes a box in scene space for the subject of the picture, such as all but [`Outliers`](crate::outliers::Outliers):
+    /// cameras frame what is in it, and lights, strokes and thresholds of depth refer to its size instead of the scene's.
+    /// `None` for the whole scene. What is outside is drawn all the same.
+    pub fn set_subject(&mut self, subject: Option<(Vec3, Vec3)>) {
+        self.subject = subject;
+        self.reference_radius = self.radius();
+    }
+
+    /// The box of the subject in scene space: that of [`Scene::set_subject`], or of the whole scene; `None` without faces.
+    pub fn subject(&self) -> Option<(Vec3, Vec3)> {
+        self.subject.or(self.bounds)
+    }
+
+    /// The [`Scene::corners`] of the subject: those within its box, or no more than a thousandth of its diagonal outside.
+    pub fn framed_corners(&self) -> impl Iterator<Item = Vec3> + Clone + '_ {
+        let around = self.subject.map(|(low, high)| {
+            let slack = 1e-3 * (high - low).length();
+            (low - slack, high + slack)
+        });
+        let is_inside =
+            move |point: &Vec3| around.is_none_or(|(low, high)| point.cmpge(low).all() && point.cmple(high).all());
+        self.corners().filter(is_inside)
+    }
+
     fn box_around_objects(&self) -> Option<(Vec3, Vec3)> {
         let boxes = self.placed_objects().filter_map(|(object, mesh)| Some(object.box_around(mesh.bounds()?)));
         let (low, high) = boxes.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
@@ -608,10 +643,10 @@ impl Scene {
         self.bounds
     }
 
-    /// The range of eye depth that the scene occupies in front of the camera.
+    /// The range of eye depth that the subject occupies in front of the camera.
     pub(crate) fn depth_range(&self, camera: &Camera) -> (f64, f64) {
         let back = camera.axes()[2];
-        let (low, high) = self.bounds().map_or((DVec3::ZERO, DVec3::ZERO), |(l, h)| (l.as_dvec3(), h.as_dvec3()));
+        let (low, high) = self.subject().map_or((DVec3::ZERO, DVec3::ZERO), |(l, h)| (l.as_dvec3(), h.as_dvec3()));
         let depth = |corner: DVec3| (camera.eye - corner).dot(back);
         let nearest = depth(DVec3::select(back.cmpgt(DVec3::ZERO), high, low));
         let farthest = depth(DVec3::select(back.cmpgt(DVec3::ZERO), low, high));
@@ -621,14 +656,14 @@ impl Scene {
         (near, (farthest + spare).max(near * 1.001))
     }
 
-    /// The centre of the bounding box.
+    /// The centre of the subject's box.
     pub fn middle(&self) -> DVec3 {
-        self.bounds().map_or(DVec3::ZERO, |(low, high)| low.as_dvec3().midpoint(high.as_dvec3()))
+        self.subject().map_or(DVec3::ZERO, |(low, high)| low.as_dvec3().midpoint(high.as_dvec3()))
     }
 
-    /// Half the diagonal of the bounding box.
+    /// Half the diagonal of the subject's box.
     pub fn radius(&self) -> f64 {
-        self.bounds().map_or(0.0, |(low, high)| f64::from((high - low).length()) / 2.0)
+        self.subject().map_or(0.0, |(low, high)| f64::from((high - low).length()) / 2.0)
     }
 
     /// The scene as a single object with an identity transform, for measurements. Returns `self` if it already has that
@@ -662,6 +697,7 @@ impl Scene {
         scene.meshes = vec![mesh];
         scene.file_meshes.clone_from(&scene.meshes);
         (scene.origin, scene.scale, scene.clip) = (self.origin, self.scale, self.clip);
+        (scene.subject, scene.ground) = (self.subject, self.ground);
         (scene.materials, scene.textures, scene.line_kinds) = (materials, self.textures.clone(), line_kinds);
         scene.reference_radius = self.reference_radius;
         Cow::Owned(scene)

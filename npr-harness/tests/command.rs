@@ -289,3 +289,104 @@ fn a_reader_that_has_had_enough_ends_nothing() {
     let done = child.wait_with_output().expect("it ends");
     assert!(done.status.success() && done.stderr.is_empty(), "{}", text(&done.stderr));
 }
+
+/// A box with corners at ±1, without normals, and further lines.
+fn boxed(more: &str) -> String {
+    let mut text = String::new();
+    for corner in 0..8u8 {
+        let at = |bit: u8| if corner & bit == 0 { -1 } else { 1 };
+        text.push_str(&format!("v {} {} {}\n", at(1), at(2), at(4)));
+    }
+    text + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n" + more
+}
+
+#[test]
+fn a_stray_triangle_is_warned_of_once_and_can_be_left_out() {
+    let folder = with_model();
+    fs::write(folder.join("box.obj"), boxed("")).expect("written");
+    fs::write(folder.join("stray.obj"), boxed("v 1000 0 0\nv 1000 0 0.01\nv 1000 0.01 0\nf 9 10 11\n"))
+        .expect("written");
+    let picture = |model: &str, fit: &[&str]| {
+        let arguments = ["render", model, "-o", "a.png", "--size", "60x40", "--backend", "cpu"];
+        let done = npr(&[&arguments, fit].concat(), &folder);
+        assert!(done.status.success(), "{}", text(&done.stderr));
+        (text(&done.stderr), fs::read(folder.join("a.png")).expect("a picture"))
+    };
+    let (said, alone) = picture("box.obj", &[]);
+    assert!(!said.contains("extent"), "{said}");
+    let outlier =
+        "npr: stray.obj: warning: 1 face of 13, at 1000, 0.005, 0.005, far from the rest, takes 99.7 % of the extent: ";
+    for (fit, advice, is_alone) in [
+        (&[][..], "--fit inliers frames the rest", false),
+        (&["--fit", "all"], "--fit inliers frames the rest", false),
+        (&["--fit", "inliers"], "only the rest is framed", true),
+    ] {
+        let (said, image) = picture("stray.obj", fit);
+        assert_eq!(said.lines().filter(|line| *line == format!("{outlier}{advice}")).count(), 1, "{said}");
+        assert_eq!(image == alone, is_alone, "{fit:?}");
+    }
+    let done = npr(&["render", "stray.obj", "-o", "a.png", "--size", "9x9", "--backend", "cpu", "--json"], &folder);
+    let json: Value = serde_json::from_slice(&done.stdout).expect("JSON");
+    let warnings = json["warnings"].as_array().expect("a list");
+    assert_eq!(warnings.iter().filter(|w| w["text"].as_str().is_some_and(|w| w.contains("extent"))).count(), 1);
+}
+
+/// The same model written with Z up, and every place of the file that is given on the command line, is the same picture.
+#[test]
+fn places_on_the_command_line_are_those_of_the_file() {
+    let folder = with_model();
+    let upright = "v 0 0 0\nv 4 0 0\nv 4 1 0\nv 0 1 0\nv 0 0 -2\nv 4 0 -2\nv 4 3 -2\nf 1 2 3 4\nf 5 6 7\nf 1 2 6 5\n";
+    let z_up = "v 0 0 0\nv 4 0 0\nv 4 0 1\nv 0 0 1\nv 0 2 0\nv 4 2 0\nv 4 2 3\nf 1 2 3 4\nf 5 6 7\nf 1 2 6 5\n";
+    fs::write(folder.join("y.obj"), upright).expect("written");
+    fs::write(folder.join("z.obj"), z_up).expect("written");
+    let picture = |model: &str, more: &[&str]| {
+        let arguments =
+            ["render", model, "-o", "a.png", "--size", "60x40", "--backend", "cpu", "--style", "toon-shadow"];
+        let done = npr(&[&arguments, more].concat(), &folder);
+        assert!(done.status.success(), "{}", text(&done.stderr));
+        fs::read(folder.join("a.png")).expect("a picture")
+    };
+    let plain = picture("y.obj", &[]);
+    assert_ne!(picture("z.obj", &[]), plain);
+    assert_eq!(picture("z.obj", &["--up", "z"]), plain);
+    assert_eq!(picture("y.obj", &["--up", "+Y"]), plain);
+    for (y, z) in [
+        (&["--target", "4,3,-2"], &["--target", "4,2,3"]),
+        (&["--clip", "0,-1,0,0.75"], &["--clip", "0,0,-1,0.75"]),
+        (&["--clip", "0,0,1,1.5"], &["--clip", "0,-1,0,1.5"]),
+    ] {
+        let upright = picture("y.obj", y);
+        assert_ne!(upright, plain, "{y:?}");
+        assert_eq!(picture("z.obj", &[&["--up", "z"], &z[..]].concat()), upright, "{z:?}");
+    }
+    assert_ne!(picture("y.obj", &["--roll", "-30"]), plain);
+    assert_eq!(picture("y.obj", &["--roll", "0"]), plain);
+    assert_ne!(picture("y.obj", &["--ground"]), plain);
+}
+
+#[test]
+fn what_is_no_view_is_refused() {
+    let folder = with_model();
+    let with = |more: &[&str]| {
+        let done = npr(
+            &[&["render", "square.obj", "-o", "a.png", "--size", "8x8", "--backend", "cpu"], more].concat(),
+            &folder,
+        );
+        assert!(!done.status.success() && !folder.join("a.png").exists(), "{more:?}");
+        text(&done.stderr)
+    };
+    for (more, named) in [
+        (&["--up", "w"][..], "expected x, y, z, -x, -y or -z"),
+        (&["--target", "1,2"], "expected three numbers: X,Y,Z"),
+        (&["--target", "1,2,nan"], "no point"),
+        (&["--target", "1e9,0,0"], "it must lie in 0..=1e6 radii of the model"),
+        (&["--roll", "1e9"], "roll"),
+        (&["--fit", "some"], "inliers"),
+    ] {
+        let said = with(more);
+        assert!(said.contains(named) && !said.contains("panicked"), "{more:?}: {said}");
+    }
+    let done = render(&["-o", "a.png", "--ground"], &folder);
+    assert!(done.status.success());
+    assert!(text(&done.stderr).contains("--ground shows nothing: no light of the style \"cartoon\" casts shadows"));
+}

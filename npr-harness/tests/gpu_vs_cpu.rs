@@ -27,7 +27,7 @@ use npr_outline::line_style::LineStyle;
 
 fn framed(scene: &Scene, yaw_deg: f64, pitch_deg: f64, fov_y_rad: Option<f64>) -> Camera {
     let framing =
-        Framing { yaw_rad: yaw_deg.to_radians(), pitch_rad: pitch_deg.to_radians(), fov_y_rad, distance: 1.0 };
+        Framing { yaw_rad: yaw_deg.to_radians(), pitch_rad: pitch_deg.to_radians(), fov_y_rad, ..Framing::default() };
     Camera::framed(scene.corners(), f64::from(SIZE.0) / f64::from(SIZE.1), &framing)
 }
 

@@ -48,7 +48,7 @@ fn camera_at(eye: DVec3, target: DVec3) -> Camera {
 }
 
 fn framed(scene: &Scene, fov_y_rad: Option<f64>) -> Camera {
-    let framing = Framing { yaw_rad: 0.4, pitch_rad: 0.3, fov_y_rad, distance: 1.0 };
+    let framing = Framing { yaw_rad: 0.4, pitch_rad: 0.3, fov_y_rad, ..Framing::default() };
     Camera::framed(scene.corners(), f64::from(SIZE.0) / f64::from(SIZE.1), &framing)
 }
 

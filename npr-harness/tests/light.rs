@@ -67,7 +67,7 @@ fn scene() -> Scene {
 }
 
 fn camera(scene: &Scene, fov_y_rad: Option<f64>) -> Camera {
-    let framing = Framing { yaw_rad: 0.35, pitch_rad: 0.3, fov_y_rad, distance: 1.0 };
+    let framing = Framing { yaw_rad: 0.35, pitch_rad: 0.3, fov_y_rad, ..Framing::default() };
     Camera::framed(scene.corners(), f64::from(SIZE.0) / f64::from(SIZE.1), &framing)
 }
 

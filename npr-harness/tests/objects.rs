@@ -66,7 +66,7 @@ fn scene() -> Scene {
 }
 
 fn framed(scene: &Scene, fov_y_rad: Option<f64>) -> Camera {
-    let framing = Framing { yaw_rad: 0.4, pitch_rad: 0.3, fov_y_rad, distance: 1.0 };
+    let framing = Framing { yaw_rad: 0.4, pitch_rad: 0.3, fov_y_rad, ..Framing::default() };
     Camera::framed(scene.corners(), f64::from(SIZE.0) / f64::from(SIZE.1), &framing)
 }
 
@@ -388,7 +388,7 @@ mod on_device {
         scene.set_material(2, green).expect("opaque");
         let aspect = f64::from(check::SIZE.0) / f64::from(check::SIZE.1);
         let view = |name: &str, yaw_rad, fov_y_rad| {
-            let framing = Framing { yaw_rad, pitch_rad: 0.3, fov_y_rad, distance: 1.0 };
+            let framing = Framing { yaw_rad, pitch_rad: 0.3, fov_y_rad, ..Framing::default() };
             (name.to_owned(), Camera::framed(scene.corners(), aspect, &framing))
         };
         let views = [view("perspective", 0.4, Some(0.6)), view("parallel", 2.4, None)];

@@ -16,7 +16,8 @@
 //!
 //! Two bits beside the region number hold a state ([`ink_shadow_region`]): lit, in a cast shadow, or facing away from
 //! the light. Only lit beside cast shadow is a border ([`ink_shadow_differs`]). Back-facing surfaces have no border
-//! with either, so the terminator is no line, and the outline of a cast shadow ends at the terminator.
+//! with either, so the terminator is no line, and the outline of a cast shadow ends at the terminator. Background has no
+//! state, which is that of back-facing surfaces, unless it catches shadows ([`ink_shadow_background`]).
 
 use crate::format::texel::TexelLayout;
 use glam::Vec3;
@@ -48,6 +49,12 @@ impl ShadowState {
 /// - `state`: a [`ShadowState`] as a number.
 pub fn ink_shadow_region(folded: u32, state: u32, layout: TexelLayout) -> u32 {
     if folded == 0 { 0 } else { folded | (state * (layout.shadowed_region_max() + 1)) }
+}
+
+/// The number of background that catches shadows, such as a ground that is not drawn itself: region 0 with a shadow state.
+/// It is background for all tests but that of shadows.
+pub fn ink_shadow_background(state: u32, layout: TexelLayout) -> u32 {
+    state * (layout.shadowed_region_max() + 1)
 }
 
 /// The state in a number made by [`ink_shadow_region`].

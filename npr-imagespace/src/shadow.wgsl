@@ -13,6 +13,11 @@ fn ink_shadow_region(folded: u32, state: u32, most: u32) -> u32 {
     return select(folded | (state * (most + 1u)), 0u, folded == 0u);
 }
 
+// The number of background that catches shadows.
+fn ink_shadow_background(state: u32, most: u32) -> u32 {
+    return state * (most + 1u);
+}
+
 // For four pairs of states, masked by `bits` of a region number: whether one is lit and the other in a cast shadow.
 fn ink_shadow_differs(a: vec4<u32>, b: vec4<u32>, bits: vec4<u32>) -> vec4<bool> {
     return (a | b) == bits;

@@ -5,10 +5,12 @@ use npr_imagespace::filter::fused::{
     DepthTest, FilterUniform, FusedFilter, ShadowTest, ink_fused_hard, ink_fused_soft, ink_tap_across,
 };
 use npr_imagespace::format::texel::{
-    DepthCode, Tap, TexelLayout, ink_texel32_pack, ink_texel32_tap, ink_texel64_pack, ink_texel64_tap,
+    DepthCode, Tap, TexelLayout, ink_texel32_bits, ink_texel32_pack, ink_texel32_tap, ink_texel64_bits,
+    ink_texel64_pack, ink_texel64_tap,
 };
 use npr_imagespace::shadow::{
-    ShadowState, ink_shadow_depth, ink_shadow_differs, ink_shadow_normal, ink_shadow_region, ink_shadow_state,
+    ShadowState, ink_shadow_background, ink_shadow_depth, ink_shadow_differs, ink_shadow_normal, ink_shadow_region,
+    ink_shadow_state,
 };
 
 const LAYOUTS: [TexelLayout; 2] = [TexelLayout::Bits32, TexelLayout::Bits64];
@@ -124,6 +126,42 @@ fn states_that_are_ignored_and_lines_that_stand_alone() {
             let [all, objects, shadows] = [ShadowTest::Lines, ShadowTest::Ignored, ShadowTest::OnlyShadows]
                 .map(|test| inked(&filter(test), layout, at(a), at(b)));
             assert_eq!((all, objects && shadows), (objects || shadows, false));
+        }
+    }
+}
+
+#[test]
+fn background_that_catches_shadows_has_their_borders_and_no_other_line() {
+    for layout in LAYOUTS {
+        let ground = |state: ShadowState| {
+            let number = ink_shadow_background(state as u32, layout);
+            assert_eq!(ink_shadow_state(number, layout), state);
+            match layout {
+                TexelLayout::Bits32 => ink_texel32_tap(ink_texel32_bits(Vec3::Y, number, 0)),
+                TexelLayout::Bits64 => ink_texel64_tap(ink_texel64_bits(Vec3::Y, number, 0)),
+            }
+        };
+        let (lit, cast) = (ground(ShadowState::Lit), ground(ShadowState::Cast));
+        let background = tap(layout, Vec3::X, 0, 3.0);
+        let surface = |state| tap(layout, Vec3::X, ink_shadow_region(1, state as u32, layout), 3.0);
+        for softness in [0.0, 0.2] {
+            for shadows in [ShadowTest::Lines, ShadowTest::Ignored, ShadowTest::OnlyShadows] {
+                let filter = FusedFilter { shadows, softness, ..FusedFilter::default() };
+                let uniform = FilterUniform::new(&filter, layout, &code(layout)).unwrap();
+                let is_line = |a: Tap, b: Tap| match softness {
+                    0.0 => inked(&filter, layout, a, b),
+                    _ => ink_fused_soft(&uniform, &a, &[b; 4]) > 0.5,
+                };
+                assert_eq!(is_line(lit, cast), shadows != ShadowTest::Ignored, "{shadows:?} {softness}");
+                for state in [lit, cast] {
+                    assert!(!is_line(background, state), "the end of the ground is no line");
+                    for of_surface in ShadowState::ALL {
+                        // The outline of a surface, drawn as against background.
+                        let expected = is_line(surface(of_surface), background);
+                        assert_eq!(is_line(surface(of_surface), state), expected, "{shadows:?} {softness}");
+                    }
+                }
+            }
         }
     }
 }

@@ -119,6 +119,11 @@ const TWINS: Twins<'_> = Twins {
         ("ink_taps_normals_differ", Except::Missing, "four taps side by side; ink_tap_normal_differs is one"),
         ("ink_taps_normals_soft", Except::Missing, "four taps side by side; ink_tap_normal_soft is one"),
         ("ink_taps_shadows_differ", Except::Missing, "four taps side by side; ink_tap_shadow_differs is one"),
+        (
+            "ink_shadow_background",
+            Except::Parameters,
+            "Rust takes the layout, WGSL the one number of it that is needed",
+        ),
         ("ink_shadow_differs", Except::Types, "four taps side by side, one in Rust"),
         ("ink_shadow_region", Except::Parameters, "Rust takes the layout, WGSL the one number of it that is needed"),
         ("ink_oct_encode", Except::Types, "integers are in f32 in WGSL, where their arithmetic is exact and faster"),

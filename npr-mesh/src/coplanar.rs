@@ -21,6 +21,8 @@ mod output;
 mod overlap;
 mod planes;
 
+pub use output::Separated;
+
 use crate::weld::weld_within;
 use crate::{AlphaMode, Model};
 use arrangement::{Piece, Pieces, arrange};
@@ -37,18 +39,6 @@ pub const ROUNDING: f64 = 4.0 * f32::EPSILON as f64;
 /// The number of crossings of sides that are computed for one model, for a time of about a second. Faces that overlap in
 /// more places stay as they are.
 const CROSSINGS: usize = 1 << 18;
-
-/// A model whose coplanar faces are separated.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Separated {
-    /// The model.
-    pub model: Model,
-    /// Per face of it: the face that it is, or that it is a piece of.
-    pub sources: Vec<u32>,
-    /// The faces, ascending, of the model before that share their place with others that they hide, are hidden by or are
-    /// seen through.
-    pub coincident: Vec<u32>,
-}
 
 /// The model with its coplanar faces separated by the rule above; `None` if no face hides another.
 ///

@@ -67,6 +67,7 @@ pub mod pn_triangles;
 pub mod subdivide;
 mod transform;
 pub mod triangulate;
+mod up;
 pub mod weld;
 
 /// The vector and matrix types in this API.
@@ -78,6 +79,7 @@ pub use limits::Limits;
 pub use load::{LoadOptions, Loaded, Warning, load};
 pub use model::{AlphaMode, Material, Model, Texture, Wrap};
 pub use object::Object;
+pub use up::UpAxis;
 
 /// Compiles the example of the README.
 #[cfg(all(doctest, any(feature = "obj", feature = "gltf")))]

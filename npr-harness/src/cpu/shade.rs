@@ -70,7 +70,7 @@ impl FrameContext<'_> {
         if in_shadow { DVec2::new(-found.x.abs(), model.second_in_shadow(found.y)) } else { found }
     }
 
-    fn lit_point(&self, normal: DVec3, at: DVec3) -> LitPoint {
+    pub(super) fn lit_point(&self, normal: DVec3, at: DVec3) -> LitPoint {
         let camera = &self.plan.view.camera;
         let eye = camera.homogeneous_eye();
         LitPoint { normal, at, to_eye: eye.truncate() - at * eye.w }
@@ -95,7 +95,13 @@ impl FrameContext<'_> {
         })
     }
 
-    fn light_at(&self, paint: &PaintPlan, lights: &[Light], model: &dyn ShadeModel, point: &LitPoint) -> DVec2 {
+    pub(super) fn light_at(
+        &self,
+        paint: &PaintPlan,
+        lights: &[Light],
+        model: &dyn ShadeModel,
+        point: &LitPoint,
+    ) -> DVec2 {
         let Some(first) = lights.first() else { return DVec2::ZERO };
         let to_light = toon_to_light(first.place, point.at);
         let diffuse = model.diffuse(toon_n_dot_l(point.normal, to_light), f64::from(first.brightness));
@@ -135,7 +141,7 @@ impl FrameContext<'_> {
             at_dx: (position(along_x) - at) * dx,
             at_dy: (position(along_y) - at) * dy,
             normal: sum(&mesh.model().normals, hit.barycentric).normalize_or_zero(),
-            mesh: object.mesh(),
+            mesh: Some(object.mesh()),
             octave: object.scale().log2(),
             corners,
             barycentric: hit.barycentric,

@@ -33,6 +33,18 @@ pub(crate) const INSTANCE_ATTRIBUTES: [wgpu::VertexAttribute; 6] = wgpu::vertex_
     8 => Float32x4, 9 => Float32x4, 10 => Float32x4, 11 => Uint32x2, 12 => Float32x2, 13 => Float32x3
 ];
 
+/// The data of an object that is not placed and has no region.
+pub(crate) fn unplaced_instance() -> [u8; INSTANCE_BYTES as usize] {
+    bytemuck::cast(Instance {
+        rows: affine_rows(&glam::DAffine3::IDENTITY),
+        regions: [0; 2],
+        scale: [1.0, 0.0],
+        middle: [0.0; 3],
+        ones: [255; 4],
+        zeros: [0; 4],
+    })
+}
+
 /// The layout of objects' data for `attributes`: [`INSTANCE_ATTRIBUTES`] and [`constant`] ones.
 pub(crate) fn instance_layout(attributes: &[wgpu::VertexAttribute]) -> wgpu::VertexBufferLayout<'_> {
     wgpu::VertexBufferLayout { array_stride: INSTANCE_BYTES, step_mode: wgpu::VertexStepMode::Instance, attributes }

@@ -40,7 +40,7 @@ impl Materials {
 }
 
 /// `uniforms` holds the uniforms of all materials; the dynamic offset selects one.
-fn material_group(
+pub(super) fn material_group(
     device: &wgpu::Device,
     layout: &wgpu::BindGroupLayout,
     uniforms: &wgpu::Buffer,

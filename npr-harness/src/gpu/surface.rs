@@ -1,5 +1,6 @@
 //! The geometry pass.
 
+use super::ground::{self, GroundOnDevice};
 use super::instances::{Constant, INSTANCE_ATTRIBUTES, constant, instance_layout};
 use super::scene::GpuScene;
 use super::shader::{Blank, LightOnDevice, ShaderKey, assemble};
@@ -25,7 +26,7 @@ use npr_imagespace::format::texel::{DepthCode, TexelLayout};
 use npr_imagespace::pass::fused::texel_format;
 use npr_outline::filled_buffer::filled_buffer;
 use npr_toon::painter::PainterUniform;
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::collections::HashMap;
 use std::num::NonZeroU64;
 use std::ops::Range;
@@ -160,6 +161,8 @@ struct Variant {
     clipped: bool,
     mesh_normals: bool,
     inking: Option<Inking>,
+    /// Whether the ground is drawn.
+    ground: bool,
 }
 
 /// The source of a fragment's shadow, and how lines in the image use it: the override constants of `shadow.wgsl`.
@@ -398,8 +401,9 @@ impl SurfacePass {
         let paper = paper(plan);
         let bound = (&view_group, uploaded, targets.depth);
         let paired = !plan.object_pairs().is_empty();
-        let mut set = None;
-        let mut draw = |pass: &mut wgpu::RenderPass<'_>, drawn: Drawn<'_>, colored: bool, blended: bool| {
+        // The pipeline that is set.
+        let set = Cell::new(None);
+        let draw = |pass: &mut wgpu::RenderPass<'_>, drawn: Drawn<'_>, colored: bool, blended: bool| {
             let material = &scene.materials()[drawn.material];
             // Blended surfaces are ignored by lines in the image.
             let inking = plan.image.as_ref().filter(|_| targets.texels.is_some() && !blended).map(|image| {
@@ -431,15 +435,16 @@ impl SurfacePass {
                 clipped: scene.clip.is_some(),
                 mesh_normals: plan.mesh_normals,
                 inking,
+                ground: false,
             };
             let Some(indices) = (if blended { blended_indices.as_ref() } else { uploaded.indices.as_ref() }) else {
                 return;
             };
-            if set != Some(variant) {
+            if set.get() != Some(variant) {
                 let mut pipelines = self.pipelines.borrow_mut();
                 pass.set_pipeline(pipelines.entry(variant).or_insert_with(|| self.pipeline(device, variant)));
                 pass.set_index_buffer(indices.slice(..), uploaded.index_format.on_device());
-                set = Some(variant);
+                set.set(Some(variant));
             }
             if paired {
                 pass.set_bind_group(0, &view_group, &[drawn.lights * light.stride]);
@@ -474,6 +479,40 @@ impl SurfacePass {
                 draw(&mut pass, drawn, colored, false);
             }
         }
+        let depth_alone = targets.color.is_none() && targets.texels.is_none();
+        if let Some(ground) = plan.ground().filter(|_| shadow.is_some() || depth_alone) {
+            let variant = Variant {
+                paint: if paint == Paint::Painted { Paint::Lit } else { paint },
+                looked_up: false,
+                by_alpha: false,
+                cull_back: true,
+                mirrored: false,
+                blended: false,
+                shader,
+                shadow: ShadowVariant::new(plan, shadow),
+                depth: targets.depth.texture().format(),
+                streams: ground::STREAMS,
+                colored,
+                clipped: false,
+                mesh_normals: plan.mesh_normals,
+                inking: plan.image.as_ref().filter(|_| targets.texels.is_some()).map(|image| Inking {
+                    layout: image.ink.layout,
+                    unquantised: image.gbuffer.is_some(),
+                    line_kind: LineKind::Normals,
+                    rotation: ArtistRotation::PerPixel,
+                    region_of_texture: false,
+                }),
+                ground: true,
+            };
+            let unread = (&self.blank.image, &self.no_strokes.sampler);
+            let on_device = GroundOnDevice::new(device, &self.material_layout, unread, plan, ground);
+            let mut pipelines = self.pipelines.borrow_mut();
+            pass.set_pipeline(pipelines.entry(variant).or_insert_with(|| self.pipeline(device, variant)));
+            pass.set_bind_group(0, &view_group, &[0]);
+            on_device.draw(&mut pass, INSTANCE_SLOT);
+            bind_vertices(&mut pass, uploaded);
+            set.set(None);
+        }
         if let (Some(view), Some(_), false) = (targets.color, targets.texels, blended_runs.is_empty()) {
             drop(pass);
             pass = begin(encoder, bound, [Some(attachment(view, wgpu::LoadOp::Load)), None], wgpu::LoadOp::Load);
@@ -498,20 +537,23 @@ impl SurfacePass {
     }
 
     fn pipeline(&self, device: &wgpu::Device, variant: Variant) -> wgpu::RenderPipeline {
-        let Variant { paint, looked_up, by_alpha, cull_back, mirrored, blended, colored, clipped, inking, .. } =
-            variant;
+        let Variant {
+            paint, looked_up, by_alpha, cull_back, mirrored, blended, colored, clipped, inking, ground, ..
+        } = variant;
         let shaders = self.shaders.borrow();
         let (key, module) = &shaders[variant.shader];
         let inked = inking.is_some();
+        // The ground is lit at its pixels.
+        let lights_faces = key.lights_faces && !ground;
         let (vertex, fragment) = match (paint, looked_up, inked) {
             (Paint::Nothing, false, false) => ("vs_depth", if clipped { "fs_clipped" } else { "fs_nothing" }),
             (Paint::Nothing, true, false) => ("vs_textured", "fs_cut_out"),
             (Paint::Painted, false, false) => ("vs_plain", "fs_painted"),
             (Paint::Painted, true, false) => ("vs_textured", "fs_painted_textured"),
-            (Paint::Lit, _, false) if key.lights_faces => ("vs_facet", "fs_facet"),
-            (Paint::Lit, _, true) if key.lights_faces => ("vs_facet", "fs_facet_inked"),
-            (Paint::Hatched, _, false) if key.lights_faces => ("vs_hatched_facet", "fs_hatched_facet"),
-            (Paint::Hatched, _, true) if key.lights_faces => ("vs_hatched_facet", "fs_hatched_facet_inked"),
+            (Paint::Lit, _, false) if lights_faces => ("vs_facet", "fs_facet"),
+            (Paint::Lit, _, true) if lights_faces => ("vs_facet", "fs_facet_inked"),
+            (Paint::Hatched, _, false) if lights_faces => ("vs_hatched_facet", "fs_hatched_facet"),
+            (Paint::Hatched, _, true) if lights_faces => ("vs_hatched_facet", "fs_hatched_facet_inked"),
             // Shadows need the normal at the pixel.
             (Paint::Lit, false, false) if key.at_vertices && variant.shadow.source == 0 => {
                 ("vs_lit_vertex", "fs_lit_vertex")
@@ -555,10 +597,11 @@ impl SurfacePass {
         let line_kind = inking.map_or(LineKind::Normals, |inking| inking.line_kind);
         let rotation = inking.map_or(ArtistRotation::PerPixel, |inking| inking.rotation);
         let region_of_texture = inking.is_some_and(|inking| inking.region_of_texture);
-        let constants: Vec<_> = key
-            .constants
-            .iter()
-            .copied()
+        let of_light = key.constants.iter().map(|&(name, value)| match name {
+            "surface_normals" if ground => (name, 0.0),
+            _ => (name, value),
+        });
+        let constants: Vec<_> = of_light
             .chain([
                 ("surface_shadow", f64::from(variant.shadow.source)),
                 ("surface_shadow_lines", f64::from(variant.shadow.lines)),
@@ -572,6 +615,7 @@ impl SurfacePass {
                 ("surface_by_alpha", flag(by_alpha)),
                 ("surface_looked_up", flag(looked_up)),
                 ("surface_blended", flag(blended)),
+                ("surface_ground", flag(ground)),
             ])
             .collect();
         let targets = [colored.then_some(target), texels];
@@ -593,7 +637,8 @@ impl SurfacePass {
             },
             depth_stencil: Some(wgpu::DepthStencilState {
                 format: variant.depth,
-                depth_write_enabled: Some(!blended),
+                // The ground hides no lines, so that it stands in the depth buffer only where shadows are computed.
+                depth_write_enabled: Some(!blended && (!ground || !colored && !inked)),
                 // A blended face is seen on an opaque one at its place.
                 depth_compare: Some(if blended {
                     wgpu::CompareFunction::GreaterEqual
@@ -719,13 +764,18 @@ fn begin<'a>(
         ..Default::default()
     });
     pass.set_bind_group(0, view_group, &[0]);
+    bind_vertices(&mut pass, uploaded);
+    pass
+}
+
+/// Binds the attributes of all vertices.
+fn bind_vertices(pass: &mut wgpu::RenderPass<'_>, uploaded: &GpuScene) {
     pass.set_vertex_buffer(0, uploaded.positions.slice(..));
     for (slot, buffer) in (1..).zip(&uploaded.streams.buffers) {
         if let Some(buffer) = buffer {
             pass.set_vertex_buffer(slot, buffer.slice(..));
         }
     }
-    pass
 }
 
 /// Sorts blended faces from the farthest to the nearest by the eye depth of their centroid; ties keep the file's order.

@@ -61,6 +61,8 @@ override surface_by_alpha: bool = false;
 override surface_looked_up: bool = false;
 // Whether the surface is alpha-blended.
 override surface_blended: bool = false;
+// Whether the surface is the ground, which shows nothing but shadows.
+override surface_ground: bool = false;
 
 @group(0) @binding(0) var<uniform> view: SurfaceView;
 @group(0) @binding(2) var<uniform> ink: SurfaceInk;
@@ -413,7 +415,22 @@ fn shadowed_most() -> u32 {
     return select(INK_TEXEL64_SHADOWED_REGION_MAX, INK_TEXEL32_SHADOWED_REGION_MAX, surface_narrow);
 }
 
+// The texel of the ground: background, with a shadow state where texels have one.
+fn ground_words(at: ShadowAt) -> vec4<u32> {
+    if surface_unquantised || surface_shadow_lines != 1u {
+        return vec4<u32>(0u);
+    }
+    let number = ink_shadow_background(at.state, shadowed_most());
+    if surface_narrow {
+        return vec4<u32>(ink_texel32_bits(vec3<f32>(0.0, 1.0, 0.0), number, 0u), 0u, 0u, 0u);
+    }
+    return vec4<u32>(ink_texel64_bits(vec3<f32>(0.0, 1.0, 0.0), number, 0u), 0u, 0u);
+}
+
 fn words(normal: vec3<f32>, region: u32, position: vec4<f32>, at: ShadowAt) -> vec4<u32> {
+    if surface_ground {
+        return ground_words(at);
+    }
     if surface_unquantised {
         let v = position.z * ink.code.scale + ink.code.bias;
         let shadowed = surface_shadow_lines == 2u && at.negated;
@@ -470,6 +487,14 @@ fn fs_painted_textured_inked(in: InkedTexturedSurface, @builtin(front_facing) fr
     return Inked(vec4<f32>(color, 1.0), textured_words(in, front, texel, at));
 }
 
+// The colour of a surface, or of the ground, whose base colour is paper: paper where it is lit.
+fn surface_or_ground(color: vec3<f32>, at: ShadowAt) -> vec3<f32> {
+    if surface_ground && !at.dark {
+        return material.base_color.rgb;
+    }
+    return color;
+}
+
 // The lookup coordinates of the light at a pixel, computed at the vertices or at the pixel.
 fn light_of(in: PlainLitSurface, front: bool) -> vec2<f32> {
     if surface_normals == 2u {
@@ -515,7 +540,7 @@ fn fs_lit(in: LitSurface, @builtin(front_facing) front: bool) -> @location(0) ve
     let base = lit_base(in, lit_texel(in));
     let at = shadow_at(in.position, facing(in.normal, front));
     let n = toon_unit(facing(in.normal, front));
-    let color = shade_color(base.rgb, light_of(without_lookups(in), front), n, at);
+    let color = surface_or_ground(shade_color(base.rgb, light_of(without_lookups(in), front), n, at), at);
     if surface_looked_up && base.a < material.cutoff {
         discard;
     }
@@ -527,7 +552,7 @@ fn fs_lit(in: LitSurface, @builtin(front_facing) front: bool) -> @location(0) ve
 fn fs_lit_plain(in: PlainLitSurface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
     let at = shadow_at(in.position, facing(in.normal, front));
     let n = toon_unit(facing(in.normal, front));
-    let color = shade_color(material.base_color.rgb, light_of(in, front), n, at);
+    let color = surface_or_ground(shade_color(material.base_color.rgb, light_of(in, front), n, at), at);
     clip_off(in.position);
     return vec4<f32>(color, surface_alpha(material.base_color.a));
 }
@@ -546,7 +571,7 @@ fn fs_lit_inked(in: LitSurface, @builtin(front_facing) front: bool) -> Inked {
     let base = lit_base(in, texel);
     let at = shadow_at(in.position, facing(in.normal, front));
     let n = toon_unit(facing(in.normal, front));
-    let color = shade_color(base.rgb, light_of(without_lookups(in), front), n, at);
+    let color = surface_or_ground(shade_color(base.rgb, light_of(without_lookups(in), front), n, at), at);
     if surface_looked_up && base.a < material.cutoff {
         discard;
     }

@@ -32,8 +32,8 @@ pub(crate) struct Hatching<'a> {
     pub(crate) at_dy: DVec3,
     /// The unit normal in mesh space.
     pub(crate) normal: DVec3,
-    /// The index of the mesh, and log2 of the scale of the object's transform.
-    pub(crate) mesh: usize,
+    /// The index of the mesh, `None` for the ground, and log2 of the scale of the object's transform.
+    pub(crate) mesh: Option<usize>,
     pub(crate) octave: f64,
     /// The corners of the face, and the point's barycentric weights.
     pub(crate) corners: [u32; 3],
@@ -72,6 +72,11 @@ impl<'a> Strokes<'a> {
             HatchMapping::Coordinates => uv.extend(0.0),
             HatchMapping::Planes | HatchMapping::Form => at / self.plan.tile,
         }
+    }
+
+    /// The length of one side of the map on a surface, scene units.
+    pub(crate) fn tile(&self) -> f64 {
+        self.plan.tile
     }
 
     /// The tone for a diffuse term.
@@ -170,11 +175,9 @@ impl<'a> Strokes<'a> {
     }
 
     /// The direction of the field and the octave of the texture coordinates at a point of a face.
-    fn at_point(&self, mesh: usize, corners: [u32; 3], barycentric: [f64; 3]) -> ([DVec3; 2], f64) {
-        let vertices = &self.plan.vertices[mesh];
-        if vertices.is_empty() {
-            return ([DVec3::ZERO; 2], 0.0);
-        }
+    fn at_point(&self, mesh: Option<usize>, corners: [u32; 3], barycentric: [f64; 3]) -> ([DVec3; 2], f64) {
+        let vertices = mesh.map(|mesh| &self.plan.vertices[mesh]).filter(|vertices| !vertices.is_empty());
+        let Some(vertices) = vertices else { return ([DVec3::ZERO; 2], 0.0) };
         let corners = corners.map(|v| vertices[v as usize]);
         let mean = |of: fn(&HatchVertex) -> [f32; 3]| -> DVec3 {
             let corners = corners.iter().zip(barycentric);

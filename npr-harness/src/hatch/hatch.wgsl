@@ -238,7 +238,8 @@ fn fs_hatched(in: HatchedSurface, @builtin(front_facing) front: bool) -> @locati
     let lit = hatched_lit(in);
     let base = lit_base(lit, lit_texel(lit));
     let at = shadow_at(in.position, facing(in.normal, front));
-    let color = hatched_color(in, base.rgb, light_of(without_lookups(lit), front), front, at);
+    let hatched = hatched_color(in, base.rgb, light_of(without_lookups(lit), front), front, at);
+    let color = surface_or_ground(hatched, at);
     if surface_looked_up && base.a < material.cutoff {
         discard;
     }
@@ -252,7 +253,8 @@ fn fs_hatched_inked(in: HatchedSurface, @builtin(front_facing) front: bool) -> I
     let texel = lit_texel(lit);
     let base = lit_base(lit, texel);
     let at = shadow_at(in.position, facing(in.normal, front));
-    let color = hatched_color(in, base.rgb, light_of(without_lookups(lit), front), front, at);
+    let hatched = hatched_color(in, base.rgb, light_of(without_lookups(lit), front), front, at);
+    let color = surface_or_ground(hatched, at);
     if surface_looked_up && base.a < material.cutoff {
         discard;
     }

@@ -16,7 +16,7 @@ use npr_imagespace::format::texel::{
 };
 use npr_imagespace::region::{ink_region_of_color, ink_region_pair};
 use npr_imagespace::resample::resample;
-use npr_imagespace::shadow::{ShadowState, ink_shadow_normal, ink_shadow_region};
+use npr_imagespace::shadow::{ShadowState, ink_shadow_background, ink_shadow_normal, ink_shadow_region};
 
 /// The attributes of a surface point that image-space lines use.
 pub(crate) struct InkSample<'a> {
@@ -61,6 +61,18 @@ pub(crate) fn texel(image: &ImagePlan, sample: Option<&InkSample<'_>>) -> [u32; 
     match image.ink.layout {
         TexelLayout::Bits32 => [ink_texel32_pack(normal, region, depth, &image.code), 0],
         TexelLayout::Bits64 => ink_texel64_pack(normal, region, depth, &image.code),
+    }
+}
+
+/// The packed G-buffer value of the ground: background, with a shadow state where shadows have lines by their states.
+pub(crate) fn texel_of_ground(image: &ImagePlan, shadow: ShadowAt) -> [u32; 2] {
+    if !image.ink.shadows.has_states() {
+        return BACKGROUND;
+    }
+    let number = ink_shadow_background(shadow.state as u32, image.ink.layout);
+    match image.ink.layout {
+        TexelLayout::Bits32 => [ink_texel32_bits(Vec3::Y, number, 0), 0],
+        TexelLayout::Bits64 => ink_texel64_bits(Vec3::Y, number, 0),
     }
 }
 

@@ -1,6 +1,7 @@
 //! Lists the passes of a plan and those that were left out, each with its reason.
 
 use super::{PaintPlan, Plan, Reason};
+use crate::ground::GROUND;
 use crate::hatch::HatchMapping;
 use crate::image_lines::{ImagePlan, InkScale};
 use crate::shadow::{ShadowLines, ShadowTechnique};
@@ -190,6 +191,7 @@ impl Plan {
 pub fn part_of_pass(pass: &str, is_hatched: bool) -> Part {
     match pass {
         "shadow rays" | "geometry: depth, before all" | "shadow volumes into a stencil" | "shadow map" => Part::Shadows,
+        GROUND => Part::Shadows,
         "inverted hull: displaced back faces"
         | "printed fins, all edges"
         | "line coverage and ink"

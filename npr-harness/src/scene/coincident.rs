@@ -5,8 +5,9 @@
 //! gets a mesh of its own, in scene space, so that equal corners have equal depths; of two objects the later wins, by the
 //! rule of [`npr_mesh::coplanar`].
 
+use super::Scene;
 use super::mesh::{Mesh, find_edges};
-use super::{Object, Scene};
+use super::object::{Object, Unseparated};
 use glam::{DAffine3, DVec3, Vec2, Vec4};
 use npr_mesh::Model;
 use npr_mesh::coplanar::{ROUNDING, Separated, separate};
@@ -15,13 +16,6 @@ use std::sync::Arc;
 
 /// The number of faces near other objects from which on the comparison is left out, since it would take seconds.
 const MOST_FACES: usize = 4_000_000;
-
-/// What an object is made from, where it has a mesh of its own.
-#[derive(Clone)]
-pub(super) struct Unseparated {
-    pub mesh: usize,
-    pub scene_from_mesh: DAffine3,
-}
 
 /// A box in scene space.
 type Box3 = (DVec3, DVec3);

@@ -1,6 +1,5 @@
 //! A mesh placed in a scene.
 
-use super::coincident::Unseparated;
 use super::mesh::Mesh;
 use crate::derived::Derived;
 use glam::{DAffine3, DMat3, DVec3, DVec4, Vec3};
@@ -21,6 +20,13 @@ pub enum ObjectLines {
 
 /// The largest number of lights of a style.
 pub const MAX_LIGHTS: usize = 8;
+
+/// What an object is made from, where it has a mesh of its own.
+#[derive(Clone)]
+pub(super) struct Unseparated {
+    pub mesh: usize,
+    pub scene_from_mesh: DAffine3,
+}
 
 /// A mesh placed in a scene.
 #[derive(Clone)]
@@ -201,7 +207,7 @@ impl Object {
     }
 
     /// The scene-space bounding box of a mesh-space box; tight if the transform maps axes to axes.
-    pub(super) fn box_around(&self, (low, high): (Vec3, Vec3)) -> (DVec3, DVec3) {
+    pub(crate) fn box_around(&self, (low, high): (Vec3, Vec3)) -> (DVec3, DVec3) {
         placed_box(&self.placement.scene_from_mesh, (low.as_dvec3(), high.as_dvec3()))
     }
 }

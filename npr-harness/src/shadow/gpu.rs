@@ -9,6 +9,7 @@ use crate::gpu::context::GpuContext;
 use crate::gpu::index_format::IndexFormat;
 use crate::gpu::instances::{INSTANCE_ATTRIBUTES, Instances, instance_layout};
 use crate::gpu::uniform::uniform_buffer;
+use crate::ground::bounds_with;
 use crate::scene::{Object, Scene};
 use crate::texel_format;
 use crate::view::size_px;
@@ -240,7 +241,8 @@ impl ShadowPasses {
             casters.endless(object.homogeneous(light), object.homogeneous(away.extend(0.0)).truncate())
         };
         let endless = if parallel { objects.iter().map(of_object).sum() } else { 0 };
-        let area = frame.scene.bounds().map(|bounds| frame.camera.area(bounds, frame.size, 1));
+        let area =
+            bounds_with(frame.plan.ground.as_ref(), frame.scene).map(|bounds| frame.camera.area(bounds, frame.size, 1));
         let mut draw = |of_objects: Vec<&CastersOnDevice>| {
             let placed = |(casters, object): (_, &Object)| PlacedCasters {
                 casters,

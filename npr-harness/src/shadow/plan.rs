@@ -2,6 +2,7 @@
 
 use super::style::{ShadowMethod, ShadowStyle};
 use crate::error::HarnessError;
+use crate::ground::GroundPlan;
 use crate::rays::Hit;
 use crate::scene::{Mesh, Scene};
 use glam::DVec4;
@@ -24,6 +25,8 @@ pub struct ShadowPlan {
     pub in_picture: bool,
     /// Whether shadows appear in image-space lines that have their own geometry pass.
     pub in_lines: bool,
+    /// The plane under the model that catches shadows.
+    pub ground: Option<GroundPlan>,
 }
 
 /// How shadows are computed.

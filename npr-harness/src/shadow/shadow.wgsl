@@ -57,7 +57,8 @@ fn shadow_falls(position: vec4<f32>) -> bool {
         return false;
     }
     let middle = (vec2<f32>(texel) + 0.5) / vec2<f32>(size);
-    return textureSampleLevel(shadow_map, shadow_nearest, middle, 0.0).x > place.z / place.w;
+    // The ground may be beyond the map's far plane, where nothing is not nearer to the light.
+    return textureSampleLevel(shadow_map, shadow_nearest, middle, 0.0).x > max(place.z / place.w, 0.0);
 }
 
 // The shadow state of a fragment.

@@ -53,7 +53,7 @@ pub fn shots(scene: &Scene, aspect: f64) -> Vec<ShadowShot> {
                 yaw_rad: yaw_deg.to_radians(),
                 pitch_rad: pitch_deg.to_radians(),
                 fov_y_rad: fov_y_deg.map(f64::to_radians),
-                distance: 1.0,
+                ..Framing::default()
             },
         ),
     };

@@ -232,11 +232,10 @@ fn is_surface(settings: &FilterUniform, tap: &Tap) -> bool {
     tap.region & settings.region_mask != 0
 }
 
-/// Whether a border of shadows lies between the centre and a tap.
+/// Whether a border of shadows lies between the centre and a tap. Background has no border of shadows, for want of a state,
+/// unless it catches shadows ([`crate::shadow::ink_shadow_background`]).
 pub fn ink_tap_shadow_differs(settings: &FilterUniform, centre: &Tap, tap: &Tap) -> bool {
     settings.tests & TEST_SHADOW != 0
-        && is_surface(settings, centre)
-        && is_surface(settings, tap)
         && ink_shadow_differs(
             centre.region & settings.shadow_bits,
             tap.region & settings.shadow_bits,

@@ -54,12 +54,10 @@ fn ink_taps_bends(settings: InkFilter, centre: i32, depths: vec4<i32>) -> vec4<i
     return vec4<i32>(second_differences, ink_taps_depth_thresholds(settings, nearest.xyxy).xy);
 }
 
-// Between which taps and the centre a border of shadows lies.
+// Between which taps and the centre a border of shadows lies. Background that catches no shadows has no state.
 fn ink_taps_shadows_differ(settings: InkFilter, centre: u32, regions: vec4<u32>) -> vec4<bool> {
     let bits = vec4<u32>(settings.shadow_bits);
-    let surfaces = ((regions & vec4<u32>(settings.region_mask)) != vec4<u32>(0u))
-        & vec4<bool>((centre & settings.region_mask) != 0u);
-    return surfaces & ink_shadow_differs(vec4<u32>(centre) & bits, regions & bits, bits);
+    return ink_shadow_differs(vec4<u32>(centre) & bits, regions & bits, bits);
 }
 
 // Whether a pixel is a line.

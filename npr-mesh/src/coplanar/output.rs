@@ -1,11 +1,22 @@
 //! Builds the model whose coplanar faces are separated.
 
-use super::Separated;
 use super::layers::Seen;
 use super::overlap::Projection;
 use crate::Model;
 use glam::{DVec3, Vec2, Vec3, Vec4};
 use std::collections::HashMap;
+
+/// A model whose coplanar faces are separated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Separated {
+    /// The model.
+    pub model: Model,
+    /// Per face of it: the face that it is, or that it is a piece of.
+    pub sources: Vec<u32>,
+    /// The faces, ascending, of the model before that share their place with others that they hide, are hidden by or are
+    /// seen through.
+    pub coincident: Vec<u32>,
+}
 
 /// The faces of the result.
 pub(super) struct Output {

@@ -9,6 +9,7 @@ mod check;
 mod cli;
 mod completions;
 mod figures;
+mod framing;
 mod gallery;
 mod inspect;
 mod loading;

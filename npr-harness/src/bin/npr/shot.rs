@@ -1,6 +1,7 @@
 //! What is to be drawn, as arguments: the model, the style, the view.
 
 use crate::backend::BackendName;
+use crate::framing::{FramingOptions, numbers};
 use crate::loading::{Loading, load};
 use crate::style::{known_style, style_file};
 use crate::terminal::{one_line, tell};
@@ -31,21 +32,8 @@ pub struct ShotOptions {
     /// Where the picture is made.
     #[arg(long, value_enum, default_value = "auto")]
     pub backend: BackendName,
-    /// Around the model, degrees to the right from the side of +Z.
-    #[arg(long, default_value_t = 30.0, allow_negative_numbers = true)]
-    yaw: f64,
-    /// Above the horizon, degrees, -90 to 90.
-    #[arg(long, default_value_t = 20.0, allow_negative_numbers = true)]
-    pitch: f64,
-    /// 1 fits the whole model, 2 is twice as far away.
-    #[arg(long, default_value_t = 1.0)]
-    distance: f64,
-    /// Between the upper and the lower border, degrees.
-    #[arg(long, default_value_t = 35.0, conflicts_with = "ortho")]
-    fov: f64,
-    /// A parallel view.
-    #[arg(long)]
-    ortho: bool,
+    #[command(flatten)]
+    framing: FramingOptions,
     /// Samples per pixel along each axis: 2 or more smooth what has no line on it.
     #[arg(long, default_value_t = 1)]
     samples: u32,
@@ -73,9 +61,7 @@ fn parse_size(text: &str) -> Result<(u32, u32), String> {
 }
 
 fn parse_plane(text: &str) -> Result<DVec4, String> {
-    let number = |part: &str| part.trim().parse::<f64>().map_err(|_| format!("{part:?} is not a number"));
-    let numbers = text.split(',').map(number).collect::<Result<Vec<_>, _>>()?;
-    let plane = <[f64; 4]>::try_from(numbers).map_err(|_| "expected four numbers: NX,NY,NZ,D")?;
+    let plane = <[f64; 4]>::try_from(numbers(text)?).map_err(|_| "expected four numbers: NX,NY,NZ,D")?;
     let plane = DVec4::from(plane);
     if plane.is_finite() && plane.truncate() != DVec3::ZERO { Ok(plane) } else { Err("no plane".into()) }
 }
@@ -97,18 +83,19 @@ pub fn elapsed_ms(start: Instant) -> f64 {
     start.elapsed().as_secs_f64() * 1e3
 }
 
-fn checked(what: &'static str, value: f64, low: f64, high: f64, range: &'static str) -> Result<f64, HarnessError> {
+pub fn checked(what: &'static str, value: f64, low: f64, high: f64, range: &'static str) -> Result<f64, HarnessError> {
     if (low..=high).contains(&value) { Ok(value) } else { Err(HarnessError::Range { what, value, range }) }
 }
 
 /// Arguments that are within their ranges.
-pub struct Shot {
+pub struct Shot<'a> {
     pub style: Style,
     pub backend: Backend,
     pub samples: u32,
     pub memory_bytes: u64,
     size: (u32, u32),
     framing: Framing,
+    options: &'a FramingOptions,
 }
 
 /// A model, ready to be drawn.
@@ -126,33 +113,33 @@ impl ShotOptions {
     }
 
     /// Checks everything that can be checked without the model.
-    pub fn check(&self) -> Result<Shot, HarnessError> {
+    pub fn check(&self) -> Result<Shot<'_>, HarnessError> {
         let most = f64::from(MOST_SAMPLES);
         let samples = checked("samples", f64::from(self.samples), 1.0, most, "1..=64")? as u32;
         let memory = checked("memory", self.max_memory, 0.0, 1e6, "0..=1e6 GiB")? * f64::from(1 << 30);
-        let framing = Framing {
-            yaw_rad: checked("yaw", self.yaw, -1e6, 1e6, "-1e6..=1e6 degrees")?.to_radians(),
-            pitch_rad: checked("pitch", self.pitch, -90.0, 90.0, "-90..=90 degrees")?.to_radians(),
-            distance: checked("distance", self.distance, 1e-3, 1e3, "0.001..=1000")?,
-            fov_y_rad: if self.ortho {
-                None
-            } else {
-                Some(checked("field of view", self.fov, 1.0, 170.0, "1..=170 degrees")?.to_radians())
-            },
-        };
         self.loading.check([&self.input])?;
         let style = known_style(&self.style)?;
+        let framing = self.framing.checked(&style)?;
         let backend = Backend::from(self.backend);
         // The executor depends on the model, but a picture too large for either is rejected at once.
         check_picture(&style, self.size, samples, backend == Backend::Gpu, memory as u64)?;
         checked("segments", f64::from(self.segments), 1.0, 1024.0, "1..=1024")?;
-        Ok(Shot { style, backend, samples, memory_bytes: memory as u64, size: self.size, framing })
+        Ok(Shot {
+            style,
+            backend,
+            samples,
+            memory_bytes: memory as u64,
+            size: self.size,
+            framing,
+            options: &self.framing,
+        })
     }
 
     /// Loads the model, and says what there is to warn of.
     pub fn prepare(&self) -> Result<Prepared, HarnessError> {
         let start = Instant::now();
-        let loaded = load(&self.input, &self.loading)?;
+        let mut loaded = load(&self.input, &self.loading)?;
+        self.framing.turn(&mut loaded);
         let loaded_ms = elapsed_ms(start);
         let warn = |warnings: &[Warning]| {
             for warning in warnings {
@@ -177,8 +164,10 @@ impl ShotOptions {
             }
         }
         warn(&of_edges);
-        let warnings = [warnings, of_edges].concat();
-        scene.clip = self.clip.map(|plane| scene.plane_here(plane));
+        let of_framing = self.framing.apply(&mut scene)?;
+        warn(&of_framing);
+        let warnings = [warnings, of_edges, of_framing].concat();
+        scene.clip = self.clip.map(|plane| self.framing.plane(&scene, plane));
         for (material, kind) in &self.inner_lines {
             scene.set_line_kind(material, *kind)?;
         }
@@ -186,11 +175,12 @@ impl ShotOptions {
     }
 }
 
-impl Shot {
+impl Shot<'_> {
     /// The view of a scene.
     pub fn view(&self, scene: &Scene) -> View {
         let (width, height) = self.size;
-        let camera = Camera::framed(scene.corners(), f64::from(width) / f64::from(height), &self.framing);
+        let framing = self.options.of_scene(&self.framing, scene);
+        let camera = Camera::framed(scene.framed_corners(), f64::from(width) / f64::from(height), &framing);
         View { samples: self.samples, ..View::new(camera, self.size) }
     }
 }

@@ -53,7 +53,7 @@ fn length_px(lines: &TrueLines) -> f64 {
 fn a_cube_shows_nine_edges_from_corner_to_corner() {
     let scene = Scene::new(cube());
     for fov_y_rad in [Some(0.6), None] {
-        let framing = Framing { yaw_rad: 0.7, pitch_rad: 0.4, distance: 1.0, fov_y_rad };
+        let framing = Framing { yaw_rad: 0.7, pitch_rad: 0.4, fov_y_rad, ..Framing::default() };
         let camera = Camera::framed(scene.corners(), 16.0 / 9.0, &framing);
         let lines = true_lines(&scene, &camera, SIZE, CREASE_RAD);
         // An edge of the cube is visible unless both of its faces are back-facing.
