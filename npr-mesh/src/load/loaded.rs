@@ -72,7 +72,7 @@ struct Merge {
 }
 
 type TextureKey = (*const u8, [Wrap; 2], bool);
-type MaterialKey = (String, [u32; 4], Option<u32>, (bool, Option<u32>), bool);
+type MaterialKey = (String, [u32; 4], [u32; 3], [Option<u32>; 2], (bool, Option<u32>), bool);
 
 impl Merge {
     /// Moves the materials and textures of a mesh to the model.
@@ -86,8 +86,8 @@ impl Merge {
         };
         let textures: Vec<u32> = mesh.textures.drain(..).map(add_texture).collect();
         let mut equal: HashMap<MaterialKey, u32> = HashMap::new();
-        let add_material = |mut material: Material| {
-            material.texture = material.texture.map(|texture| textures[texture as usize]);
+        let add_material = |material: Material| {
+            let material = material.with_textures(|texture| textures[texture as usize]);
             let before = equal.entry(key(&material)).or_default();
             *before += 1;
             *self.materials.entry((key(&material), *before)).or_insert_with(|| {
@@ -107,5 +107,7 @@ fn key(material: &Material) -> MaterialKey {
         AlphaMode::Blend => (true, None),
     };
     let color = material.base_color.to_array().map(f32::to_bits);
-    (material.name.clone(), color, material.texture, alpha, material.double_sided)
+    let emissive = material.emissive.to_array().map(f32::to_bits);
+    let textures = [material.texture, material.emissive_texture];
+    (material.name.clone(), color, emissive, textures, alpha, material.double_sided)
 }

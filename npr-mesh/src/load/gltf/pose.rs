@@ -12,14 +12,14 @@ use gltf::json::{self, Index};
 /// The joint matrices: the world transform of each joint times its inverse bind matrix.
 ///
 /// # Errors
-/// A missing joint or accessor, or too few matrices.
+/// An invalid accessor, or too few matrices.
 pub(super) fn joint_matrices(
     document: &Document,
     nodes: &Nodes,
     index: Index<json::Skin>,
 ) -> Result<Vec<DMat4>, String> {
     let number = index.value();
-    let skin = document.root.get(index).ok_or_else(|| format!("skin {number} does not exist"))?;
+    let skin = &document.root.skins[number];
     let fail = |fault: String| format!("skin {number}: {fault}");
     let inverse_binds = match skin.inverse_bind_matrices {
         None => Vec::new(),
@@ -33,13 +33,11 @@ pub(super) fn joint_matrices(
         }
     };
     let matrix = |(at, joint): (usize, &Index<json::Node>)| {
-        let joint = joint.value();
-        let world =
-            nodes.world_from_node.get(joint).ok_or_else(|| fail(format!("its joint {joint} does not exist")))?;
+        let world = nodes.world_from_node[joint.value()];
         // Without the accessor all inverse bind matrices are the identity.
-        Ok(inverse_binds.get(at).map_or(*world, |bind| *world * DMat4::from_cols_array(&bind.map(f64::from))))
+        inverse_binds.get(at).map_or(world, |bind| world * DMat4::from_cols_array(&bind.map(f64::from)))
     };
-    skin.joints.iter().enumerate().map(matrix).collect()
+    Ok(skin.joints.iter().enumerate().map(matrix).collect())
 }
 
 /// The maximum number of sets of four joints and weights per vertex.

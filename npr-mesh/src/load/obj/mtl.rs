@@ -235,6 +235,10 @@ pub(super) fn move_materials(
                             Some(model.textures.len() as u32 - 1)
                         }
                         Err(error @ LoadError::TooLarge { .. }) => return Err(error),
+                        Err(LoadError::ImageTooLarge { image, what, count, limit, .. }) => {
+                            let path = external.model.to_owned();
+                            return Err(LoadError::ImageTooLarge { path, image, what, count, limit });
+                        }
                         Err(LoadError::Outside { .. }) => {
                             warnings.push(format!("texture \"{written}\" leads out of the model's folder"));
                             None
