@@ -80,10 +80,16 @@ pub(super) fn load(external: &External) -> Result<Parsed, LoadError> {
     let (meshes, objects) = meshes::load(&document, &nodes, &mut warnings)?;
     if objects.is_empty() && nodes.shown.iter().all(|&node| document.root.nodes[node].mesh.is_none()) {
         let meshes = document.root.meshes.len();
-        return if meshes == 0 { Ok(Parsed { meshes: Vec::new(), objects, warnings }) } else { Err(LoadError::NotPlaced { path: path.to_owned(), meshes }) };
+        return if meshes == 0 {
+            Ok(Parsed { meshes: Vec::new(), objects, warnings })
+        } else {
+            Err(LoadError::NotPlaced { path: path.to_owned(), meshes })
+        };
     }
     warnings.extend(document.buffers.iter().enumerate().filter_map(|(number, bytes)| match bytes {
-        Bytes::Missing(fault) if !compressed::is_fallback(&document, number) => Some(format!("buffer {number} is left out, and no mesh needs it: {fault}")),
+        Bytes::Missing(fault) if !compressed::is_fallback(&document, number) => {
+            Some(format!("buffer {number} is left out, and no mesh needs it: {fault}"))
+        }
         _ => None,
     }));
     Ok(Parsed { meshes, objects, warnings })

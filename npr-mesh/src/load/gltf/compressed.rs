@@ -70,7 +70,8 @@ pub(super) fn find(document: &mut Document) -> Result<(), LoadError> {
         bytes = bytes.saturating_add(length);
         found.insert(number, CompressedView { extension, stated, content: OnceCell::new() });
     }
-    let limit = FREE_BYTES.saturating_add(document.bytes.saturating_mul(MOST_EXPANSION)).min(document.limits.file_bytes);
+    let limit =
+        FREE_BYTES.saturating_add(document.bytes.saturating_mul(MOST_EXPANSION)).min(document.limits.file_bytes);
     if bytes > limit {
         return Err(document.too_large("bytes in compressed buffer views", bytes, limit));
     }
@@ -88,7 +89,8 @@ impl CompressedView {
         let decode = || {
             let Meshopt { buffer, byte_offset, byte_length, .. } = self.stated;
             let fail = |fault: String| format!("{}: {fault}", self.extension);
-            let bytes = document.buffers[buffer].as_slice().map_err(|fault| fail(format!("buffer {buffer}: {fault}")))?;
+            let bytes =
+                document.buffers[buffer].as_slice().map_err(|fault| fail(format!("buffer {buffer}: {fault}")))?;
             let source = files::slice(bytes, byte_offset, byte_length).ok_or_else(|| {
                 let range = format!("{byte_length} bytes from byte {byte_offset}");
                 fail(format!("{range} reach beyond buffer {buffer}, which has {}", bytes.len()))
@@ -129,7 +131,8 @@ impl CompressedView {
 
 /// Whether a buffer holds only the uncompressed content of buffer views that are decompressed here.
 pub(super) fn is_fallback(document: &Document, buffer: usize) -> bool {
-    let mut of_buffer = (document.root.buffer_views.iter().enumerate()).filter(|(_, view)| view.buffer.value() == buffer);
+    let mut of_buffer =
+        (document.root.buffer_views.iter().enumerate()).filter(|(_, view)| view.buffer.value() == buffer);
     let is_compressed = |(number, _): (usize, _)| document.decoded.contains_key(&number);
     !document.decoded.is_empty() && of_buffer.all(is_compressed)
 }

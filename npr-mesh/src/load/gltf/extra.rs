@@ -113,6 +113,9 @@ impl Extra {
     /// The names of the extensions of a primitive.
     pub fn primitive_extensions(&self, mesh: usize, primitive: usize) -> impl Iterator<Item = &str> {
         let found = self.meshes.get(mesh).and_then(|mesh| mesh.primitives.get(primitive));
-        found.and_then(|primitive| primitive.extensions.as_deref()).into_iter().flat_map(|of| of.keys().map(String::as_str))
+        found
+            .and_then(|primitive| primitive.extensions.as_deref())
+            .into_iter()
+            .flat_map(|of| of.keys().map(String::as_str))
     }
 }

@@ -175,10 +175,7 @@ impl Checker<'_> {
                 ("occlusionTexture", material.occlusion_texture.as_ref().map(|texture| texture.index)),
                 ("emissiveTexture", of_info(&material.emissive_texture)),
                 ("diffuseTexture", glossy.and_then(|glossy| of_info(&glossy.diffuse_texture))),
-                (
-                    "specularGlossinessTexture",
-                    glossy.and_then(|glossy| of_info(&glossy.specular_glossiness_texture)),
-                ),
+                ("specularGlossinessTexture", glossy.and_then(|glossy| of_info(&glossy.specular_glossiness_texture))),
             ] {
                 let textures = self.root.textures.len();
                 texture.map_or(Ok(()), |index| exists(owner, property, "texture", index.number(), textures))?;

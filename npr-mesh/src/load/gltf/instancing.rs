@@ -59,9 +59,7 @@ impl<'d> Instances<'d> {
         };
         let (translations, scales) = (vectors("TRANSLATION", &self.translation)?, vectors("SCALE", &self.scale)?);
         let rotations = match &self.rotation {
-            Some(accessor) => {
-                Some(accessor.floats::<4>(Integers::AsStated).map_err(|fault| read("ROTATION", fault))?)
-            }
+            Some(accessor) => Some(accessor.floats::<4>(Integers::AsStated).map_err(|fault| read("ROTATION", fault))?),
             None => None,
         };
         let transform = |instance: usize| {

@@ -1,12 +1,12 @@
 //! Loads meshes, and places them.
 
+use super::INSTANCING;
 use super::accessor::{Accessor, Integers, Purpose};
 use super::compressed::refuse_unsupported;
 use super::document::{self, Document};
 use super::instancing::Instances;
 use super::materials::{Materials, UvSource};
 use super::pose::{self, Influences};
-use super::INSTANCING;
 use super::scene::Nodes;
 use crate::edges::MOST_FACES;
 use crate::transform::Turn;

@@ -39,7 +39,7 @@ pub(super) fn parse(text: &[u8], warnings: &mut Vec<String>) -> Result<(Root, Ex
         return Err(first.into());
     }
     let mut value: Value = serde_json::from_slice(text).map_err(|error| error.to_string())?;
-    check_version(&mut value, warnings)?;
+    check_version(&value)?;
     let mut repaired = Repaired::default();
     let mut unused = [Value::Null, Value::Null];
     if let Value::Object(root) = &mut value {
@@ -72,13 +72,13 @@ pub(super) fn parse(text: &[u8], warnings: &mut Vec<String>) -> Result<(Root, Ex
     Ok((root, extra))
 }
 
-/// Recognises other versions of glTF, whose documents have other structures, and repairs a version that is a number.
-fn check_version(value: &mut Value, warnings: &mut Vec<String>) -> Result<(), ParseFault> {
+/// Recognises other versions of glTF, whose documents have other structures.
+fn check_version(value: &Value) -> Result<(), ParseFault> {
     // glTF 1.0 has dictionaries where glTF 2.0 has arrays.
     let names = ["accessors", "bufferViews", "buffers", "materials", "meshes", "nodes", "scenes"];
     let has_dictionaries = names.iter().any(|name| value.get(name).is_some_and(Value::is_object));
     let Value::Object(root) = value else { return Ok(()) };
-    let stated = root.get_mut("asset").and_then(|asset| asset.get_mut("version")).filter(|version| !version.is_null());
+    let stated = root.get("asset").and_then(|asset| asset.get("version")).filter(|version| !version.is_null());
     let Some(version) = stated else {
         return Err(match has_dictionaries {
             true => ParseFault::Version("1.0".to_owned()),
@@ -86,8 +86,10 @@ fn check_version(value: &mut Value, warnings: &mut Vec<String>) -> Result<(), Pa
         });
     };
     if let Some(number) = version.as_f64() {
-        warnings.push("the version is a number, not a text".to_owned());
-        *version = Value::String(format!("{number:?}"));
+        return Err(match number.trunc() == 2.0 {
+            true => ParseFault::Malformed("the version in `asset` is a number, not a text".to_owned()),
+            false => ParseFault::Version(format!("{number:?}")),
+        });
     }
     match version.as_str().filter(|text| *text != "2" && !text.starts_with("2.")) {
         Some(other) => Err(ParseFault::Version(shortened(other))),
