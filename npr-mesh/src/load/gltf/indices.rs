@@ -3,7 +3,6 @@
 use super::document::Document;
 use super::extra::Extra;
 use crate::LoadError;
-use gltf::json::mesh::Semantic;
 use gltf::json::validation::Checked;
 use gltf::json::{Index, Root, texture};
 
@@ -102,8 +101,11 @@ impl Checker<'_> {
             for (at, primitive) in mesh.primitives.iter().enumerate() {
                 let owner: Owner = &|| format!("mesh {number} primitive {at}");
                 for (semantic, &accessor) in &primitive.attributes {
-                    let name = |semantic: &Semantic| semantic.to_string();
-                    let property = if let Checked::Valid(semantic) = semantic { name(semantic) } else { String::new() };
+                    // The crate does not keep the names of attributes that it does not know.
+                    let property = match semantic {
+                        Checked::Valid(semantic) => semantic.to_string(),
+                        Checked::Invalid => "attributes".to_owned(),
+                    };
                     self.accessor(owner, &property, Some(accessor))?;
                 }
                 self.accessor(owner, "indices", primitive.indices)?;
