@@ -2,7 +2,7 @@
 
 use crate::doc::{Doc, PRIMITIVE};
 use crate::{assert_fails, load_with, loaded, warnings};
-use glam::{DAffine3, DQuat, DVec3, dvec3};
+use glam::{DAffine3, DQuat, DVec3, Vec3, dvec3};
 use npr_mesh::{Limits, LoadError};
 use serde_json::{Value, json};
 use std::f64::consts::FRAC_PI_2;
@@ -158,4 +158,34 @@ fn transforms_are_composed_in_the_precision_of_the_file() {
     // 0.1 is not the nearest f32.
     let near = city(dvec3(500_000.123, 0.0, 0.0));
     assert!((near.objects[1].world_from_mesh.translation.x - 0.1).abs() < 1e-9);
+}
+
+/// A skin places its vertices in world space, which is f32 within the mesh but not for the object.
+#[test]
+fn a_skinned_mesh_far_away_keeps_its_digits() {
+    let skinned = |origin: DVec3| {
+        let mut doc = Doc::square();
+        let joints = doc.add(&[0; 16], json!({"componentType": 5121, "type": "VEC4", "count": 4}));
+        let weights = doc.floats("VEC4", &[1., 0., 0., 0.].repeat(4));
+        let translation = (origin + dvec3(0.25, 0.0, 0.0)).to_array();
+        let doc = doc
+            .set("/accessors/0/min", json!([0, 0, 0]))
+            .set("/accessors/0/max", json!([1, 1, 0]))
+            .set(&format!("{PRIMITIVE}/attributes/JOINTS_0"), json!(joints))
+            .set(&format!("{PRIMITIVE}/attributes/WEIGHTS_0"), json!(weights))
+            .set("/skins", json!([{"joints": [1]}]))
+            .set("/nodes", json!([{"mesh": 0, "skin": 0}, {"translation": translation, "scale": [0.1, 0.1, 0.1]}]));
+        loaded(&doc)
+    };
+    let corners = |origin: DVec3| {
+        let file = skinned(origin);
+        let world = file.objects[0].world_from_mesh;
+        let corner = |position: &Vec3| world.transform_point3(position.as_dvec3()) - origin;
+        (world.translation, file.meshes[0].positions.iter().map(corner).collect::<Vec<_>>())
+    };
+    let (near, expected) = corners(DVec3::ZERO);
+    assert_eq!((near, expected[2].as_vec3()), (DVec3::ZERO, Vec3::new(0.35, 0.1, 0.0)));
+    let (far, found) = corners(dvec3(500_000.123, 7.0, 5_400_000.456));
+    assert!(far.x > 499_999.0);
+    assert!(found.iter().zip(&expected).all(|(a, b)| a.distance(*b) < 1e-7), "{found:?}");
 }

@@ -11,7 +11,7 @@ use super::scene::Nodes;
 use crate::edges::MOST_FACES;
 use crate::transform::Turn;
 use crate::{LoadError, Model, Object};
-use glam::{BVec3, DAffine3, DMat3, DMat4, Vec2, Vec3, Vec4};
+use glam::{BVec3, DAffine3, DMat3, DMat4, DVec3, Vec2, Vec3, Vec4};
 use gltf::json::mesh::{Mode, Primitive, Semantic};
 use gltf::json::validation::Checked;
 use gltf::json::{self, Index};
@@ -70,7 +70,16 @@ pub(super) fn load(
                     Entry::Occupied(known) => known.into_mut(),
                     Entry::Vacant(slot) => slot.insert(pose::joint_matrices(document, nodes, skin).map_err(fail)?),
                 };
-                (loader.mesh(index.value(), mesh, weights, Some(joints))?, DAffine3::IDENTITY)
+                let origin = pose::far_origin(document, mesh, joints);
+                let near: Vec<DMat4>;
+                let joints = if origin == DVec3::ZERO {
+                    &joints[..]
+                } else {
+                    near = joints.iter().map(|joint| DMat4::from_translation(-origin) * *joint).collect();
+                    &near
+                };
+                let slot = loader.mesh(index.value(), mesh, weights, Some(joints))?;
+                (slot, DAffine3::from_translation(origin))
             }
             None => {
                 let key = (index.value(), of_node.map(|weights| weights.iter().map(|w| w.to_bits()).collect()));
