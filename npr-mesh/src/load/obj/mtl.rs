@@ -129,6 +129,7 @@ fn read_materials(text: &str, materials: &mut Vec<MtlMaterial>, warnings: &mut V
             given.push((false, false));
             continue;
         }
+        let number = materials.len().saturating_sub(1);
         let (Some(MtlMaterial { material, texture }), Some((has_color, has_dissolve))) =
             (materials[first..].last_mut(), given.last_mut())
         else {
@@ -164,7 +165,7 @@ fn read_materials(text: &str, materials: &mut Vec<MtlMaterial>, warnings: &mut V
             "map_Ke" => {
                 warnings.push(format!("material \"{name}\": map_Ke is not supported, and its emission is left out"));
                 // Without its texture, the whole surface would be bright.
-                textured_emission.push(first + given.len() - 1);
+                textured_emission.push(number);
             }
             "map_d" => warnings.push(format!("material \"{name}\": map_d is not supported")),
             _ => {}
