@@ -14,7 +14,7 @@ use npr_mesh::{LoadOptions, embedded};
 
 const SIZE: (u32, u32) = (160, 120);
 
-/// 25 boxes of different heights, 0.3 apart, below one node with this translation.
+/// 25 boxes of different heights, 0.3 apart, from this place on.
 fn city(origin: DVec3) -> Scene {
     let cube = embedded::cube();
     let encoded = |bytes: &[u8]| base64::engine::general_purpose::STANDARD.encode(bytes);
@@ -29,23 +29,20 @@ fn city(origin: DVec3) -> Scene {
     let house = |number: u32| {
         let (x, z) = (f64::from(number % 5), f64::from(number / 5));
         let height = 0.1 + 0.07 * f64::from(number * 7 % 11);
-        format!(r#"{{"mesh":0,"translation":[{},{height},{}],"scale":[0.1,{height},0.1]}}"#, 0.3 * x, 0.3 * z)
+        let [x, y, z] = (origin + DVec3::new(0.3 * x, height, 0.3 * z)).to_array();
+        format!(r#"{{"mesh":0,"translation":[{x},{y},{z}],"scale":[0.1,{height},0.1]}}"#)
     };
     let houses: Vec<String> = (0..25).map(house).collect();
-    let children: Vec<String> = (0..25).map(|number: u32| number.to_string()).collect();
-    let [x, y, z] = origin.to_array();
     let view = |offset: usize, length: usize| format!(r#"{{"buffer":0,"byteOffset":{offset},"byteLength":{length}}}"#);
     let accessor = |view: usize, kind: &str, component: u32, count: usize| {
         format!(r#"{{"bufferView":{view},"componentType":{component},"type":"{kind}","count":{count}}}"#)
     };
     let text = format!(
-        r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[25]}}],
-        "nodes":[{},{{"translation":[{x},{y},{z}],"children":[{}]}}],
+        r#"{{"asset":{{"version":"2.0"}},"nodes":[{}],
         "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0,"NORMAL":1}},"indices":2}}]}}],
         "accessors":[{},{},{}],"bufferViews":[{},{},{}],
         "buffers":[{{"byteLength":{},"uri":"data:;base64,{}"}}]}}"#,
         houses.join(","),
-        children.join(","),
         accessor(0, "VEC3", 5126, cube.positions.len()),
         accessor(1, "VEC3", 5126, cube.positions.len()),
         accessor(2, "SCALAR", 5125, 3 * cube.faces.len()),
