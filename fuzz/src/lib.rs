@@ -78,7 +78,10 @@ fn sound(model: &Model) {
     assert!(model.face_polygon.is_sorted(), "polygons");
     for material in &model.materials {
         assert!(material.base_color.is_finite(), "a material's colour");
-        assert!(material.texture.is_none_or(|number| (number as usize) < model.textures.len()), "a texture");
+        assert!(material.emissive.is_finite() && material.emissive.min_element() >= 0.0, "a material's emission");
+        for texture in [material.texture, material.emissive_texture].into_iter().flatten() {
+            assert!((texture as usize) < model.textures.len(), "a texture");
+        }
     }
     for texture in &model.textures {
         let texels = texture.width as usize * texture.height as usize;

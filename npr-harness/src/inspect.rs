@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use npr_mesh::{
-    Model, Warning,
+    Loaded, Model, Warning,
     edges::{self, EdgeKind, EdgeOptions, Edges},
 };
 use std::{collections::HashMap, fmt, ops::Range};
@@ -53,12 +53,16 @@ pub struct Inspection {
     pub closed: bool,
     /// Two-face edges whose faces have opposite winding.
     pub wound_oppositely: usize,
-    /// The size of the bounding box of all faces, per axis; zeros without faces.
-    pub extent: [f32; 3],
+    /// The size of the bounding box of all faces, per axis; zeros without faces. In f64, since the size may exceed f32 and
+    /// positions may be far from 0; rounded to f32 where it can be.
+    #[serde(serialize_with = "short")]
+    pub extent: [f64; 3],
     /// The box's lower corner.
-    pub min: [f32; 3],
+    #[serde(serialize_with = "short")]
+    pub min: [f64; 3],
     /// The box's upper corner.
-    pub max: [f32; 3],
+    #[serde(serialize_with = "short")]
+    pub max: [f64; 3],
     /// The repairs and omissions of the loader; in JSON, objects of `text` and `count`.
     #[serde(serialize_with = "texts_and_counts")]
     pub warnings: Vec<Warning>,
@@ -105,11 +109,51 @@ pub fn inspect(name: &str, model: &Model, warnings: Vec<Warning>) -> Inspection 
             .iter()
             .filter(|edge| edge.kind() == EdgeKind::TwoFace && edge.wound_oppositely())
             .count(),
-        extent: (max - min).to_array(),
-        min: min.to_array(),
-        max: max.to_array(),
+        extent: [0, 1, 2].map(|axis| {
+            let extent = max[axis] - min[axis];
+            if extent.is_finite() { extent.into() } else { f64::from(max[axis]) - f64::from(min[axis]) }
+        }),
+        min: min.to_array().map(f64::from),
+        max: max.to_array().map(f64::from),
         warnings,
     }
+}
+
+/// Computes the statistics of a file: as [`inspect`] of all its objects in one model.
+pub fn inspect_loaded(name: &str, loaded: Loaded) -> Inspection {
+    let (meshes, objects, warnings) = (loaded.meshes.len(), loaded.objects.len(), loaded.warnings.clone());
+    let (model, origin) = loaded.into_model_near();
+    let near = inspect(name, &model, warnings);
+    let [min, max] = [near.min, near.max].map(|corner| (DVec3::from_array(corner) + origin).to_array());
+    Inspection { meshes, objects, min, max, ..near }
+}
+
+/// A number with the digits of an f32, where it is one.
+#[derive(Clone, Copy, serde::Serialize)]
+#[serde(untagged)]
+enum Short {
+    F32(f32),
+    F64(f64),
+}
+
+impl From<f64> for Short {
+    fn from(number: f64) -> Self {
+        let short = number as f32;
+        if f64::from(short) == number { Self::F32(short) } else { Self::F64(number) }
+    }
+}
+
+impl fmt::Display for Short {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::F32(number) => number.fmt(f),
+            Self::F64(number) => number.fmt(f),
+        }
+    }
+}
+
+fn short<S: serde::Serializer>(numbers: &[f64; 3], to: S) -> Result<S::Ok, S::Error> {
+    to.collect_seq(numbers.map(Short::from))
 }
 
 fn texts_and_counts<S: serde::Serializer>(warnings: &[Warning], to: S) -> Result<S::Ok, S::Error> {
@@ -211,7 +255,7 @@ fn area_vector(model: &Model, face: u32, areas: &mut HashMap<usize, DVec3>) -> D
 
 impl fmt::Display for Inspection {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let corner = |[x, y, z]: [f32; 3]| format!("{x} {y} {z}");
+        let corner = |numbers: [f64; 3]| numbers.map(|number| Short::from(number).to_string()).join(" ");
         let mut rows = vec![
             ("model", self.model.clone()),
             ("meshes", self.meshes.to_string()),

@@ -44,6 +44,14 @@ pub enum LoadError {
         /// The first warning, if there is any.
         why: Option<String>,
     },
+    /// The file has meshes, but no node of its scene places one.
+    #[error("{}: no node of the scene places any of its {meshes} meshes", path.display())]
+    NotPlaced {
+        /// The file.
+        path: PathBuf,
+        /// The number of its meshes.
+        meshes: usize,
+    },
     /// The file requires an extension or another feature that is not supported.
     #[error("{}: needs {feature}, which is not supported", path.display())]
     Unsupported {
@@ -57,6 +65,20 @@ pub enum LoadError {
     TooLarge {
         /// The file.
         path: PathBuf,
+        /// The counted elements.
+        what: &'static str,
+        /// Their number.
+        count: u64,
+        /// The maximum number.
+        limit: u64,
+    },
+    /// An image exceeds a limit of [`crate::Limits`].
+    #[error("{}: image {image}: {count} {what}, more than the limit of {limit}", path.display())]
+    ImageTooLarge {
+        /// The model file.
+        path: PathBuf,
+        /// The name of the image in the model, or its number.
+        image: String,
         /// The counted elements.
         what: &'static str,
         /// Their number.

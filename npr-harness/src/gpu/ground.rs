@@ -1,7 +1,7 @@
 //! The ground on the GPU: a rectangle that the geometry pass draws after all surfaces. The CPU version is `cpu/ground.rs`.
 
 use super::instances::{INSTANCE_BYTES, unplaced_instance};
-use super::materials::material_group;
+use super::materials::{Uploaded, material_group};
 use super::uniform::uniform_buffer;
 use crate::geometry::{MaterialUniform, NORMAL_BYTES, POSITION_BYTES, Streams, UV_BYTES};
 use crate::ground::GroundPlan;
@@ -23,11 +23,11 @@ pub(super) struct GroundOnDevice {
 }
 
 impl GroundOnDevice {
-    /// `layout` is that of materials; `texture` and `sampler` stand where the shader declares some.
+    /// `layout` is that of materials; `unread` stands where the shader declares textures.
     pub(super) fn new(
         device: &wgpu::Device,
         layout: &wgpu::BindGroupLayout,
-        (texture, sampler): (&wgpu::TextureView, &wgpu::Sampler),
+        unread: &Uploaded,
         plan: &Plan,
         ground: &GroundPlan,
     ) -> Self {
@@ -45,12 +45,13 @@ impl GroundOnDevice {
             last_level: 0.0,
             cutoff: f32::MIN,
             wrap: [0; 2],
-            padding: [0; 2],
+            emissive_size: [1.0; 2],
+            emissive: [0.0; 4],
         };
         let uniform = uniform_buffer(device, bytemuck::bytes_of(&uniform));
         Self {
             vertices: filled_buffer(device, "ground", &bytes, wgpu::BufferUsages::VERTEX),
-            material: material_group(device, layout, &uniform, texture, sampler),
+            material: material_group(device, layout, &uniform, [unread; 2]),
         }
     }
 

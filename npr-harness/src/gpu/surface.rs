@@ -15,7 +15,7 @@ use crate::geometry::{
 use crate::hatch::gpu::{HatchTextures, HatchUniform};
 use crate::image_lines::gbuffer::targets::TEXEL_FORMAT;
 use crate::image_lines::plan::ImagePlan;
-use crate::plan::{PaintPlan, Plan};
+use crate::plan::{Emission, PaintPlan, Plan};
 use crate::scene::Scene;
 use crate::shade::flag;
 use crate::shadow::ShadowLines;
@@ -146,6 +146,7 @@ struct Variant {
     paint: Paint,
     looked_up: bool,
     by_alpha: bool,
+    emission: Emission,
     cull_back: bool,
     mirrored: bool,
     blended: bool,
@@ -271,8 +272,10 @@ impl SurfacePass {
                 wgpu::BindGroupLayoutEntry { visibility: wgpu::ShaderStages::VERTEX, ..fragment(14, numbers) },
             ],
         );
-        let material_layout =
-            layout("surface material", &[one_of(0, true), fragment(1, texture), fragment(2, sampler)]);
+        let material_layout = layout(
+            "surface material",
+            &[one_of(0, true), fragment(1, texture), fragment(2, sampler), fragment(3, texture), fragment(4, sampler)],
+        );
         Self {
             shaders: RefCell::default(),
             layout: device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -421,8 +424,9 @@ impl SurfacePass {
                 || inking.is_some_and(|inking| inking.line_kind != LineKind::Normals);
             let variant = Variant {
                 paint,
-                looked_up: is_looked_up(scene, drawn.material) && wanted,
+                looked_up: is_looked_up(scene, plan, drawn.material) && wanted,
                 by_alpha: by_alpha && material.texture.is_some(),
+                emission: if paint == Paint::Nothing { Emission::None } else { plan.emission(material) },
                 cull_back: plan.cull_back || drawn.one_sided || !material.double_sided,
                 mirrored: drawn.mirrored,
                 blended,
@@ -485,6 +489,7 @@ impl SurfacePass {
                 paint: if paint == Paint::Painted { Paint::Lit } else { paint },
                 looked_up: false,
                 by_alpha: false,
+                emission: Emission::None,
                 cull_back: true,
                 mirrored: false,
                 blended: false,
@@ -504,8 +509,8 @@ impl SurfacePass {
                 }),
                 ground: true,
             };
-            let unread = (&self.blank.image, &self.no_strokes.sampler);
-            let on_device = GroundOnDevice::new(device, &self.material_layout, unread, plan, ground);
+            let unread = (self.blank.image.clone(), self.no_strokes.sampler.clone());
+            let on_device = GroundOnDevice::new(device, &self.material_layout, &unread, plan, ground);
             let mut pipelines = self.pipelines.borrow_mut();
             pass.set_pipeline(pipelines.entry(variant).or_insert_with(|| self.pipeline(device, variant)));
             pass.set_bind_group(0, &view_group, &[0]);
@@ -538,7 +543,18 @@ impl SurfacePass {
 
     fn pipeline(&self, device: &wgpu::Device, variant: Variant) -> wgpu::RenderPipeline {
         let Variant {
-            paint, looked_up, by_alpha, cull_back, mirrored, blended, colored, clipped, inking, ground, ..
+            paint,
+            looked_up,
+            by_alpha,
+            emission,
+            cull_back,
+            mirrored,
+            blended,
+            colored,
+            clipped,
+            inking,
+            ground,
+            ..
         } = variant;
         let shaders = self.shaders.borrow();
         let (key, module) = &shaders[variant.shader];
@@ -616,6 +632,7 @@ impl SurfacePass {
                 ("surface_looked_up", flag(looked_up)),
                 ("surface_blended", flag(blended)),
                 ("surface_ground", flag(ground)),
+                ("surface_emission", f64::from(emission as u32)),
             ])
             .collect();
         let targets = [colored.then_some(target), texels];

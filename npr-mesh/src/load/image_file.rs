@@ -1,4 +1,4 @@
-//! Decodes PNG and JPEG to RGBA8.
+//! Decodes PNG, JPEG and WebP to RGBA8.
 
 use crate::{Limits, LoadError};
 use image::error::ImageFormatHint;
@@ -6,14 +6,17 @@ use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader};
 use std::io::Cursor;
 use std::path::Path;
 
-/// Decodes a PNG or JPEG file in memory: width, height and `width * height * 4` bytes, rows from the top.
+/// The supported formats.
+const SUPPORTED: [ImageFormat; 3] = [ImageFormat::Png, ImageFormat::Jpeg, ImageFormat::WebP];
+
+/// Decodes a PNG, JPEG or WebP file in memory: width, height and `width * height * 4` bytes, rows from the top.
 ///
 /// The format is determined by the first bytes, not by the file extension. The size in the header is checked against
 /// [`Limits::texels`] and, added to `so_far`, against [`Limits::texels_in_all`] before memory is allocated. 16-bit
 /// samples are rounded to 8 bits. Colour profiles and Exif orientation are ignored, as glTF 2.0 requires (3.8.2).
 ///
 /// # Errors
-/// [`LoadError::TooLarge`] and [`LoadError::Malformed`] with `path`; the latter with the name of the image.
+/// [`LoadError::ImageTooLarge`] and [`LoadError::Malformed`] with `path` and the name of the image.
 pub(super) fn decode(
     bytes: &[u8],
     name: &str,
@@ -25,7 +28,7 @@ pub(super) fn decode(
     let mut reader =
         ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| malformed(e.to_string()))?;
     // Another crate in the build may enable more formats of `image`.
-    if let Some(other) = reader.format().filter(|format| !matches!(format, ImageFormat::Png | ImageFormat::Jpeg)) {
+    if let Some(other) = reader.format().filter(|format| !SUPPORTED.contains(format)) {
         return Err(malformed(ImageError::Unsupported(ImageFormatHint::Exact(other).into()).to_string()));
     }
     // The formats store at most eight bytes per texel; the rest is for the tables of the decoders.
@@ -41,7 +44,7 @@ pub(super) fn decode(
         [("texels in an image", texels, limits.texels), ("texels in all images", *so_far, limits.texels_in_all)]
     {
         if count > limit {
-            return Err(LoadError::TooLarge { path: path.to_owned(), what, count, limit });
+            return Err(LoadError::ImageTooLarge { path: path.to_owned(), image: name.to_owned(), what, count, limit });
         }
     }
     if texels == 0 {
@@ -75,11 +78,11 @@ mod tests {
     fn too_many_texels_are_refused() {
         let limits = Limits { texels: 5, ..Limits::default() };
         let error = decode(&png(3, 2), "a", Path::new("m.obj"), &limits, &mut 0).unwrap_err();
-        assert!(matches!(error, LoadError::TooLarge { count: 6, limit: 5, .. }), "{error}");
+        assert!(matches!(error, LoadError::ImageTooLarge { count: 6, limit: 5, .. }), "{error}");
         let limits = Limits { texels_in_all: 10, ..Limits::default() };
         assert!(decode(&png(3, 2), "a", Path::new("m.obj"), &limits, &mut 4).is_ok());
         let error = decode(&png(3, 2), "a", Path::new("m.obj"), &limits, &mut 5).unwrap_err();
-        assert!(matches!(error, LoadError::TooLarge { count: 11, limit: 10, .. }), "{error}");
+        assert!(matches!(error, LoadError::ImageTooLarge { count: 11, limit: 10, .. }), "{error}");
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::options::CREASE_ANGLE_RAD;
 use crate::{AlphaMode, Material, Model, Object, Texture, Warning, Wrap, normals};
-use glam::{DAffine3, Vec3};
+use glam::{BVec3, DAffine3, DVec3, Vec3};
 use std::collections::HashMap;
 
 /// What a file holds: meshes, each once, and the objects that place them.
@@ -49,6 +49,31 @@ impl Loaded {
         }
         model
     }
+
+    /// All objects in one model, as by [`Loaded::into_model`], with an origin that was subtracted from the positions in
+    /// f64. It is 0, or the middle of the box around all objects, rounded to f32, where that is at least four times as far
+    /// from 0 as the box is large. Positions far from 0 keep their digits then.
+    ///
+    /// # Panics
+    /// As [`Loaded::into_model`].
+    pub fn into_model_near(mut self) -> (Model, DVec3) {
+        let origin = self.far_middle().unwrap_or_default();
+        self.objects.iter_mut().for_each(|object| object.world_from_mesh.translation -= origin);
+        (self.into_model(), origin)
+    }
+
+    /// The middle of the box around all objects, if it is far from 0.
+    fn far_middle(&self) -> Option<DVec3> {
+        let boxes: Vec<_> = self.meshes.iter().map(Model::bounds).collect();
+        let corners = self.objects.iter().filter_map(|object| Some((object, boxes[object.mesh]?)));
+        let corners = corners.flat_map(|(object, (low, high))| {
+            let corner = move |i: u32| Vec3::select(BVec3::new(i & 1 > 0, i & 2 > 0, i & 4 > 0), low, high);
+            (0..8).map(move |i| object.world_from_mesh.transform_point3(corner(i).as_dvec3()))
+        });
+        let (low, high) = corners.map(|corner| (corner, corner)).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
+        let middle = low.midpoint(high);
+        (middle.length() >= 4.0 * low.distance(high)).then(|| middle.as_vec3().as_dvec3())
+    }
 }
 
 fn placed(mesh: Model, world_from_mesh: &DAffine3) -> Model {
@@ -72,7 +97,7 @@ struct Merge {
 }
 
 type TextureKey = (*const u8, [Wrap; 2], bool);
-type MaterialKey = (String, [u32; 4], Option<u32>, (bool, Option<u32>), bool);
+type MaterialKey = (String, [u32; 4], [u32; 3], [Option<u32>; 2], (bool, Option<u32>), bool);
 
 impl Merge {
     /// Moves the materials and textures of a mesh to the model.
@@ -86,8 +111,8 @@ impl Merge {
         };
         let textures: Vec<u32> = mesh.textures.drain(..).map(add_texture).collect();
         let mut equal: HashMap<MaterialKey, u32> = HashMap::new();
-        let add_material = |mut material: Material| {
-            material.texture = material.texture.map(|texture| textures[texture as usize]);
+        let add_material = |material: Material| {
+            let material = material.with_textures(|texture| textures[texture as usize]);
             let before = equal.entry(key(&material)).or_default();
             *before += 1;
             *self.materials.entry((key(&material), *before)).or_insert_with(|| {
@@ -107,5 +132,7 @@ fn key(material: &Material) -> MaterialKey {
         AlphaMode::Blend => (true, None),
     };
     let color = material.base_color.to_array().map(f32::to_bits);
-    (material.name.clone(), color, material.texture, alpha, material.double_sided)
+    let emissive = material.emissive.to_array().map(f32::to_bits);
+    let textures = [material.texture, material.emissive_texture];
+    (material.name.clone(), color, emissive, textures, alpha, material.double_sided)
 }

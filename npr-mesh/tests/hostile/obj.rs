@@ -353,7 +353,11 @@ fn materials() -> Vec<Case> {
         material("d-halo", "newmtl a\nd -halo 0.5\n", &[]),
         material("d-and-tr", "newmtl a\nd 0.5\nTr 0.9\n", &[]),
         material("tr-inf", "newmtl a\nTr 1e400\n", &["Tr \"1e400\" is not understood"]),
-        material("numbers-elsewhere", "newmtl a\nNs x\nNi\nillum 99999999999\nKs\nKe 1 2\nPr nan\n", &[]),
+        material(
+            "numbers-elsewhere",
+            "newmtl a\nNs x\nNi\nillum 99999999999\nKs\nKe 1 2\nPr nan\n",
+            &["Ke \"1 2\" is not understood"],
+        ),
         material("many", (0..200_000).map(|i| format!("newmtl m{i}\n")).collect::<String>() + "newmtl a\n", &[]),
     ]
 }

@@ -111,11 +111,12 @@ fn find(external: &External, name: &str) -> Result<PathBuf, LoadError> {
     external.find(&meanings(name).unwrap_or_default())
 }
 
-/// Adds the materials of an MTL file: `newmtl`, `Kd`, `d`, `Tr` and `map_Kd`. Other statements are ignored.
+/// Adds the materials of an MTL file: `newmtl`, `Kd`, `Ke`, `d`, `Tr` and `map_Kd`. Other statements are ignored.
 fn read_materials(text: &str, materials: &mut Vec<MtlMaterial>, warnings: &mut Vec<String>) {
     let first = materials.len();
     // Per material whether it has its own `Kd` and `d`.
     let mut given = Vec::new();
+    let mut textured_emission = Vec::new();
     for line in text.trim_start_matches('\u{feff}').split(['\n', '\r']) {
         let line = line.trim();
         let (keyword, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
@@ -128,6 +129,7 @@ fn read_materials(text: &str, materials: &mut Vec<MtlMaterial>, warnings: &mut V
             given.push((false, false));
             continue;
         }
+        let number = materials.len().saturating_sub(1);
         let (Some(MtlMaterial { material, texture }), Some((has_color, has_dissolve))) =
             (materials[first..].last_mut(), given.last_mut())
         else {
@@ -155,6 +157,16 @@ fn read_materials(text: &str, materials: &mut Vec<MtlMaterial>, warnings: &mut V
                 None => warnings.push(format!("material \"{name}\": Tr \"{shown}\" is not understood")),
             },
             "map_Kd" => *texture = texture_name(rest),
+            "Ke" => match numbers().collect::<Vec<_>>()[..] {
+                [Some(grey)] => material.emissive = emission(Vec3::splat(grey)),
+                [Some(r), Some(g), Some(b), ..] => material.emissive = emission(Vec3::new(r, g, b)),
+                _ => warnings.push(format!("material \"{name}\": Ke \"{shown}\" is not understood")),
+            },
+            "map_Ke" => {
+                warnings.push(format!("material \"{name}\": map_Ke is not supported, and its emission is left out"));
+                // Without its texture, the whole surface would be bright.
+                textured_emission.push(number);
+            }
             "map_d" => warnings.push(format!("material \"{name}\": map_d is not supported")),
             _ => {}
         }
@@ -166,6 +178,7 @@ fn read_materials(text: &str, materials: &mut Vec<MtlMaterial>, warnings: &mut V
             (material.base_color, *has_color) = (linear_from_srgb(clamped).extend(material.base_color.w), true);
         }
     }
+    textured_emission.into_iter().for_each(|number| materials[number].material.emissive = Vec3::ZERO);
     for (MtlMaterial { material, texture }, (has_color, _)) in materials[first..].iter_mut().zip(given) {
         if texture.is_some() && !has_color {
             material.base_color = Vec3::ONE.extend(material.base_color.w);
@@ -174,6 +187,11 @@ fn read_materials(text: &str, materials: &mut Vec<MtlMaterial>, warnings: &mut V
             material.alpha_mode = AlphaMode::Blend;
         }
     }
+}
+
+/// The linear colour of `Ke`, which is encoded like `Kd`.
+fn emission(encoded: Vec3) -> Vec3 {
+    linear_from_srgb(encoded.clamp(Vec3::ZERO, Vec3::ONE))
 }
 
 /// The file that a `map_…` line names after its options.
@@ -235,6 +253,10 @@ pub(super) fn move_materials(
                             Some(model.textures.len() as u32 - 1)
                         }
                         Err(error @ LoadError::TooLarge { .. }) => return Err(error),
+                        Err(LoadError::ImageTooLarge { image, what, count, limit, .. }) => {
+                            let path = external.model.to_owned();
+                            return Err(LoadError::ImageTooLarge { path, image, what, count, limit });
+                        }
                         Err(LoadError::Outside { .. }) => {
                             warnings.push(format!("texture \"{written}\" leads out of the model's folder"));
                             None
