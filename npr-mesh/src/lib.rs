@@ -61,6 +61,7 @@ mod model;
 pub mod normals;
 mod object;
 pub mod pn_triangles;
+mod side_visibility;
 pub mod subdivide;
 mod transform;
 pub mod triangulate;
@@ -75,6 +76,7 @@ pub use limits::Limits;
 pub use load::{LoadOptions, Loaded, Warning, load};
 pub use model::{AlphaMode, Material, Model, Texture, Wrap};
 pub use object::Object;
+pub use side_visibility::{SideVisibility, edge_visibility};
 
 /// Compiles the example of the README.
 #[cfg(all(doctest, any(feature = "obj", feature = "gltf")))]

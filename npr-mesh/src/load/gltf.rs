@@ -8,11 +8,14 @@
 //! The objects are the nodes with meshes of the default scene (or of the first scene, or all of them if there is no
 //! scene), with node transforms, skins and morph targets in the pose that the file states, without animation.
 //! Materials consist of base colour, alpha mode and sidedness, and there are vertex colours. Supported extensions: `KHR_texture_transform` (base colour
-//! texture), `KHR_mesh_quantization`, and `KHR_materials_unlit`, which has no effect here.
+//! texture), `KHR_mesh_quantization`, [`EXT_mesh_primitive_edge_visibility`](edge_visibility), and `KHR_materials_unlit`,
+//! which has no effect here. Primitives of lines become [`crate::Model::lines`]; those of points are ignored.
 
 mod accessor;
 mod document;
+mod edge_visibility;
 mod files;
+mod lines;
 mod materials;
 mod meshes;
 mod parse;
@@ -26,7 +29,7 @@ use document::{Bytes, Document, QUANTIZATION, malformed};
 use gltf::json::Root;
 use std::path::Path;
 
-const EXTENSIONS: [&str; 3] = ["KHR_materials_unlit", QUANTIZATION, "KHR_texture_transform"];
+const EXTENSIONS: [&str; 4] = [edge_visibility::NAME, "KHR_materials_unlit", QUANTIZATION, "KHR_texture_transform"];
 
 /// Loads a file. Missing normals are zero, and there may be no objects.
 ///

@@ -313,7 +313,7 @@ fn accessors() -> Vec<Case> {
             .without("/accessors/2/bufferView")
             .set("/accessors/2/count", json!(90_000_000))
             .case("ninety-million-zero-indices", fails(&["30000000 faces from a file so small"])),
-        with_nan(true).case("nan-unused", loads(2, &["1 positions are not finite, and no face uses them"])),
+        with_nan(true).case("nan-unused", loads(2, &["1 positions are not finite, and nothing uses them"])),
         with_nan(false).case("nan-used", fails(&["the position of vertex 4 is not finite"])),
         indices("index-beyond", &[0, 1, 4], fails(&["element 2: vertex 4 of 4"])),
         indices("index-largest", &[0, 1, u32::MAX], fails(&["vertex 4294967295 of 4"])),
