@@ -352,15 +352,15 @@ fn primitives() -> Vec<Case> {
         doc.set("/meshes/0/primitives", json!([first, second]))
     };
     vec![
-        mode("mode-points", json!(0), fails(&["no triangle in it (mesh 0 primitive 0: Points are left out)"])),
+        mode("mode-points", json!(0), fails(&["no triangle in it (primitives of points are left out)"])),
         mode("mode-strip", json!(5), loads(4, &["1 of 4 faces have no area"])),
         mode("mode-fan", json!(6), loads(4, &["faces have no area"])),
         mode("mode-7", json!(7), fails(&["unknown mode"])),
         mode("mode-negative", json!(-1), fails(&["not glTF 2.0"])),
-        both(json!(0)).case("points-beside", loads(2, &["Points are left out"])),
-        both(json!(1)).case("lines-beside", loads(2, &["Lines are left out"])),
-        both(json!(2)).case("line-loop-beside", loads(2, &["LineLoop are left out"])),
-        both(json!(3)).case("line-strip-beside", loads(2, &["LineStrip are left out"])),
+        both(json!(0)).case("points-beside", loads(2, &["primitives of points are left out"])),
+        both(json!(1)).case("lines-beside", loads(2, &[])),
+        both(json!(2)).case("line-loop-beside", loads(2, &[])),
+        both(json!(3)).case("line-strip-beside", loads(2, &[])),
         square().set("/meshes/0/primitives", json!([])).case("no-primitives", fails(&["no triangle"])),
         square().without("/meshes/0/primitives").case("primitives-missing", fails(&["missing field `primitives`"])),
         square().set(&prim("attributes"), json!({})).case("no-attributes", fails(&["no triangle"])),

@@ -195,7 +195,7 @@ impl Loader<'_> {
         let mode = match part.primitive.mode {
             Checked::Valid(Mode::Points) => {
                 if part.first_time {
-                    self.warnings.push("points are not drawn: a primitive of points is left out".to_owned());
+                    self.warnings.push("primitives of points are left out".to_owned());
                 }
                 return Ok(());
             }
@@ -283,7 +283,7 @@ impl Loader<'_> {
         if is_lines {
             let has_color = part.primitive.material.is_some() || part.attribute(Semantic::Colors(0)).is_some();
             if has_color && part.first_time {
-                self.warnings.push("the colours of a primitive of lines are ignored: lines have a style's ink".to_owned());
+                self.warnings.push("colours of lines are ignored: lines have the style's ink".to_owned());
             }
             let segments = lines::segments(mode, vertices, corners.as_deref());
             self.model.lines.extend(segments.iter().map(|line| line.map(|vertex| first_vertex as u32 + vertex)));
