@@ -1,4 +1,5 @@
-//! Lines along the edges of a mesh: silhouettes, boundaries, creases and borders between materials.
+//! Lines along the edges of a mesh: silhouettes, boundaries, creases, borders between materials, and lines that the
+//! file itself draws.
 
 pub(crate) mod cpu;
 pub mod plan;

@@ -147,7 +147,7 @@ impl Plan {
         let edge_lines = match &lines.edges {
             Some(edges) => {
                 let method = |bytes| capabilities.edge_lines(bytes, scene.objects().len()).0;
-                Some(EdgeLinePlan::new(scene, edges, style.crease_angle_rad, method)?)
+                Some(EdgeLinePlan::new(scene, edges, (style.crease_angle_rad, style.file_edges), method)?)
             }
             None => None,
         };
