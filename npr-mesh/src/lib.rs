@@ -54,6 +54,8 @@
 pub mod edges;
 pub mod embedded;
 mod error;
+#[cfg(feature = "export")]
+pub mod export;
 mod limits;
 #[cfg(any(feature = "obj", feature = "gltf"))]
 mod load;
