@@ -159,7 +159,8 @@ fn primitives(model: &Model, materials: &[usize], options: &ExportOptions, buffe
         primitives.push(primitive);
     }
     if !model.lines.is_empty() {
-        let mut primitive = geometry(model, model.lines.as_flattened().to_vec(), buffer);
+        let bare = Model { positions: model.positions.clone(), ..Model::default() };
+        let mut primitive = geometry(&bare, model.lines.as_flattened().to_vec(), buffer);
         primitive["mode"] = json!(1);
         primitives.push(primitive);
     }
@@ -192,8 +193,10 @@ fn geometry(model: &Model, mut corners: Vec<u32>, buffer: &mut Buffer) -> Value 
     let mut attributes = Map::new();
     let positions: Vec<[f32; 3]> = used.iter().map(|&v| model.positions[v].to_array()).collect();
     attributes.insert("POSITION".to_owned(), json!(buffer.positions(&positions)));
-    let normals: Vec<[f32; 3]> = used.iter().map(|&v| model.normals[v].to_array()).collect();
-    attributes.insert("NORMAL".to_owned(), json!(buffer.floats(normals.as_flattened(), "VEC3")));
+    if !model.normals.is_empty() {
+        let normals: Vec<[f32; 3]> = used.iter().map(|&v| model.normals[v].to_array()).collect();
+        attributes.insert("NORMAL".to_owned(), json!(buffer.floats(normals.as_flattened(), "VEC3")));
+    }
     if !model.uvs.is_empty() {
         let uvs: Vec<[f32; 2]> = used.iter().map(|&v| model.uvs[v].to_array()).collect();
         attributes.insert("TEXCOORD_0".to_owned(), json!(buffer.floats(uvs.as_flattened(), "VEC2")));

@@ -20,6 +20,11 @@ fn written(model: &Model, options: &ExportOptions) -> Vec<u8> {
     glb(std::slice::from_ref(model), &once(), options).expect("a good model")
 }
 
+fn json(file: &[u8]) -> serde_json::Value {
+    let length = u32::from_le_bytes(file[12..16].try_into().expect("four bytes")) as usize;
+    serde_json::from_slice(&file[20..20 + length]).expect("JSON")
+}
+
 fn loaded(file: &[u8]) -> Loaded {
     let loaded = load_glb(file, Limits::default()).expect("a good file");
     assert_eq!(loaded.warnings, []);
@@ -33,15 +38,15 @@ fn order(model: &Model) -> Vec<usize> {
     faces
 }
 
-/// All vertex data of each corner, as bits.
-fn corners(model: &Model, face: usize) -> Vec<Vec<u32>> {
+/// All vertex data of each corner.
+fn corners(model: &Model, face: usize) -> Vec<Vec<f32>> {
     let of_vertex = |&vertex: &u32| {
         let vertex = vertex as usize;
         let mut values = model.positions[vertex].to_array().to_vec();
         values.extend(model.normals[vertex].to_array());
         values.extend(model.uvs.get(vertex).copied().unwrap_or_default().to_array());
         values.extend(model.colors.get(vertex).copied().unwrap_or(Vec4::ONE).to_array());
-        values.into_iter().map(f32::to_bits).collect()
+        values
     };
     model.faces[face].iter().map(of_vertex).collect()
 }
@@ -67,16 +72,21 @@ fn what_is_written_is_loaded_again() {
         assert_eq!(again.faces.len(), model.faces.len(), "{name}");
         for (new, old) in order(&model).into_iter().enumerate() {
             assert_eq!(again.side_visibility[new], classes[old], "{name}: face {old}");
-            assert_eq!(corners(&again, new), corners(&model, old), "{name}: face {old}");
+            // The loader divides normals by their length anew.
+            let differences = corners(&again, new).concat().into_iter().zip(corners(&model, old).concat());
+            assert!(differences.into_iter().all(|(a, b)| (a - b).abs() < 2e-7), "{name}: face {old}");
             assert_eq!(again.material_of(new as u32), model.material_of(old as u32).or(Some(&Material::default())), "{name}");
         }
         assert!(!classes.iter().flatten().any(|class| *class == Unstated));
         let silhouettes = classes.iter().flatten().filter(|class| **class == Silhouette).count();
         assert_eq!(normals.values().map(Vec::len).sum::<usize>(), silhouettes);
-        // A second generation is the same file: nothing is classed anew.
-        assert_eq!(written(&again, &ExportOptions { edges: Some(0.01) }), file, "{name}");
+        // In a second generation nothing is classed anew.
+        let second = written(&again, &ExportOptions { edges: Some(0.01) });
+        assert_eq!((second.len(), json(&second)), (file.len(), json(&file)), "{name}");
+        assert_eq!(loaded(&second).into_model().side_visibility, again.side_visibility, "{name}");
         // Without classes nothing is stated.
-        assert_eq!(loaded(&written(&model, &ExportOptions::default())).into_model().side_visibility, []);
+        let plain = loaded(&written(&model, &ExportOptions::default())).into_model();
+        assert!(plain.side_visibility.is_empty());
     }
 }
 
@@ -95,9 +105,8 @@ fn edges_are_classed_by_their_angles() {
     assert_eq!((silhouettes, hard, repeated), (12, 24, 24));
     assert_eq!((hidden + silhouettes + hard + repeated) % 3, 0);
     // A smooth closed surface has silhouettes alone, each stated at one of its two sides.
-    let torus = embedded::torus(1.0, 0.4, 24, 12);
-    let edges = npr_mesh::edges::find(&torus.positions, &torus.faces, &torus.face_polygon, &[], &Default::default());
-    assert_eq!(counts(&torus)[1..], [edges.edges.len() + edges.folds.len(), 0, 0]);
+    // Its quads are flat.
+    assert_eq!(counts(&embedded::torus(1.0, 0.4, 24, 12)), [3 * 576 - 576, 576, 0, 0]);
     // A plate: its border is hard, the diagonal flat.
     let plate = Model {
         positions: vec![Vec3::ZERO, Vec3::X, Vec3::ONE.with_z(0.0), Vec3::Y],
@@ -174,7 +183,7 @@ fn silhouettes_have_the_outward_normals_of_both_faces() {
     // In the file there are two for each, in the order of the sides.
     let file = written(&model, &EDGES);
     let length = u32::from_le_bytes(file[12..16].try_into().expect("four bytes")) as usize;
-    let json: serde_json::Value = serde_json::from_slice(&file[20..20 + length]).expect("JSON");
+    let json = json(&file);
     let extension = &json["meshes"][0]["primitives"][0]["extensions"]["EXT_mesh_primitive_edge_visibility"];
     let accessor = &json["accessors"][extension["silhouetteNormals"].as_u64().expect("a number") as usize];
     let silhouettes = classes.iter().flatten().filter(|class| **class == Silhouette).count();

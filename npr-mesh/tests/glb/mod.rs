@@ -1,4 +1,5 @@
 //! Small `.glb` files, made in memory.
+#![allow(dead_code)]
 
 use npr_mesh::{Limits, LoadError, LoadOptions, Loaded, load};
 use serde_json::{Value, json};
