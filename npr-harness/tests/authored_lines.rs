@@ -234,3 +234,44 @@ fn the_classes_of_a_file_decide_what_is_a_line_unless_the_style_has_its_own_rule
         }
     }
 }
+
+#[test]
+fn a_scene_without_lines_of_its_own_pays_nothing_for_them() {
+    let camera = parallel();
+    let bare = Scene::new(Model { lines: Vec::new(), ..square_and_lines() });
+    let plan = |scene: &Scene, width_px| common::planned(scene, &black(width_px), &camera, SIZE);
+    let bytes = |width_px| {
+        let plan = plan(&bare, width_px);
+        let capabilities = npr_harness::capabilities::Capabilities::RAY_CASTER;
+        let resources = plan.resources(&bare, &capabilities).expect("they are known");
+        let contours = &plan.edge_lines.as_ref().expect("edge lines").contours[0];
+        let bytes = npr_harness::plan::resources::total_bytes(&resources);
+        (bytes, contours.planes.len(), contours.edges.len(), contours.always, plan.left_out.len())
+    };
+    assert_eq!(bytes([2.0, 2.0, 2.0, 0.0, 2.0]), bytes([2.0, 2.0, 2.0, 0.0, 0.0]));
+    // Where there are lines, a plan says why they are not drawn.
+    let scene = Scene::new(square_and_lines());
+    let why = |style: &Style| {
+        let plan = common::planned(&scene, style, &camera, SIZE);
+        plan.left_out.into_iter().find(|reason| reason.pass == "lines of the file").map(|reason| reason.why)
+    };
+    assert_eq!(why(&black(AUTHORED)), None);
+    assert_eq!(why(&black([1.0, 1.0, 1.0, 1.0, 0.0])).as_deref(), Some("the style gives them no width"));
+    assert_eq!(why(&Style { lines: Lines::NONE, ..black(AUTHORED) }).as_deref(), Some("the style draws no lines"));
+    let image = styles().into_iter().find(|style| style.lines.image.is_some() && style.lines.edges.is_none());
+    assert_eq!(why(&image.expect("a style of lines in the image")), None);
+}
+
+#[test]
+fn a_style_file_says_how_wide_lines_of_the_file_are() {
+    let read = |text: &str| Style::from_toml(text, std::path::Path::new("style.toml")).expect("a good style");
+    let width = |text: &str| read(text).lines.edges.expect("edge lines").width_px[LineKind::Authored as usize];
+    assert_eq!(width("[lines.edges]\n"), 1.3);
+    assert_eq!(width("[lines.edges]\ncrease-px = 3\n"), 3.0);
+    assert_eq!(width("[lines.edges]\ncrease-px = 0\nboundary-px = 2.5\n"), 2.5);
+    assert_eq!(width("[lines.edges]\nauthored-px = 0\n"), 0.0);
+    assert_eq!(width("[lines.edges]\nauthored-px = 7\ncrease-px = 3\n"), 7.0);
+    assert!(read("").file_edges && !read("file-edges = false\n").file_edges);
+    let own = read("file-edges = false\n[lines.edges]\nauthored-px = 7\n");
+    assert_eq!(read(&own.to_toml().expect("it can be written")), own);
+}
