@@ -177,7 +177,8 @@ fn a_scene_of_lines_alone_is_drawn_in_every_style_and_on_both_executors() {
     });
     let scenes = [Scene::new(wire()), Scene::with_objects(vec![wire()], objects.to_vec()).expect("good transforms")];
     for (scene, length) in scenes.iter().zip([8.0, 16.0]) {
-        let camera = Camera::framed(scene.corners(), 1.0, &Framing { yaw_rad: 0.5, pitch_rad: 0.4, ..Framing::default() });
+        let camera =
+            Camera::framed(scene.corners(), 1.0, &Framing { yaw_rad: 0.5, pitch_rad: 0.4, ..Framing::default() });
         assert!(scene.radius() > 1.0 && camera.eye.is_finite());
         for executor in executors() {
             for style in styles() {
@@ -224,7 +225,8 @@ fn the_classes_of_a_file_decide_what_is_a_line_unless_the_style_has_its_own_rule
         assert_eq!(counts(classed(class), &own), [6, 0, 6, 0, 0], "{class:?}");
         // In pictures too, and in truth.
         let scene = Scene::new(classed(class));
-        let camera = Camera::framed(scene.corners(), 1.0, &Framing { yaw_rad: 0.5, pitch_rad: 0.4, ..Framing::default() });
+        let camera =
+            Camera::framed(scene.corners(), 1.0, &Framing { yaw_rad: 0.5, pitch_rad: 0.4, ..Framing::default() });
         let truth = true_lines(&scene, &camera, (160, 160), 45f64.to_radians());
         assert_eq!(truth.segments.is_empty(), class == Hidden);
         for executor in executors() {

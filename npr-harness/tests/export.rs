@@ -31,11 +31,11 @@ fn with_cube() -> Folder {
 #[test]
 fn a_model_is_written_with_its_edges_and_draws_the_same_lines() {
     let folder = with_cube();
-    let said: Value = serde_json::from_str(&done(&["export", "cube.obj", "--edges", "-o", "cube.glb", "--json"], &folder))
-        .expect("JSON");
+    let said: Value =
+        serde_json::from_str(&done(&["export", "cube.obj", "--edges", "-o", "cube.glb", "--json"], &folder))
+            .expect("JSON");
     assert_eq!((&said["faces"], &said["edges"], &said["stated_sides"]), (&12.into(), &true.into(), &0.into()));
-    let inspected: Value =
-        serde_json::from_str(&done(&["inspect", "cube.glb", "--json"], &folder)).expect("JSON");
+    let inspected: Value = serde_json::from_str(&done(&["inspect", "cube.glb", "--json"], &folder)).expect("JSON");
     // Without polygons the diagonals are edges, which the file hides.
     assert_eq!((&inspected["edges"], &inspected["stated_sides"]), (&18.into(), &36.into()));
     let lines = |model: &str, more: &[&str]| -> Value {

@@ -150,7 +150,8 @@ fn primitives(model: &Model, materials: &[usize], options: &ExportOptions, buffe
         if let Some((sides, normals)) = &edges {
             let of_faces = faces.iter().map(|&face| sides[face as usize]);
             let mut object = json!({"visibility": buffer.bytes(&packed(of_faces))});
-            let normals: Vec<[f32; 3]> = faces.iter().flat_map(|face| normals.get(face).into_iter().flatten()).flatten().copied().collect();
+            let normals: Vec<[f32; 3]> =
+                faces.iter().flat_map(|face| normals.get(face).into_iter().flatten()).flatten().copied().collect();
             if !normals.is_empty() {
                 object["silhouetteNormals"] = json!(buffer.floats(normals.as_flattened(), "VEC3"));
             }

@@ -75,7 +75,11 @@ fn what_is_written_is_loaded_again() {
             // The loader divides normals by their length anew.
             let differences = corners(&again, new).concat().into_iter().zip(corners(&model, old).concat());
             assert!(differences.into_iter().all(|(a, b)| (a - b).abs() < 2e-7), "{name}: face {old}");
-            assert_eq!(again.material_of(new as u32), model.material_of(old as u32).or(Some(&Material::default())), "{name}");
+            assert_eq!(
+                again.material_of(new as u32),
+                model.material_of(old as u32).or(Some(&Material::default())),
+                "{name}"
+            );
         }
         assert!(!classes.iter().flatten().any(|class| *class == Unstated));
         let silhouettes = classes.iter().flatten().filter(|class| **class == Silhouette).count();
@@ -238,7 +242,8 @@ fn lines_objects_materials_and_textures_are_written() {
     assert_eq!(found.materials, model.materials);
     let [texture, expected] = [&found.textures[0], &model.textures[0]];
     assert_eq!((&texture.rgba8, texture.wrap, texture.smooth), (&expected.rgba8, expected.wrap, expected.smooth));
-    let ends = |model: &Model| -> Vec<_> { model.lines.iter().map(|l| l.map(|v| model.positions[v as usize])).collect() };
+    let ends =
+        |model: &Model| -> Vec<_> { model.lines.iter().map(|l| l.map(|v| model.positions[v as usize])).collect() };
     assert_eq!(ends(found), ends(&model));
     assert_eq!((ends(&again.meshes[1]), again.meshes[1].faces.len()), (ends(&wire), 0));
     assert_eq!(corners(found, 0), corners(&model, 1));

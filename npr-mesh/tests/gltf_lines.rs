@@ -107,7 +107,8 @@ fn colours_of_lines_are_warned_of_once_and_faults_of_lines_are_errors() {
     let mut document = Document::default();
     let mut colored = primitive(&mut document, 3, None);
     colored["material"] = json!(0);
-    document.rest = json!({"materials": [{}], "meshes": [{"primitives": [colored.clone(), colored]}], "nodes": [{"mesh": 0}]});
+    document.rest =
+        json!({"materials": [{}], "meshes": [{"primitives": [colored.clone(), colored]}], "nodes": [{"mesh": 0}]});
     let loaded = document.load_whole().unwrap();
     assert_eq!(told(&loaded), ["colours of lines are ignored: lines have the style's ink (2 times)"]);
 
@@ -183,7 +184,10 @@ fn sides_follow_mirrored_nodes_fans_strips_and_other_primitives() {
         "nodes": [{"mesh": 0, "scale": [-1, 1, 1]}],
     });
     let model = document.load_whole().unwrap().into_model();
-    assert_eq!(model.side_visibility, [[Unstated; 3], [Unstated; 3], [Hard, Hidden, Hard], [Hidden, Hard, RepeatedHard]]);
+    assert_eq!(
+        model.side_visibility,
+        [[Unstated; 3], [Unstated; 3], [Hard, Hidden, Hard], [Hidden, Hard, RepeatedHard]]
+    );
     // The hard sides are the vertical ones and the diagonal, whatever corner comes first.
     for (face, sides) in model.faces.iter().zip(&model.side_visibility).skip(2) {
         for side in 0..3 {

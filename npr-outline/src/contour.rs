@@ -42,8 +42,7 @@ pub enum LineKind {
 
 impl LineKind {
     /// All kinds, each at the index of its number.
-    pub const ALL: [Self; 5] =
-        [Self::Silhouette, Self::Boundary, Self::Crease, Self::MaterialBorder, Self::Authored];
+    pub const ALL: [Self; 5] = [Self::Silhouette, Self::Boundary, Self::Crease, Self::MaterialBorder, Self::Authored];
 }
 
 /// The planes of an edge's two faces: `n · p + d` with a unit normal `n`, relative to [`ContourEdges::origin`].

@@ -193,8 +193,7 @@ fn uncarried_share(scene: &Scene, lines: &TrueLines, plan: &Plan) -> f64 {
             return false;
         }
         let [first, second] = scene_edge(scene, segment.edge).faces();
-        second != NO_FACE
-            && image.regions.of_face(scene, 0, first) == image.regions.of_face(scene, 0, second)
+        second != NO_FACE && image.regions.of_face(scene, 0, first) == image.regions.of_face(scene, 0, second)
     };
     let length = |segment: &TrueSegment| segment.ends_px[0].distance(segment.ends_px[1]);
     let total: f64 = lines.segments.iter().map(length).sum();

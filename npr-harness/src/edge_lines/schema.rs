@@ -48,9 +48,6 @@ impl EdgesTable {
         if let Some(authored_px) = self.authored_px {
             width_px[LineKind::Authored as usize] = authored_px;
         }
-        LineStyle {
-            width_px,
-            ink: self.ink.0.extend(self.opacity).to_array(),
-        }
+        LineStyle { width_px, ink: self.ink.0.extend(self.opacity).to_array() }
     }
 }

@@ -69,7 +69,11 @@ impl Plan {
         add(
             self.edge_lines.is_some(),
             "line coverage and ink",
-            if style.lines.edges.is_some() { "the style draws lines along edges" } else { "the file has lines of its own" },
+            if style.lines.edges.is_some() {
+                "the style draws lines along edges"
+            } else {
+                "the file has lines of its own"
+            },
             "the style draws no line along an edge",
         );
 

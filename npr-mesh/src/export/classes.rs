@@ -24,15 +24,11 @@ pub type SideClasses = (Vec<[SideVisibility; 3]>, HashMap<u32, Vec<[[f32; 3]; 2]
 /// # Panics
 /// As [`find`].
 pub fn side_classes(model: &Model, crease_angle_rad: f32) -> SideClasses {
-    let edges = find(&model.positions, &model.faces, &model.face_polygon, &model.face_material, &EdgeOptions::default());
+    let edges =
+        find(&model.positions, &model.faces, &model.face_polygon, &model.face_material, &EdgeOptions::default());
     let stated = edge_visibility(model, &edges);
-    let by_ends: HashMap<[u32; 2], usize> = edges
-        .edges
-        .iter()
-        .chain(&edges.folds)
-        .enumerate()
-        .map(|(number, edge)| (sorted(edge.ends), number))
-        .collect();
+    let by_ends: HashMap<[u32; 2], usize> =
+        edges.edges.iter().chain(&edges.folds).enumerate().map(|(number, edge)| (sorted(edge.ends), number)).collect();
     let class_of = |number: usize| match edges.edges.get(number) {
         Some(edge) => match stated.get(number) {
             Some(SideVisibility::Unstated) | None => by_angle(&edges, edge, crease_angle_rad),
@@ -62,9 +58,8 @@ pub fn side_classes(model: &Model, crease_angle_rad: f32) -> SideClasses {
         for (side, class) in of_face.iter_mut().enumerate().filter(|(_, class)| **class == SideVisibility::Unstated) {
             let edge = edge_at(face, side);
             let of_edge = edge.map_or(SideVisibility::Hidden, |edge| classes[edge]);
-            let is_first = edge.is_some_and(|edge| {
-                is_statement(of_edge) && met.insert((edge, material(face)), ()).is_none()
-            });
+            let is_first =
+                edge.is_some_and(|edge| is_statement(of_edge) && met.insert((edge, material(face)), ()).is_none());
             *class = match of_edge {
                 _ if is_first => of_edge,
                 SideVisibility::Hard => SideVisibility::RepeatedHard,

@@ -119,11 +119,7 @@ fn sides(
 }
 
 /// Checks that there are two normals for each silhouette.
-fn check_normals(
-    document: &Document,
-    index: Index<json::Accessor>,
-    edges: &mut PrimitiveEdges,
-) -> Result<(), String> {
+fn check_normals(document: &Document, index: Index<json::Accessor>, edges: &mut PrimitiveEdges) -> Result<(), String> {
     let silhouettes = edges.sides.iter().flatten().filter(|side| **side == SideVisibility::Silhouette).count() as u64;
     let accessor = Accessor::new(document, index, Purpose::Direction)?;
     if accessor.count != 2 * silhouettes {

@@ -303,13 +303,7 @@ impl Loader<'_> {
     }
 
     /// Adds what the file says of the sides of the faces from `first_face` on.
-    fn add_sides(
-        &mut self,
-        first_face: usize,
-        first_vertex: usize,
-        sides: &[[SideVisibility; 3]],
-        mirrored: &[bool],
-    ) {
+    fn add_sides(&mut self, first_face: usize, first_vertex: usize, sides: &[[SideVisibility; 3]], mirrored: &[bool]) {
         if sides.is_empty() {
             return;
         }
@@ -479,7 +473,8 @@ impl Loader<'_> {
         if positions[first..].iter().all(|p| p.is_finite()) {
             return Ok(());
         }
-        let used = self.model.faces[first_face..].iter().flatten().chain(self.model.lines[first_line..].iter().flatten());
+        let used =
+            self.model.faces[first_face..].iter().flatten().chain(self.model.lines[first_line..].iter().flatten());
         if let Some(&vertex) = used.into_iter().find(|&&v| !positions[v as usize].is_finite()) {
             let fault = format!("{}: the position of vertex {} is not finite", part.name, vertex as usize - first);
             return Err(self.document.malformed(fault));

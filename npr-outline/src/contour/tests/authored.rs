@@ -21,7 +21,14 @@ fn found(contours: &ContourEdges, eye: DVec3, kind: LineKind) -> Vec<[u32; 2]> {
 fn square() -> Model {
     let at = |x: f32, y: f32, z: f32| Vec3::new(x, y, z);
     Model {
-        positions: vec![at(-1., -1., 0.), at(1., -1., 0.), at(1., 1., 0.), at(-1., 1., 0.), at(0., 0., 1.), at(1., 0., 1.)],
+        positions: vec![
+            at(-1., -1., 0.),
+            at(1., -1., 0.),
+            at(1., 1., 0.),
+            at(-1., 1., 0.),
+            at(0., 0., 1.),
+            at(1., 0., 1.),
+        ],
         normals: vec![Vec3::Z; 6],
         faces: vec![[0, 1, 2], [0, 2, 3]],
         lines: vec![[2, 0], [0, 1], [4, 5], [5, 5], [1, 0]],
