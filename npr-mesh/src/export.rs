@@ -5,8 +5,8 @@
 //!
 //! A model becomes one mesh, with a primitive for each of its materials and one of [`Model::lines`]. Faces keep their order
 //! within a material. Positions, normals, texture coordinates and colours are written as floats, exactly; textures as PNG;
-//! transforms as matrices, which other programs may refuse where they shear. Polygons are lost, but their diagonals are
-//! written as hidden.
+//! transforms as matrices, which other programs may refuse where they shear. Polygons are lost; the diagonals of flat ones
+//! are written as hidden.
 
 mod buffer;
 mod classes;

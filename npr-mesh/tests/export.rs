@@ -137,6 +137,23 @@ fn edges_are_classed_by_their_angles() {
 }
 
 #[test]
+fn the_diagonal_of_a_polygon_is_hidden_only_where_it_is_flat() {
+    let quad = |height: f32| {
+        let positions = vec![Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, height), Vec3::Y];
+        Model { positions, faces: vec![[0, 1, 2], [0, 2, 3]], face_polygon: vec![0, 0], ..folded_plate() }
+    };
+    assert_eq!(side_classes(&quad(0.0), 0.8).0, [[Hard, Hard, Hidden], [Hidden, Hard, Hard]]);
+    // By less than what makes a fold, and by more.
+    for height in [0.01, 0.5] {
+        let (classes, normals) = side_classes(&quad(height), 0.8);
+        assert_eq!(classes, [[Hard, Hard, Silhouette], [Hidden, Hard, Hard]]);
+        let [own, other] = normals[&0][0].map(Vec3::from_array);
+        assert!(own.distance(Vec3::new(0.0, -height, 1.0).normalize()) < 1e-6, "{own}");
+        assert!(other.distance(Vec3::new(-height, 0.0, 1.0).normalize()) < 1e-6, "{other}");
+    }
+}
+
+#[test]
 fn an_edge_is_stated_once_for_each_material() {
     let model = Model { face_material: vec![0, 1], materials: vec![Material::default(); 2], ..folded_plate() };
     assert_eq!(side_classes(&model, 0.8).0, [[Hard, Hard, Hard], [Hard, Hard, Hard]]);
