@@ -219,7 +219,7 @@ fn geometry(model: &Model, mut corners: Vec<u32>, buffer: &mut Buffer) -> Value 
 fn packed(faces: impl Iterator<Item = [SideVisibility; 3]>) -> Vec<u8> {
     let mut bytes = Vec::new();
     for (number, side) in faces.flatten().enumerate() {
-        if number % 4 == 0 {
+        if number.is_multiple_of(4) {
             bytes.push(0);
         }
         let bits = match side {

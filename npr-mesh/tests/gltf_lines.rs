@@ -31,15 +31,15 @@ fn primitive(document: &mut Document, mode: u32, ends: Option<&[u8]>) -> Value {
 
 #[test]
 fn all_modes_of_lines_with_and_without_indices() {
-    let all: [(u32, &[u8], &[[usize; 2]]); 3] = [
-        (1, &[0, 2, 2, 4], &[[0, 2], [2, 4]]),
-        (2, &[0, 2, 4, 1], &[[0, 2], [2, 4], [4, 1], [1, 0]]),
-        (3, &[0, 2, 4, 1], &[[0, 2], [2, 4], [4, 1]]),
+    let all = [
+        (1, [0, 2, 2, 4], vec![[0, 2], [2, 4]]),
+        (2, [0, 2, 4, 1], vec![[0, 2], [2, 4], [4, 1], [1, 0]]),
+        (3, [0, 2, 4, 1], vec![[0, 2], [2, 4], [4, 1]]),
     ];
     let at = |vertex: usize| Vec3::from_array(PENTAGON[vertex]);
     for (mode, ends, expected) in all {
         let mut document = Document::default();
-        let lines_only = primitive(&mut document, mode, Some(ends));
+        let lines_only = primitive(&mut document, mode, Some(&ends));
         let model = document.load(json!([lines_only])).unwrap();
         assert_eq!((told(&model), model.meshes[0].faces.len()), (vec![], 0));
         let expected: Vec<_> = expected.iter().map(|line| line.map(at)).collect();
@@ -190,9 +190,9 @@ fn sides_follow_mirrored_nodes_fans_strips_and_other_primitives() {
     );
     // The hard sides are the vertical ones and the diagonal, whatever corner comes first.
     for (face, sides) in model.faces.iter().zip(&model.side_visibility).skip(2) {
-        for side in 0..3 {
+        for (side, class) in sides.iter().enumerate() {
             let [a, b] = [side, (side + 1) % 3].map(|corner| model.positions[face[corner] as usize]);
-            assert_eq!(sides[side] == Hidden, a.y == b.y, "{a} {b}");
+            assert_eq!(*class == Hidden, a.y == b.y, "{a} {b}");
         }
     }
     // A strip 0 1 2 3 is the triangles 0 1 2 and 1 3 2, and a fan 1 2 0 and 2 3 0.
@@ -233,7 +233,8 @@ fn faulty_edges_are_errors_that_name_them() {
     };
     let visibility = |accessor| json!({"visibility": accessor});
     let strings = |accessor| json!({"lineStrings": [{"indices": accessor}]});
-    let all: [(&[u8], fn(usize) -> Value, &str); 9] = [
+    type Fault<'a> = (&'a [u8], fn(usize) -> Value, &'a str);
+    let all: [Fault<'_>; 9] = [
         (&[0], visibility, "visibility: accessor 0: 1 bytes for 2 triangles, expected 2"),
         (&[0; 3], visibility, "visibility: accessor 0: 3 bytes for 2 triangles, expected 2"),
         (&[0; 2], |_| json!({"visibility": 9}), "accessor 9 does not exist"),

@@ -17,7 +17,7 @@ pub(super) fn count(mode: Mode, ends: u64) -> u64 {
 
 /// Whether some ends belong to no segment.
 pub(super) fn leaves_a_rest(mode: Mode, ends: u64) -> bool {
-    ends < 2 || (mode == Mode::Lines && ends % 2 != 0)
+    ends < 2 || (mode == Mode::Lines && !ends.is_multiple_of(2))
 }
 
 /// The segments of a primitive: those between successive ends, and in a loop that from the last end to the first.
