@@ -13,6 +13,7 @@ use npr_harness::shade::Shade;
 use npr_harness::style::{Style, styles};
 use npr_harness::view::View;
 use npr_hatch::{sheet, store};
+use npr_mesh::export::ExportOptions;
 use npr_mesh::{Model, embedded};
 use std::path::{Path, PathBuf};
 
@@ -40,6 +41,8 @@ fn model(bytes: &[u8], ending: &str) {
     let _ = std::fs::remove_dir(&folder);
     let Ok(loaded) = loaded else { return };
     loaded.meshes.iter().for_each(sound);
+    let options = ExportOptions { edges: Some(0.8) };
+    npr_mesh::export::glb(&loaded.meshes, &loaded.objects, &options).expect("what was read can be written");
     assert!(
         !loaded.objects.is_empty() && loaded.objects.iter().all(|object| object.mesh < loaded.meshes.len()),
         "objects"
@@ -61,7 +64,10 @@ fn model(bytes: &[u8], ending: &str) {
 /// What everything after a loader relies on.
 fn sound(model: &Model) {
     let vertices = model.positions.len();
-    assert!(!model.faces.is_empty(), "a model without faces");
+    assert!(!model.faces.is_empty() || !model.lines.is_empty(), "a model without faces and lines");
+    assert!(model.lines.iter().flatten().all(|&vertex| (vertex as usize) < vertices), "indices of lines");
+    let sides = model.side_visibility.len();
+    assert!(sides == 0 || sides == model.faces.len(), "sides");
     assert!(model.positions.iter().all(|p| p.is_finite()), "positions");
     assert!(model.normals.len() == vertices, "{} normals of {vertices} vertices", model.normals.len());
     assert!(model.normals.iter().all(|n| n.is_normalized()), "normals");

@@ -380,7 +380,7 @@ fn depth_scaled_threshold() {
 /// Printed fins and lines from edges against the exact contours of coarse and fine spheres and of a cube.
 fn fins() {
     let size = (480, 270);
-    let silhouettes = |width| LineStyle { width_px: [width, width, 0.0, 0.0], ink: [0.0, 0.0, 0.0, 1.0] };
+    let silhouettes = |width| LineStyle { width_px: [width, width, 0.0, 0.0, 0.0], ink: [0.0, 0.0, 0.0, 1.0] };
     let black_on_white = |lines| Style {
         paper: Vec3::ONE,
         shade: Shade::Paper,

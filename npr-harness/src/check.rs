@@ -432,7 +432,7 @@ impl Checker<'_> {
         (scene, flat): (&Scene, &Scene),
         camera: &Camera,
     ) -> Result<(), HarnessError> {
-        let look = LineStyle { width_px: [1.0; 4], ink: [0.0, 0.0, 0.0, 1.0] };
+        let look = LineStyle { width_px: [1.0; 5], ink: [0.0, 0.0, 0.0, 1.0] };
         let corrected = one_px_style(Lines::edges(look));
         let printed = one_px_style(Lines::printed(PrintedLines { width_px: 1.0, ..PrintedLines::default() }));
         let truth = true_lines(flat, camera, SIZE, f64::from(corrected.crease_angle_rad));
@@ -483,5 +483,6 @@ pub(crate) fn one_px_style(lines: Lines) -> Style {
         shadow: None,
         lines,
         crease_angle_rad: 45f32.to_radians(),
+        file_edges: true,
     }
 }

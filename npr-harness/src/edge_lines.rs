@@ -1,5 +1,7 @@
-//! Lines along the edges of a mesh: silhouettes, boundaries, creases and borders between materials.
+//! Lines along the edges of a mesh: silhouettes, boundaries, creases, borders between materials, and lines that the
+//! file itself draws.
 
+pub(crate) mod authored;
 pub(crate) mod cpu;
 pub mod plan;
 pub(crate) mod schema;

@@ -58,6 +58,15 @@ pub enum HarnessError {
     /// The model could not be loaded.
     #[error(transparent)]
     Load(#[from] npr_mesh::LoadError),
+    /// A model could not be written.
+    #[error(transparent)]
+    Export(#[from] npr_mesh::export::ExportError),
+    /// A model is written only as `.glb`.
+    #[error("{}: a model is written as .glb", path.display())]
+    ModelFormat {
+        /// The output.
+        path: std::path::PathBuf,
+    },
     /// An error from npr-outline, about edge lines, fins or shadow volumes.
     #[error(transparent)]
     Outline(#[from] npr_outline::OutlineError),

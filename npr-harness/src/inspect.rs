@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use npr_mesh::{
-    Loaded, Model, Warning,
+    Loaded, Model, SideVisibility, Warning,
     edges::{self, EdgeKind, EdgeOptions, Edges},
 };
 use std::{collections::HashMap, fmt, ops::Range};
@@ -39,6 +39,12 @@ pub struct Inspection {
     /// Two-face edges at which the surface turns by 30° to within 0.01°.
     #[serde(rename = "within_0.01_deg_of_30")]
     pub within_0_01_deg_of_30: usize,
+    /// Line segments that the file draws, besides edges; not in the output where there are none.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub lines: usize,
+    /// Sides of faces of which the file says whether they are lines; not in the output where there are none.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub stated_sides: usize,
     /// Shading vertices, including unused ones.
     pub vertices: usize,
     /// Distinct positions of the vertices.
@@ -53,7 +59,7 @@ pub struct Inspection {
     pub closed: bool,
     /// Two-face edges whose faces have opposite winding.
     pub wound_oppositely: usize,
-    /// The size of the bounding box of all faces, per axis; zeros without faces. In f64, since the size may exceed f32 and
+    /// The size of the bounding box of all faces and lines, per axis; zeros without either. In f64, since the size may exceed f32 and
     /// positions may be far from 0; rounded to f32 where it can be.
     #[serde(serialize_with = "short")]
     pub extent: [f64; 3],
@@ -95,6 +101,8 @@ pub fn inspect(name: &str, model: &Model, warnings: Vec<Warning>) -> Inspection 
         nonmanifold_edges,
         creases_over_30_deg,
         within_0_01_deg_of_30,
+        lines: model.lines.len(),
+        stated_sides: model.side_visibility.iter().flatten().filter(|side| **side != SideVisibility::Unstated).count(),
         vertices: model.positions.len(),
         positions: (0u32..).zip(&found.representative).filter(|(vertex, first)| vertex == *first).count(),
         polygons: match model.face_polygon.is_empty() {
@@ -154,6 +162,11 @@ impl fmt::Display for Short {
 
 fn short<S: serde::Serializer>(numbers: &[f64; 3], to: S) -> Result<S::Ok, S::Error> {
     to.collect_seq(numbers.map(Short::from))
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+fn is_zero(count: &usize) -> bool {
+    *count == 0
 }
 
 fn texts_and_counts<S: serde::Serializer>(warnings: &[Warning], to: S) -> Result<S::Ok, S::Error> {
@@ -280,6 +293,8 @@ impl fmt::Display for Inspection {
             ("from", corner(self.min)),
             ("to", corner(self.max)),
         ];
+        let of_file = [("lines of the file", self.lines), ("sides that the file classes", self.stated_sides)];
+        rows.extend(of_file.iter().filter(|(_, count)| *count > 0).map(|(label, count)| (*label, count.to_string())));
         rows.extend(self.warnings.iter().map(|warning| ("warning", warning.to_string())));
         let width = rows.iter().map(|(label, _)| label.chars().count()).max().unwrap_or(0);
         for (number, (label, value)) in rows.iter().enumerate() {

@@ -15,6 +15,7 @@ use crate::capabilities::Capabilities;
 #[cfg(feature = "gpu")]
 use crate::edge_lines::EdgeLineMethod;
 use crate::edge_lines::EdgeLinePlan;
+use crate::edge_lines::authored::{authored_alone, authored_left_out};
 use crate::edge_lines::plan::device_bytes;
 use crate::error::HarnessError;
 use crate::facets::{Facet, facets};
@@ -170,10 +171,10 @@ impl Plan {
             Some(ink) => Some(ImagePlan::new(scene, ink, style.crease_angle_rad, &view)?),
             None => None,
         };
-        let edge_lines = match &lines.edges {
+        let edge_lines = match &lines.edges.or_else(|| authored_alone(scene, lines)) {
             Some(edges) => {
                 let method = |bytes| capabilities.edge_lines(bytes, scene.objects().len()).0;
-                Some(EdgeLinePlan::new(scene, edges, style.crease_angle_rad, method)?)
+                Some(EdgeLinePlan::new(scene, edges, (style.crease_angle_rad, style.file_edges), method)?)
             }
             None => None,
         };
@@ -221,6 +222,7 @@ impl Plan {
         }
         plan.explain(style, textured);
         plan.explain_ground(scene);
+        plan.left_out.extend(authored_left_out(scene, style, plan.edge_lines.as_ref()));
         Ok(plan)
     }
 

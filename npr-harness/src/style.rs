@@ -47,6 +47,9 @@ pub struct Style {
     pub lines: Lines,
     /// Edges at which the surface turns by more than this angle are creases.
     pub crease_angle_rad: f32,
+    /// Whether a file that says which edges are lines ([`npr_mesh::SideVisibility`]) decides instead of the crease angle,
+    /// for edge lines.
+    pub file_edges: bool,
 }
 
 /// The lines of a style. Any kinds can be combined; they are drawn over each other in this order.

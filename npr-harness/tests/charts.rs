@@ -32,6 +32,7 @@ const NO_VARIANTS: &[(&str, &str)] = &[
     ("ShadowState", "a result"),
     ("ShadowTest", "what lines are drawn"),
     ("Show", "what is drawn"),
+    ("SideVisibility", "what a file says"),
     ("Step", "a pass of a dilation"),
     ("StepKind", "soft dilation is a look"),
     ("Operation", "which of four operations"),

@@ -152,7 +152,7 @@ fn the_hull_hides_and_is_hidden() {
     let meshes = || vec![embedded::sphere(64), embedded::cube()];
     let camera = camera_at(DVec3::new(0.0, 0.0, 6.0), DVec3::ZERO);
     let mut scene = Scene::with_objects(meshes(), vec![ball(), behind, board]).expect("good transforms");
-    let no_lines = ObjectLines::Own(LineStyle { width_px: [0.0; 4], ink: [0.0; 4] });
+    let no_lines = ObjectLines::Own(LineStyle { width_px: [0.0; 5], ink: [0.0; 4] });
     (scene.object_mut(0).lines, scene.object_mut(1).lines) = (no_lines, no_lines);
     let alone = Scene::with_objects(meshes(), vec![ball()]).expect("good transforms");
     let with_edges = |ink| {

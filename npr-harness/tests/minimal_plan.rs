@@ -72,7 +72,7 @@ fn bands() -> Style {
     }
 }
 
-fn with_edges(style: Style, width_px: [f32; 4]) -> Style {
+fn with_edges(style: Style, width_px: [f32; 5]) -> Style {
     Style { lines: Lines { edges: Some(LineStyle { width_px, ink: [0.0, 0.0, 0.0, 1.0] }), ..style.lines }, ..style }
 }
 

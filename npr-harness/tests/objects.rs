@@ -231,7 +231,7 @@ fn lines_of_an_object_are_its_own() {
     let style = named("lines");
     let all = planned(&scene, &style, &camera, SIZE).lines(&scene).0;
     scene.object_mut(0).lines = ObjectLines::None;
-    let red = LineStyle { width_px: [3.0; 4], ink: [1.0, 0.0, 0.0, 1.0] };
+    let red = LineStyle { width_px: [3.0; 5], ink: [1.0, 0.0, 0.0, 1.0] };
     scene.object_mut(3).lines = ObjectLines::Own(red);
     let left = planned(&scene, &style, &camera, SIZE).lines(&scene).0;
     let of = |lines: &[[u32; 2]], object: u32| lines.iter().filter(|line| line[0] == object).count();
@@ -240,7 +240,7 @@ fn lines_of_an_object_are_its_own() {
     let drawn = picture(&scene, &style, &camera);
     let is_red = |pixel: &[u8]| pixel[0] > 200 && pixel[1] < 60;
     assert!(drawn.rgba8.chunks(4).filter(|pixel| is_red(pixel)).count() > 100, "the sheared ring has red lines");
-    scene.object_mut(3).lines = ObjectLines::Own(LineStyle { width_px: [f32::NAN; 4], ..red });
+    scene.object_mut(3).lines = ObjectLines::Own(LineStyle { width_px: [f32::NAN; 5], ..red });
     let view = npr_harness::view::View::new(camera, SIZE);
     let plan =
         npr_harness::plan::Plan::new(&scene, &style, &view, &npr_harness::capabilities::Capabilities::RAY_CASTER);
@@ -382,7 +382,7 @@ mod on_device {
     fn a_device_places_objects_as_the_reference_does() {
         let Some(executor) = device() else { return };
         let mut scene = scene();
-        scene.object_mut(1).lines = ObjectLines::Own(LineStyle { width_px: [2.0; 4], ink: [0.8, 0.1, 0.1, 1.0] });
+        scene.object_mut(1).lines = ObjectLines::Own(LineStyle { width_px: [2.0; 5], ink: [0.8, 0.1, 0.1, 1.0] });
         scene.object_mut(4).lines = ObjectLines::None;
         let green = Material { base_color: Vec4::new(0.1, 0.6, 0.2, 1.0), double_sided: false, ..Material::default() };
         scene.set_material(2, green).expect("opaque");

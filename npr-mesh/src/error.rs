@@ -36,7 +36,7 @@ pub enum LoadError {
         /// The element and its fault.
         fault: String,
     },
-    /// The file is valid but contains no triangle.
+    /// The file is valid but contains neither a triangle nor a line.
     #[error("{}: no triangle in it{}", path.display(), why.as_ref().map(|why| format!(" ({why})")).unwrap_or_default())]
     Empty {
         /// The file.

@@ -12,7 +12,8 @@
 //!
 //! [`Model`] consists of plain arrays: positions, normals, texture coordinates, triangles. `load` reads `.obj`
 //! (feature `obj`), `.gltf` and `.glb` (feature `gltf`): the meshes of the file, each once as a `Model` of its own, and
-//! the [`Object`]s that place them. `Loaded::into_model` puts all objects into one model in world space. [`embedded`]
+//! the [`Object`]s that place them. `Loaded::into_model` puts all objects into one model in world space. With the feature
+//! `export`, `export::glb` writes models. [`embedded`]
 //! has built-in models. Both features are enabled by default.
 //!
 //! # Rules
@@ -24,6 +25,8 @@
 //! - Missing normals are computed within each mesh ([`normals`]): weighted by angle, and split at creases.
 //! - Coarse models can be smoothed by their normals ([`pn_triangles`]): closed surfaces remain closed, and edges
 //!   within a smoothed face can be contours.
+//! - Lines that a file has besides its faces are kept ([`Model::lines`]), and so is what it says of the edges of its faces
+//!   ([`Model::side_visibility`]). Points are not.
 //! - A mesh that several nodes place is loaded once. Skinned nodes and nodes with other morph weights have a mesh of
 //!   their own.
 //! - Faces are counter-clockwise seen from outside in the space of their mesh. A mirroring transform does not turn a
@@ -61,6 +64,8 @@ pub mod coplanar;
 pub mod edges;
 pub mod embedded;
 mod error;
+#[cfg(feature = "export")]
+pub mod export;
 mod limits;
 #[cfg(any(feature = "obj", feature = "gltf"))]
 mod load;
@@ -68,6 +73,7 @@ mod model;
 pub mod normals;
 mod object;
 pub mod pn_triangles;
+mod side_visibility;
 pub mod subdivide;
 mod transform;
 pub mod triangulate;
@@ -83,6 +89,7 @@ pub use limits::Limits;
 pub use load::{LoadOptions, Loaded, Warning, load};
 pub use model::{AlphaMode, Material, Model, Texture, Wrap};
 pub use object::Object;
+pub use side_visibility::{SideVisibility, edge_visibility};
 pub use up::UpAxis;
 
 /// Compiles the example of the README.

@@ -1,5 +1,6 @@
 //! Triangles as plain arrays.
 
+use crate::SideVisibility;
 use glam::{Vec2, Vec3, Vec4};
 use std::sync::Arc;
 
@@ -38,6 +39,9 @@ pub struct Model {
     /// The line segments that the file itself draws, each between two vertices: polylines of an `.obj` file, primitives
     /// of lines in glTF. They are drawn as lines wherever surfaces do not hide them, and are no edges of faces.
     pub lines: Vec<[u32; 2]>,
+    /// Per face, or empty if the file says nothing: which of its sides (between corners 0 and 1, 1 and 2, 2 and 0) the
+    /// file wants drawn as lines. See [`crate::edge_visibility`].
+    pub side_visibility: Vec<[SideVisibility; 3]>,
     /// The materials; at least as many as [`Model::face_material`] refers to.
     pub materials: Vec<Material>,
     /// The images that the materials refer to.
@@ -158,7 +162,8 @@ impl Model {
     /// Appends another model.
     ///
     /// Optional arrays that only one of the models has are filled for the other: texture coordinates with zeros,
-    /// colours with white, polygons with one per face, materials with [`Material::default`]. The meshes of both
+    /// colours with white, polygons with one per face, materials with [`Material::default`], sides with
+    /// [`SideVisibility::Unstated`]. The meshes of both
     /// models remain distinct.
     pub fn append(&mut self, other: &Model) {
         let has_materials = !self.face_material.is_empty() || !other.face_material.is_empty();
@@ -201,6 +206,11 @@ impl Model {
         }
         let (ours, theirs) = (self.faces.len(), other.faces.len());
         append_optional(&mut self.one_sided, ours, &other.one_sided, theirs, false);
+        if !self.side_visibility.is_empty() || !other.side_visibility.is_empty() {
+            self.side_visibility.resize(self.faces.len(), Default::default());
+            self.side_visibility.extend_from_slice(&other.side_visibility);
+            self.side_visibility.resize(self.faces.len() + other.faces.len(), Default::default());
+        }
         self.positions.extend_from_slice(&other.positions);
         self.normals.extend_from_slice(&other.normals);
         self.faces.extend(other.faces.iter().map(|f| f.map(|v| v + first_vertex)));

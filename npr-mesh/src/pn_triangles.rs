@@ -29,9 +29,9 @@
 
 use glam::{DVec3, Vec2, Vec4};
 
-use crate::Model;
 use crate::edges::MOST_FACES;
 use crate::weld::weld_exact;
+use crate::{Model, SideVisibility};
 
 /// An error of [`tessellate`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -72,6 +72,8 @@ pub enum TessellateError {
 ///   may fold over.
 /// - Every new face is a polygon of its own, and [`Model::face_polygon`] is empty: edges within a patch, and former
 ///   diagonals, are edges of a curved surface, on which a contour may run. (With 1 segment polygons are kept.)
+///
+/// - Parts of a side are what [`Model::side_visibility`] says of the side, and edges within a patch are silhouettes.
 ///
 /// Existing vertices keep their numbers and values. New vertices follow in the order in which the faces use them,
 /// first those on edges and then those inside. The new faces of face f are `segments`² · f and following, in strips
@@ -114,6 +116,7 @@ pub fn tessellate(model: &Model, segments: u32) -> Result<Model, TessellateError
         face_polygon: Vec::new(),
         one_sided: (model.one_sided.iter()).flat_map(|&one| std::iter::repeat_n(one, (n * n) as usize)).collect(),
         lines: model.lines.clone(),
+        side_visibility: Vec::new(),
         materials: model.materials.clone(),
         textures: model.textures.clone(),
     };
@@ -152,7 +155,27 @@ pub fn tessellate(model: &Model, segments: u32) -> Result<Model, TessellateError
             }
         }
     }
+    fine.side_visibility = model.side_visibility.iter().flat_map(|sides| sides_of_patch(sides, segments)).collect();
     Ok(fine)
+}
+
+/// What the sides of a patch's faces are: along a side of the patch what that is, and silhouettes within it, stated once
+/// for each edge.
+fn sides_of_patch(&[ab, bc, ca]: &[SideVisibility; 3], segments: u32) -> Vec<[SideVisibility; 3]> {
+    let stated = ab != SideVisibility::Unstated;
+    let [silhouette, repeated] = [SideVisibility::Silhouette, SideVisibility::Hidden]
+        .map(|inner| if stated { inner } else { SideVisibility::Unstated });
+    let mut sides = Vec::with_capacity((segments * segments) as usize);
+    for row in 0..segments {
+        for column in 0..=row {
+            let on = |is_side: bool, side| if is_side { side } else { silhouette };
+            sides.push([on(column == 0, ab), on(row + 1 == segments, bc), on(column == row, ca)]);
+            if column < row {
+                sides.push([repeated; 3]);
+            }
+        }
+    }
+    sides
 }
 
 fn check(what: &'static str, count: u64, limit: u64) -> Result<(), TessellateError> {

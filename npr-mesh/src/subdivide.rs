@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use crate::Model;
+use crate::{Model, SideVisibility};
 
 /// Splits each triangle into four at the midpoints of its edges. The shape is unchanged.
 ///
@@ -52,6 +52,7 @@ pub fn subdivide_midpoint(model: &Model) -> Model {
         face_polygon: four_each(&model.face_polygon),
         one_sided: model.one_sided.iter().flat_map(|&one_sided| [one_sided; 4]).collect(),
         lines: model.lines.clone(),
+        side_visibility: model.side_visibility.iter().flat_map(four_sides).collect(),
         materials: model.materials.clone(),
         textures: model.textures.clone(),
     };
@@ -71,6 +72,12 @@ pub fn subdivide_midpoint(model: &Model) -> Model {
 
 fn four_each(values: &[u32]) -> Vec<u32> {
     values.iter().flat_map(|&value| [value; 4]).collect()
+}
+
+/// Both halves of a side are what the side is; the sides of the middle face are diagonals, which are never lines.
+fn four_sides(&[ab, bc, ca]: &[SideVisibility; 3]) -> [[SideVisibility; 3]; 4] {
+    let inner = if ab == SideVisibility::Unstated { ab } else { SideVisibility::Hidden };
+    [[ab, inner, ca], [ab, bc, inner], [inner, bc, ca], [inner; 3]]
 }
 
 fn mean_normal(a: Vec3, b: Vec3) -> Vec3 {

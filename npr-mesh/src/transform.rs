@@ -1,6 +1,6 @@
 //! Affine transforms of models.
 
-use crate::Model;
+use crate::{Model, SideVisibility};
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 
 impl Model {
@@ -20,6 +20,7 @@ impl Model {
         self.normals.iter_mut().for_each(|normal| *normal = turn.normal(*normal));
         if turn.mirrors {
             self.faces.iter_mut().for_each(|face| face.swap(1, 2));
+            self.side_visibility.iter_mut().for_each(|sides| *sides = SideVisibility::reversed(*sides));
         }
         self
     }

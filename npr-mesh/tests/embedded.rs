@@ -237,6 +237,7 @@ fn still_life_stands_on_the_ground_and_apart() {
 
 #[test]
 fn subdivision_interpolates_and_keeps_polygons() {
+    use npr_mesh::SideVisibility::{Hard, Hidden, Silhouette, Unstated};
     let square = Model {
         positions: vec![Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0), Vec3::Y],
         normals: vec![Vec3::Z, Vec3::X, Vec3::Z, Vec3::NEG_X],
@@ -248,6 +249,7 @@ fn subdivision_interpolates_and_keeps_polygons() {
         face_polygon: vec![7, 7],
         one_sided: vec![false, true],
         lines: vec![[0, 2]],
+        side_visibility: vec![[Hard, Hidden, Silhouette], [Unstated; 3]],
         materials: vec![Material::default()],
         textures: vec![],
     };
@@ -256,6 +258,19 @@ fn subdivision_interpolates_and_keeps_polygons() {
     assert_eq!(fine.face_polygon, [7; 8]);
     assert_eq!(fine.one_sided, [false, false, false, false, true, true, true, true]);
     assert_eq!(fine.lines, [[0, 2]]);
+    assert_eq!(
+        fine.side_visibility,
+        [
+            [Hard, Hidden, Silhouette],
+            [Hard, Hidden, Hidden],
+            [Hidden, Hidden, Silhouette],
+            [Hidden; 3],
+            [Unstated; 3],
+            [Unstated; 3],
+            [Unstated; 3],
+            [Unstated; 3],
+        ]
+    );
     assert_eq!(fine.face_mesh, [0, 0, 0, 0, 1, 1, 1, 1]);
     assert_eq!(fine.positions[..4], square.positions);
     // The midpoints of 0-1, 1-2, 2-0, 2-3, 3-0, in this order.

@@ -299,7 +299,7 @@ fn meshes_without_faces_make_no_object_and_long_names_are_cut() {
     let loaded = doc.load(&rest).unwrap();
     assert_eq!((loaded.meshes.len(), loaded.objects.len()), (1, 2));
     assert_eq!((loaded.objects[0].name.as_str(), loaded.objects[1].name.as_str()), (&long[..200], ""));
-    assert_eq!(told(&loaded), ["mesh 0 primitive 0: Points are left out"]);
+    assert_eq!(told(&loaded), ["primitives of points are left out"]);
 }
 
 #[test]
@@ -342,17 +342,16 @@ fn strips_and_fans() {
 }
 
 #[test]
-fn points_and_lines_are_left_out_with_a_warning() {
+fn points_are_left_out_with_a_warning() {
     let mut doc = Doc::default();
     let primitive = triangle(&mut doc);
+    let points = format!(r#"{{{primitive},"mode":0}}"#);
     let rest = format!(
-        r#""meshes":[{{"primitives":[{{{primitive}}},{{{primitive},"mode":1}}]}}],"nodes":[{{"mesh":0}},{{"mesh":0}}]"#
+        r#""meshes":[{{"primitives":[{{{primitive}}},{points},{points}]}}],"nodes":[{{"mesh":0}},{{"mesh":0}}]"#
     );
     let loaded = doc.load(&rest).unwrap();
-    assert_eq!(
-        (loaded.meshes[0].faces.len(), loaded.objects.len(), loaded.warnings),
-        (1, 2, vec!["mesh 0 primitive 1: Lines are left out".to_owned().into()])
-    );
+    assert_eq!((loaded.meshes[0].faces.len(), loaded.objects.len()), (1, 2));
+    assert_eq!(told(&loaded), ["primitives of points are left out (2 times)"]);
     assert!(matches!(doc.mesh(&format!(r#"{primitive},"mode":0"#), "", ""), Err(LoadError::Empty { .. })));
 }
 

@@ -346,3 +346,33 @@ proptest! {
         prop_assert!(fine.normals.iter().all(|normal| (normal.length() - 1.0).abs() < 1e-5));
     }
 }
+
+#[test]
+fn parts_of_a_side_are_what_the_side_is_and_edges_within_a_patch_are_silhouettes() {
+    use npr_mesh::SideVisibility::{Hard, Hidden, RepeatedHard, Silhouette};
+    let cube = cube();
+    let hard = Model { side_visibility: vec![[Hard, Hard, Hard]; cube.faces.len()], ..cube.clone() };
+    for segments in [2, 3, 5] {
+        let n = segments as usize;
+        let fine = tessellate(&hard, segments).expect("few faces");
+        let found = edges::find(&fine.positions, &fine.faces, &fine.face_polygon, &[], &Default::default());
+        let classes = npr_mesh::edge_visibility(&fine, &found);
+        let count = |class| classes.iter().filter(|of_edge| **of_edge == class).count();
+        // Eighteen edges with diagonals; within each of twelve faces there are three lines of each length below n.
+        assert_eq!((count(Hard), count(Silhouette)), (18 * n, 12 * 3 * n * (n - 1) / 2));
+        assert_eq!(count(Hidden), 0);
+        assert!(found.edges.iter().all(|edge| edge.kind() == EdgeKind::TwoFace));
+    }
+    // Of one face, in the order of its strips.
+    let mut face = cube;
+    face.faces.truncate(1);
+    face.face_polygon.clear();
+    face.face_material.truncate(1);
+    face.face_mesh.truncate(1);
+    face.side_visibility = vec![[Hard, RepeatedHard, Hidden]];
+    let [h, r, n, s] = [Hard, RepeatedHard, Hidden, Silhouette];
+    let fine = tessellate(&face, 2).expect("few faces");
+    assert_eq!(fine.side_visibility, [[h, s, n], [h, r, s], [n; 3], [s, r, n]]);
+    face.side_visibility.clear();
+    assert!(tessellate(&face, 2).expect("few faces").side_visibility.is_empty());
+}

@@ -129,7 +129,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     // And the lines over a copy of it.
     encoder.copy_texture_to_texture(painted.as_image_copy(), inked.as_image_copy(), SIZE);
-    let style = LineStyle { width_px: [2.5; 4], ink: [0.1, 0.1, 0.15, 1.0] };
+    let style = LineStyle { width_px: [2.5; 5], ink: [0.1, 0.1, 0.15, 1.0] };
     let targets =
         LineTargets { painted: &painted_view, depth: &depth_view, inked: &inked_view, coverage: &coverage_view };
     let line_pass = LinePass::new(&device, COLOR, false)?;

@@ -21,7 +21,7 @@
 use crate::OutlineError;
 use glam::{DMat3, DVec3, DVec4, Vec3, Vec4};
 use npr_mesh::edges::{Edge, EdgeKind, Edges, NO_FACE, triangle_normal};
-use npr_mesh::{AlphaMode, Model};
+use npr_mesh::{AlphaMode, Model, SideVisibility, edge_visibility};
 use std::collections::HashMap;
 
 /// Why an edge is a line.
@@ -36,11 +36,13 @@ pub enum LineKind {
     Crease = 2,
     /// Its faces are of two materials.
     MaterialBorder = 3,
+    /// It is none of the surface's edges: the file itself draws it ([`Model::lines`]).
+    Authored = 4,
 }
 
 impl LineKind {
     /// All kinds, each at the index of its number.
-    pub const ALL: [Self; 4] = [Self::Silhouette, Self::Boundary, Self::Crease, Self::MaterialBorder];
+    pub const ALL: [Self; 5] = [Self::Silhouette, Self::Boundary, Self::Crease, Self::MaterialBorder, Self::Authored];
 }
 
 /// The planes of an edge's two faces: `n · p + d` with a unit normal `n`, relative to [`ContourEdges::origin`].
@@ -55,7 +57,7 @@ pub struct EdgePlanes {
     pub plane1: [f32; 4],
 }
 
-/// An edge that can be a line, 16 bytes.
+/// An edge that can be a line, or a line that the file draws; 16 bytes.
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub struct ContourEdge {
@@ -63,6 +65,10 @@ pub struct ContourEdge {
     pub ends: [u32; 2],
     /// The two faces, at a boundary twice the first, and above their 30 bits: of the first the [`LineKind`] that the
     /// edge has when it is not a silhouette, of the second [`SECOND_NEGATED`] and [`CUT_OUT`].
+    ///
+    /// The kind has two bits. A boundary's second plane is always negated, so that the kind of a boundary without that
+    /// is [`LineKind::Authored`]. Such a line has the faces of the edge that it runs along, and where there are none the
+    /// index after the last face, whose plane is zero.
     packed: [u32; 2],
 }
 
@@ -76,7 +82,8 @@ const SECOND_NEGATED: u32 = 1 << 30;
 const CUT_OUT: u32 = 1 << 31;
 
 impl ContourEdge {
-    /// The two faces; at a boundary twice the first.
+    /// The two faces; at a boundary twice the first. Of a line that the file draws, one or both may be the index after the
+    /// last face.
     #[inline]
     pub fn faces(&self) -> [u32; 2] {
         self.packed.map(|packed| packed & FACE)
@@ -85,7 +92,10 @@ impl ContourEdge {
     /// The kind of line that the edge is when it is not a silhouette: [`LineKind::Silhouette`] where it is none.
     #[inline]
     pub fn own_kind(&self) -> LineKind {
-        LineKind::ALL[(self.packed[0] >> 30) as usize]
+        match LineKind::ALL[(self.packed[0] >> 30) as usize] {
+            LineKind::Boundary if self.packed[1] & SECOND_NEGATED == 0 => LineKind::Authored,
+            kind => kind,
+        }
     }
 
     /// Whether the edge is a line for every eye.
@@ -113,13 +123,19 @@ pub struct ContourOptions {
     pub boundaries: bool,
     /// Whether silhouettes are lines; if not, edges that can be no other line have no records.
     pub silhouettes: bool,
+    /// Whether the lines that the file draws are lines.
+    pub authored: bool,
+    /// Whether the file decides, where it says something of an edge ([`Model::side_visibility`]): a hard edge is a crease
+    /// or boundary at any angle, one that is a silhouette is no crease, a hidden one is never a line.
+    pub file_edges: bool,
     /// The inverse transpose of the matrix that places the model, where angles between faces are those of the placed
     /// model: shear and non-uniform scale change them. Any factor; the identity for the model's own angles.
     pub world_from_normal: DMat3,
 }
 
 impl Default for ContourOptions {
-    /// Silhouettes, boundaries, creases over 45°, no material borders, the model's own angles.
+    /// Silhouettes, boundaries, creases over 45°, lines and edges of the file, no material borders, the model's own
+    /// angles.
     fn default() -> Self {
         Self {
             crease_angle_rad: 45f32.to_radians(),
@@ -127,18 +143,20 @@ impl Default for ContourOptions {
             creases: true,
             boundaries: true,
             silhouettes: true,
+            authored: true,
+            file_edges: true,
             world_from_normal: DMat3::IDENTITY,
         }
     }
 }
 
-/// The edges of a model that can be lines, ready for scanning.
+/// The edges of a model that can be lines, and the lines that its file draws, ready for scanning.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ContourEdges {
     /// The origin of the planes' coordinates: the centre of the model's bounds, so that d keeps its precision in f32.
     pub origin: Vec3,
     /// The plane of each face: nx, ny, nz, d. Those of faces that are wound oppositely to the first face of their
-    /// connected component are negated.
+    /// connected component are negated. Followed by a plane of zeros if a line of the file runs along no edge.
     pub planes: Vec<[f32; 4]>,
     /// The edges.
     pub edges: Vec<ContourEdge>,
@@ -156,6 +174,9 @@ pub struct ContourEdges {
 ///
 /// An edge between faces whose planes are the same numbers is a silhouette for no eye. It has no record unless it is
 /// another line.
+///
+/// Lines of the file ([`Model::lines`]) come last among those for every eye, without those of no length. One that runs
+/// along an edge has its faces, so that it is as visible as the edge would be at the bottom of a valley.
 ///
 /// A folded polygon's triangles ([`Edges::folds`]) each have their own plane, so that the contour is closed where some
 /// of them are back-facing; for creases the polygon's Newell normal is used.
@@ -181,7 +202,7 @@ pub fn contour_edges(model: &Model, edges: &Edges, options: &ContourOptions) -> 
     let points = plane_points(model);
     let folded = folded_normals(model, edges);
     // Computed once for each face, since each is in three edges.
-    let planes: Vec<[f32; 4]> = (0..edges.face_normals.len() as u32)
+    let mut planes: Vec<[f32; 4]> = (0..edges.face_normals.len() as u32)
         .map(|face| {
             let (normal, on) = match folded.get(&face) {
                 Some(&own) => (wound(own, face), first_corner(model, face)),
@@ -207,7 +228,8 @@ pub fn contour_edges(model: &Model, edges: &Edges, options: &ContourOptions) -> 
         let [first, second] = edge.faces();
         edge.kind() != EdgeKind::TwoFace || edge.wound_oppositely() == (is_flipped(first) != is_flipped(second))
     };
-    let line_of = |edge: &Edge| match edge.kind() {
+    let visibility = if options.file_edges { edge_visibility(model, edges) } else { Vec::new() };
+    let line_by_angle = |edge: &Edge| match edge.kind() {
         EdgeKind::Boundary => Some(LineKind::Boundary),
         EdgeKind::NonManifold => options.creases.then_some(LineKind::Crease),
         EdgeKind::TwoFace => {
@@ -225,7 +247,17 @@ pub fn contour_edges(model: &Model, edges: &Edges, options: &ContourOptions) -> 
             }
         }
     };
-    let lines: Vec<u8> = edges.edges.iter().map(|edge| line_of(edge).unwrap_or(LineKind::Silhouette) as u8).collect();
+    let line_of = |(number, edge): (usize, &Edge)| match visibility.get(number) {
+        Some(SideVisibility::Hard) if edge.kind() != EdgeKind::Boundary => options.creases.then_some(LineKind::Crease),
+        // A boundary has no other face, so that its side is stated as a silhouette only by mistake.
+        Some(SideVisibility::Silhouette) if edge.kind() != EdgeKind::Boundary => {
+            (options.material_borders && edge.joins_two_materials()).then_some(LineKind::MaterialBorder)
+        }
+        _ => line_by_angle(edge),
+    };
+    let is_hidden = |number: usize| visibility.get(number) == Some(&SideVisibility::Hidden);
+    let lines: Vec<u8> =
+        edges.edges.iter().enumerate().map(|edge| line_of(edge).unwrap_or(LineKind::Silhouette) as u8).collect();
     let is_always = |line: u8| line != LineKind::Silhouette as u8;
     // Faces in exactly one plane are on the same side of it for every eye.
     let is_flat = |edge: &Edge| {
@@ -238,9 +270,12 @@ pub fn contour_edges(model: &Model, edges: &Edges, options: &ContourOptions) -> 
         false => is_always(line),
     };
     let kept: Vec<bool> = edges.edges.iter().zip(&lines).map(|(edge, &line)| is_kept(edge, line)).collect();
+    let kept: Vec<bool> = kept.into_iter().enumerate().map(|(number, kept)| kept && !is_hidden(number)).collect();
     let always = lines.iter().zip(&kept).filter(|&(&line, &kept)| is_always(line) && kept).count();
+    let authored = if options.authored { authored_lines(model, edges) } else { Vec::new() };
+    let always = always + authored.len();
     let folds = if options.silhouettes { &edges.folds[..] } else { &[] };
-    let kept_count = kept.iter().filter(|&&kept| kept).count();
+    let kept_count = kept.iter().filter(|&&kept| kept).count() + authored.len();
     let mut contour_edges: Vec<ContourEdge> = bytemuck::zeroed_vec(kept_count + folds.len());
     let is_cut_out = |face: u32| face == NO_FACE || cut_out[model.face_material[face as usize] as usize];
     // Faces without material are opaque.
@@ -264,7 +299,37 @@ pub fn contour_edges(model: &Model, edges: &Edges, options: &ContourOptions) -> 
         };
         *position += 1;
     }
+    let no_face = edges.face_normals.len() as u32;
+    for (ends, edge) in authored {
+        let (mut ends, mut faces) = (ends, [no_face; 2]);
+        if let Some(edge) = edge.filter(|edge| fits(edge)) {
+            let [first, second] = edge.faces();
+            let [from, to] = edge.ends;
+            ends = if is_flipped(first) { [to, from] } else { [from, to] };
+            faces = [first, if second == NO_FACE { no_face } else { second }];
+        }
+        if faces.contains(&no_face) && planes.len() == no_face as usize {
+            planes.push([0.0; 4]);
+        }
+        contour_edges[next_always] =
+            ContourEdge { ends, packed: [faces[0] | (LineKind::Boundary as u32) << 30, faces[1]] };
+        next_always += 1;
+    }
     Ok(ContourEdges { origin, planes, edges: contour_edges, always })
+}
+
+/// The lines of the file that have a length, each with the edge that it runs along.
+fn authored_lines<'a>(model: &Model, edges: &'a Edges) -> Vec<([u32; 2], Option<&'a Edge>)> {
+    if model.lines.is_empty() {
+        return Vec::new();
+    }
+    let sorted = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
+    let known: HashMap<[u32; 2], &Edge> = edges.edges.iter().map(|edge| (sorted(edge.ends), edge)).collect();
+    let of_line = |&line: &[u32; 2]| {
+        let [from, to] = line.map(|vertex| edges.representative[vertex as usize]);
+        (from != to).then(|| (line, known.get(&sorted([from, to])).copied()))
+    };
+    model.lines.iter().filter_map(of_line).collect()
 }
 
 /// The normals of those triangles of folded polygons that have an area; the others keep their polygon's plane.
@@ -399,8 +464,10 @@ pub fn outline_is_silhouette(planes: &EdgePlanes, eye: Vec4) -> bool {
 
 /// The kind of line that an edge is for an eye, if it is a line. `eye` as for [`outline_facing`].
 fn outline_kind(own: LineKind, planes: &EdgePlanes, eye: Vec4) -> LineKind {
-    // A boundary's planes make it a silhouette for every eye, but its kind is that of a boundary.
-    if own != LineKind::Boundary && outline_is_silhouette(planes, eye) { LineKind::Silhouette } else { own }
+    // A boundary's planes make it a silhouette for every eye, but its kind is that of a boundary. A line of the file may
+    // have the planes of an edge.
+    let is_fixed = matches!(own, LineKind::Boundary | LineKind::Authored);
+    if !is_fixed && outline_is_silhouette(planes, eye) { LineKind::Silhouette } else { own }
 }
 
 impl ContourEdges {

@@ -8,3 +8,11 @@ const EDGE_CUT_OUT: u32 = 0x80000000u;
 fn edge_second_plane(plane: vec4<f32>, packed_second: u32) -> vec4<f32> {
     return select(plane, -plane, (packed_second & EDGE_SECOND_NEGATED) != 0u);
 }
+
+// The kind of line that the edge is when it is not a silhouette. Only a line of the file has the kind of a boundary whose
+// second plane is not negated.
+fn edge_own_kind(record: vec4<u32>) -> u32 {
+    let own = record.z >> 30u;
+    let is_authored = own == OUTLINE_BOUNDARY && (record.w & EDGE_SECOND_NEGATED) == 0u;
+    return select(own, OUTLINE_AUTHORED, is_authored);
+}

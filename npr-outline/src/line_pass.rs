@@ -58,7 +58,8 @@ struct OutlineUniform {
     edge_count: u32,
     always_count: u32,
     row_stride: u32,
-    padding: u32,
+    /// The width of the fifth kind.
+    authored_px: f32,
 }
 
 const _: () = assert!(size_of::<OutlineUniform>() == 144);
@@ -69,7 +70,7 @@ const _: () = assert!(size_of::<OutlineUniform>() == 144);
 pub struct LineRecord {
     /// The first end, world space, in the winding order of the first face.
     pub end0: [f32; 3],
-    /// [`crate::LineKind`] in the two lowest bits, and [`RECORD_CUT_OUT`].
+    /// [`crate::LineKind`] in the three lowest bits, and [`RECORD_CUT_OUT`].
     pub kind_traits: u32,
     /// The second end, world space.
     pub end1: [f32; 3],
@@ -485,17 +486,18 @@ impl EdgesOnDevice {
 
 impl OutlineUniform {
     fn new(style: &LineStyle, view: &LineView, eye: DVec4, source: LineSource<'_>) -> Self {
+        let [silhouette, boundary, crease, material_border, authored_px] = style.width_px;
         let of_records = Self {
             clip_from_world: view.clip_from_world.as_mat4().to_cols_array_2d(),
             viewport_px: view.viewport_px.as_vec2().to_array(),
             depth_per_px: view.depth_per_px.as_vec2().to_array(),
-            width_px: style.width_px,
+            width_px: [silhouette, boundary, crease, material_border],
             ink: style.ink,
             local_eye: [0.0; 4],
             edge_count: 0,
             always_count: 0,
             row_stride: 0,
-            padding: 0,
+            authored_px,
         };
         let LineSource::OnDevice(edges) = source else { return of_records };
         Self {

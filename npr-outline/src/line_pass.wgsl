@@ -14,7 +14,10 @@ fn line_vertex(
 ) -> LineVertex {
     var out: LineVertex;
     out.position = vec4<f32>(2.0, 2.0, 0.0, 1.0);
-    out.width_px = view.width_px[kind];
+    out.width_px = view.authored_px;
+    if kind != OUTLINE_AUTHORED {
+        out.width_px = view.width_px[kind];
+    }
     out.traits = traits;
     if out.width_px <= 0.0 {
         return out;
@@ -48,7 +51,7 @@ fn vs_record(
     @location(3) normal0: vec3<f32>,
     @location(4) normal1: vec3<f32>,
 ) -> LineVertex {
-    return line_vertex(corner, end0, end1, normal0, normal1, kind_traits & 3u, kind_traits);
+    return line_vertex(corner, end0, end1, normal0, normal1, kind_traits & 7u, kind_traits);
 }
 
 struct Inked {

@@ -13,7 +13,7 @@ fn vs_pulled(@builtin(vertex_index) corner: u32, @location(0) edge: u32) -> Line
     let record = edges[edge];
     let plane0 = planes[record.z & EDGE_FACE];
     let plane1 = edge_second_plane(planes[record.w & EDGE_FACE], record.w);
-    let own = record.z >> 30u;
+    let own = edge_own_kind(record);
     let kind = outline_kind(own, plane0, plane1, view.local_eye);
     var normal1 = plane1.xyz;
     if own == OUTLINE_BOUNDARY {

@@ -16,7 +16,8 @@ struct OutlineView {
     edge_count: u32,
     always_count: u32,
     row_stride: u32,
-    padding: u32,
+    // Width in px of the lines that the file draws.
+    authored_px: f32,
 }
 
 struct OutlineSegment {

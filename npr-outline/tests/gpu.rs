@@ -42,7 +42,7 @@ fn line_view([width, height]: [u32; 2], view_from_world: DMat4) -> LineView {
 }
 
 fn black(width_px: f32) -> LineStyle {
-    LineStyle { width_px: [width_px; 4], ink: [0.0, 0.0, 0.0, 1.0] }
+    LineStyle { width_px: [width_px; 5], ink: [0.0, 0.0, 0.0, 1.0] }
 }
 
 fn record(ends: [DVec3; 2], normals: [DVec3; 2]) -> LineRecord {

@@ -188,10 +188,12 @@ fn printed_ink(
 fn uncarried_share(scene: &Scene, lines: &TrueLines, plan: &Plan) -> f64 {
     let Some(image) = &plan.image else { return 0.0 };
     let is_uncarried = |segment: &&TrueSegment| {
+        // Lines of the file have no edge.
+        if segment.kind != LineKind::Crease {
+            return false;
+        }
         let [first, second] = scene_edge(scene, segment.edge).faces();
-        segment.kind == LineKind::Crease
-            && second != NO_FACE
-            && image.regions.of_face(scene, 0, first) == image.regions.of_face(scene, 0, second)
+        second != NO_FACE && image.regions.of_face(scene, 0, first) == image.regions.of_face(scene, 0, second)
     };
     let length = |segment: &TrueSegment| segment.ends_px[0].distance(segment.ends_px[1]);
     let total: f64 = lines.segments.iter().map(length).sum();

@@ -122,7 +122,7 @@ impl Checker<'_> {
 }
 
 fn black(width_px: f32) -> LineStyle {
-    LineStyle { width_px: [width_px; 4], ink: [0.0, 0.0, 0.0, 1.0] }
+    LineStyle { width_px: [width_px; 5], ink: [0.0, 0.0, 0.0, 1.0] }
 }
 
 /// The largest relative error of the width over all distances, widths and slopes.

@@ -33,16 +33,17 @@ pub enum EdgeLineMethod {
     OnDevice,
 }
 
-/// The cache key of the contours: the crease angle, if creases are drawn, and per [`LineKind`] whether it is drawn.
+/// The cache key of the contours: the crease angle, if creases are drawn, per [`LineKind`] whether it is drawn, and
+/// whether the file's edges decide.
 #[derive(PartialEq)]
-struct ContoursKey(Option<f32>, [bool; 4]);
+struct ContoursKey(Option<f32>, [bool; LineKind::ALL.len()], bool);
 
 impl EdgeLinePlan {
-    /// `method` selects a method from the size in bytes of the edges on the GPU.
+    /// `file_edges` is [`Style::file_edges`](crate::style::Style::file_edges). `method` selects a method from the size in bytes of the edges on the GPU.
     pub(crate) fn new(
         scene: &Scene,
         style: &LineStyle,
-        crease_angle_rad: f32,
+        (crease_angle_rad, file_edges): (f32, bool),
         method: impl FnOnce(u64) -> EdgeLineMethod,
     ) -> Result<Self, HarnessError> {
         style.validate()?;
@@ -52,7 +53,7 @@ impl EdgeLinePlan {
             }
         }
         let drawn = drawn_kinds(scene, style);
-        let [silhouettes, boundaries, creases, material_borders] = drawn;
+        let [silhouettes, boundaries, creases, material_borders, authored] = drawn;
         let of_object = |(object, mesh): (&Object, &Mesh)| {
             if object.lines == ObjectLines::None {
                 return Ok(Arc::default());
@@ -64,9 +65,11 @@ impl EdgeLinePlan {
                 creases,
                 boundaries,
                 silhouettes,
+                authored,
+                file_edges,
                 world_from_normal,
             };
-            derived.get(ContoursKey(creases.then_some(crease_angle_rad), drawn), || {
+            derived.get(ContoursKey(creases.then_some(crease_angle_rad), drawn, file_edges), || {
                 contour_edges(mesh.model(), mesh.edges(), &options)
             })
         };
@@ -95,8 +98,8 @@ impl EdgeLinePlan {
 
     /// The edges that are lines for an eye, as (object, edge), and the number of lines of each
     /// [`LineKind`].
-    pub fn lines(&self, scene: &Scene, eye: DVec4) -> (Vec<[u32; 2]>, [usize; 4]) {
-        let (mut lines, mut counts, mut found) = (Vec::new(), [0; 4], Vec::new());
+    pub fn lines(&self, scene: &Scene, eye: DVec4) -> (Vec<[u32; 2]>, [usize; LineKind::ALL.len()]) {
+        let (mut lines, mut counts, mut found) = (Vec::new(), [0; LineKind::ALL.len()], Vec::new());
         for number in self.groups(scene).into_iter().flat_map(|(_, objects)| objects) {
             let object = &scene.objects()[number as usize];
             let (contours, eye) = (&self.contours[number as usize], object.homogeneous(eye));

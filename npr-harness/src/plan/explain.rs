@@ -70,7 +70,11 @@ impl Plan {
         add(
             self.edge_lines.is_some(),
             "line coverage and ink",
-            "the style draws lines along edges",
+            if style.lines.edges.is_some() {
+                "the style draws lines along edges"
+            } else {
+                "the file has lines of its own"
+            },
             "the style draws no line along an edge",
         );
 

@@ -88,7 +88,7 @@ impl Mesh {
         self.closed
     }
 
-    /// The bounding box of all faces; `None` without faces.
+    /// The bounding box of all faces and lines; `None` without either.
     pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
         self.bounds
     }
@@ -115,10 +115,10 @@ impl Mesh {
         })
     }
 
-    /// The positions of all vertices used by faces, each once.
+    /// The positions of all vertices used by faces or lines, each once.
     pub fn corners(&self) -> impl Iterator<Item = Vec3> + Clone + '_ {
         let mut used = vec![false; self.model.positions.len()];
-        for &vertex in self.model.faces.iter().flatten() {
+        for &vertex in self.model.faces.iter().flatten().chain(self.model.lines.iter().flatten()) {
             used[vertex as usize] = true;
         }
         self.model.positions.iter().zip(used).filter_map(|(&position, used)| used.then_some(position))

@@ -20,7 +20,7 @@ const PAPER: [u8; 4] = [255; 4];
 
 /// Silhouettes, boundaries and creases of one width in black.
 pub(super) fn black_edges(width_px: f32) -> Lines {
-    Lines::edges(LineStyle { width_px: [width_px, width_px, width_px, 0.0], ink: [0.0, 0.0, 0.0, 1.0] })
+    Lines::edges(LineStyle { width_px: [width_px, width_px, width_px, 0.0, 0.0], ink: [0.0, 0.0, 0.0, 1.0] })
 }
 
 /// A picture of lines on unpainted surfaces; edges that turn by more than `crease_angle_rad` are creases.

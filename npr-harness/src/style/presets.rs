@@ -132,6 +132,7 @@ pub fn styles() -> Vec<Style> {
         shadow: None,
         lines,
         crease_angle_rad: 45f32.to_radians(),
+        file_edges: true,
     };
     let hard = Bands { antialias: false, ..Bands::hard_shading() };
     let shadow = Some(ShadowStyle::default());

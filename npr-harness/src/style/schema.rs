@@ -26,6 +26,7 @@ pub(super) struct StyleTable {
     about: String,
     paper: Color,
     crease_angle_deg: f32,
+    file_edges: bool,
     normals: NormalsKey,
     normal_space: SpaceName,
     light: Vec<LightTable>,
@@ -43,6 +44,7 @@ impl Default for StyleTable {
             about: String::new(),
             paper: Color(Vec3::ONE),
             crease_angle_deg: 45.0,
+            file_edges: true,
             normals: NormalsKey(NormalUse::PerPixel),
             normal_space: SpaceName::World,
             light: vec![LightTable::new(&StyleLight::KEY)],
@@ -90,6 +92,7 @@ impl StyleTable {
             about: style.about.clone(),
             paper: Color(style.paper),
             crease_angle_deg: style.crease_angle_rad.to_degrees(),
+            file_edges: style.file_edges,
             normals: NormalsKey(style.normals),
             normal_space: if style.mesh_normals { SpaceName::Mesh } else { SpaceName::World },
             light: style.lights.iter().map(LightTable::new).collect(),
@@ -116,6 +119,7 @@ impl StyleTable {
             shadow: self.shadow.map(ShadowTable::shadow).transpose().map_err(|what| file.wrong(what))?,
             lines: self.lines.lines().map_err(|what| file.wrong(what))?,
             crease_angle_rad: self.crease_angle_deg.to_radians(),
+            file_edges: self.file_edges,
         })
     }
 }

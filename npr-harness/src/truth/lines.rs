@@ -12,6 +12,10 @@
 //! of a folded polygon are classified by their own normals, so the folds between them can be silhouettes, but not
 //! creases.
 //!
+//! Where the file says which edges are lines ([`npr_mesh::SideVisibility`]), that decides: hard edges are lines at any
+//! angle, silhouettes are no creases, and hidden edges are no lines. The lines that the file itself draws
+//! ([`npr_mesh::Model::lines`]) are lines for every eye.
+//!
 //! # Definition of visibility
 //!
 //! A point of an edge is visible if no solid surface lies between it and the eye (in a parallel view: the near plane).
@@ -31,8 +35,8 @@ use crate::picture::Image;
 use crate::rays::Hit;
 use crate::scene::Scene;
 use glam::{DVec2, DVec3, DVec4};
-use npr_mesh::AlphaMode;
 use npr_mesh::edges::{Edge, EdgeKind, Edges, NO_FACE};
+use npr_mesh::{AlphaMode, SideVisibility, edge_visibility};
 use npr_outline::LineKind;
 use std::collections::HashMap;
 
@@ -60,14 +64,14 @@ pub struct TrueSegment {
     /// Why it is a line.
     pub kind: LineKind,
     /// The number of the edge or, after those, of the fold ([`scene_edge`]); [`NO_EDGE`] for an intersection curve of
-    /// two faces.
+    /// two faces and for a line that the file draws.
     pub edge: u32,
 }
 
 /// The visible lines of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrueLines {
-    /// In the order of the scene's edges, and along each edge. Within the picture and a margin of [`MARGIN_PX`].
+    /// In the order of the scene's edges and then of the file's lines, and along each. Within the picture and a margin of [`MARGIN_PX`].
     pub segments: Vec<TrueSegment>,
     /// Width and height of the picture.
     pub size_px: (u32, u32),
@@ -158,6 +162,12 @@ pub fn true_lines_of_steps(
         let running: Vec<_> = lines.chunks(share).map(|share| scope.spawn(move || follow(share))).collect();
         running.into_iter().flat_map(|thread| thread.join().expect("following lines does not panic")).collect()
     });
+    let mut segments: Vec<TrueSegment> = segments;
+    let model = scene.single().model();
+    for &ends in &model.lines {
+        let ends = ends.map(|vertex| model.positions[vertex as usize].as_dvec3());
+        segments.extend(visibility.authored_pieces(ends));
+    }
     TrueLines { segments, size_px: size }
 }
 
@@ -167,6 +177,8 @@ struct FacePlanes {
     of_polygons: Vec<Plane>,
     /// The same, except that triangles of folded polygons have their own planes; they determine silhouettes.
     of_sides: Vec<Plane>,
+    /// What the file says of each edge; empty if it says nothing.
+    visibility: Vec<SideVisibility>,
 }
 
 fn face_planes(scene: &Scene) -> FacePlanes {
@@ -200,7 +212,8 @@ fn face_planes(scene: &Scene) -> FacePlanes {
             of_sides[face] = own[face];
         }
     }
-    FacePlanes { of_polygons: planes, of_sides }
+    let visibility = edge_visibility(model, scene.single().edges());
+    FacePlanes { of_polygons: planes, of_sides, visibility }
 }
 
 /// Assigns faces of zero area the plane of the neighbour at their longest edge, flipped to match the winding.
@@ -242,6 +255,9 @@ fn borrow_planes(scene: &Scene, planes: &mut [Plane]) {
 /// The kind of line that an edge is for an eye, if any.
 fn line_kind(scene: &Scene, number: u32, planes: &FacePlanes, eye: DVec4, crease_angle_rad: f64) -> Option<LineKind> {
     let edge = scene_edge(scene, number);
+    if planes.visibility.get(number as usize) == Some(&SideVisibility::Hidden) {
+        return None;
+    }
     let [first, second] = edge.faces();
     if second == NO_FACE {
         return Some(LineKind::Boundary);
@@ -275,6 +291,11 @@ fn is_crease(scene: &Scene, number: u32, planes: &FacePlanes, crease_angle_rad: 
     if faces[1] == NO_FACE || number as usize >= scene.single().edges().edges.len() {
         return false;
     }
+    match planes.visibility.get(number as usize) {
+        Some(SideVisibility::Hard) => return true,
+        Some(SideVisibility::Silhouette) => return false,
+        _ => {}
+    }
     let [plane0, plane1] = wound_alike(edge, &planes.of_polygons, faces);
     // Well conditioned at any angle, and 0 if a normal is missing.
     let turn_rad = plane0.normal.cross(plane1.normal).length().atan2(plane0.normal.dot(plane1.normal));
@@ -305,6 +326,16 @@ impl<'a> Visibility<'a> {
             |point| self.sees_past(point, own) && (least_step <= 0.0 || self.step_behind(point, own) >= least_step);
         let pieces = self.seen_pieces(ends, seen);
         pieces.into_iter().map(|ends_px| TrueSegment { ends_px, kind, edge: number }).collect()
+    }
+
+    /// The visible segments of a line that the file draws, which has no faces of its own.
+    fn authored_pieces(&self, ends: [DVec3; 2]) -> Vec<TrueSegment> {
+        if ends[0] == ends[1] {
+            return Vec::new();
+        }
+        let pieces = self.seen_pieces(ends, |point| self.sees_past(point, |_| false));
+        let segment = |ends_px| TrueSegment { ends_px, kind: LineKind::Authored, edge: NO_EDGE };
+        pieces.into_iter().map(segment).collect()
     }
 
     /// The visible segments, px, of a world-space line, within the picture and its margin.

@@ -8,7 +8,7 @@ use std::path::Path;
 /// The result of a format's loader: normals may be missing, and there may be no object.
 #[derive(Default)]
 pub struct Parsed {
-    /// Each with faces.
+    /// Each with faces or lines.
     pub meshes: Vec<Model>,
     pub objects: Vec<Object>,
     /// In the order of occurrence, with repetitions.

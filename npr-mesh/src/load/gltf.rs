@@ -8,7 +8,7 @@
 //! The objects are the nodes with meshes of the default scene (or of the first scene, or all of them if there is no
 //! scene), with node transforms, instances, skins and morph targets in the pose that the file states, without animation.
 //! Transforms are composed in f64. Materials consist of base colour, emission, alpha mode and sidedness, and there are
-//! vertex colours.
+//! vertex colours. Primitives of lines become [`crate::Model::lines`]; those of points are ignored.
 //!
 //! Supported extensions are [`EXTENSIONS`]. Where an extension is supported, what it states is used, and what the file
 //! has for readers without the extension is not: a specular-glossiness material before a metallic-roughness material, a
@@ -18,10 +18,12 @@
 mod accessor;
 mod compressed;
 mod document;
+mod edge_visibility;
 mod extra;
 mod files;
 mod indices;
 mod instancing;
+mod lines;
 mod materials;
 mod meshes;
 mod parse;
@@ -43,7 +45,8 @@ const INSTANCING: &str = "EXT_mesh_gpu_instancing";
 const WEBP: &str = "EXT_texture_webp";
 
 /// The supported extensions. `KHR_materials_unlit` has no effect here.
-const EXTENSIONS: [&str; 9] = [
+const EXTENSIONS: [&str; 10] = [
+    edge_visibility::NAME,
     INSTANCING,
     compressed::MESHOPT[0],
     compressed::MESHOPT[1],

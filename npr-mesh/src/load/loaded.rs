@@ -8,7 +8,7 @@ use std::collections::HashMap;
 /// What a file holds: meshes, each once, and the objects that place them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Loaded {
-    /// Each in its own space, with faces, and with the materials and textures that it uses. All normals are present.
+    /// Each in its own space, with faces or lines or both, and with the materials and textures that it uses. All normals are present.
     pub meshes: Vec<Model>,
     /// In the order of the file's nodes, depth first. At least one.
     pub objects: Vec<Object>,

@@ -176,6 +176,8 @@ fn sound_model(model: &Model) -> Result<(), String> {
     check(fits(model.face_mesh.len(), faces) && fits(model.face_polygon.len(), faces), "meshes, polygons")?;
     check(model.face_material.iter().all(|&m| (m as usize) < model.materials.len()), "a material is out of range")?;
     check(model.face_polygon.is_sorted(), "polygons do not ascend")?;
+    check(model.lines.iter().flatten().all(|&v| (v as usize) < vertices), "a line's vertex is out of range")?;
+    check(fits(model.side_visibility.len(), faces), "sides of faces")?;
     for material in &model.materials {
         let color = material.base_color;
         check(color.min_element() >= 0.0 && color.max_element() <= 1.0, "a material's colour")?;

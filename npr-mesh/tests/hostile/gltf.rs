@@ -318,7 +318,7 @@ fn accessors() -> Vec<Case> {
             .without("/accessors/2/bufferView")
             .set("/accessors/2/count", json!(90_000_000))
             .case("ninety-million-zero-indices", fails(&["30000000 faces from a file so small"])),
-        with_nan(true).case("nan-unused", loads(2, &["1 positions are not finite, and no face uses them"])),
+        with_nan(true).case("nan-unused", loads(2, &["1 positions are not finite, and nothing uses them"])),
         with_nan(false).case("nan-used", fails(&["the position of vertex 4 is not finite"])),
         indices("index-beyond", &[0, 1, 4], fails(&["element 2: vertex 4 of 4"])),
         indices("index-largest", &[0, 1, u32::MAX], fails(&["vertex 4294967295 of 4"])),
@@ -357,15 +357,15 @@ fn primitives() -> Vec<Case> {
         doc.set("/meshes/0/primitives", json!([first, second]))
     };
     vec![
-        mode("mode-points", json!(0), fails(&["no triangle in it (mesh 0 primitive 0: Points are left out)"])),
+        mode("mode-points", json!(0), fails(&["no triangle in it (primitives of points are left out)"])),
         mode("mode-strip", json!(5), loads(4, &["1 of 4 faces have no area"])),
         mode("mode-fan", json!(6), loads(4, &["faces have no area"])),
         mode("mode-7", json!(7), fails(&["unknown mode"])),
         mode("mode-negative", json!(-1), fails(&["not glTF 2.0"])),
-        both(json!(0)).case("points-beside", loads(2, &["Points are left out"])),
-        both(json!(1)).case("lines-beside", loads(2, &["Lines are left out"])),
-        both(json!(2)).case("line-loop-beside", loads(2, &["LineLoop are left out"])),
-        both(json!(3)).case("line-strip-beside", loads(2, &["LineStrip are left out"])),
+        both(json!(0)).case("points-beside", loads(2, &["primitives of points are left out"])),
+        both(json!(1)).case("lines-beside", loads(2, &[])),
+        both(json!(2)).case("line-loop-beside", loads(2, &[])),
+        both(json!(3)).case("line-strip-beside", loads(2, &[])),
         square().set("/meshes/0/primitives", json!([])).case("no-primitives", fails(&["no triangle"])),
         square().without("/meshes/0/primitives").case("primitives-missing", fails(&["missing field `primitives`"])),
         square().set(&prim("attributes"), json!({})).case("no-attributes", fails(&["no triangle"])),

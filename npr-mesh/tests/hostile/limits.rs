@@ -83,7 +83,7 @@ pub fn cases() -> Vec<Case> {
             .set("/meshes/0/primitives", json!(primitives))
     };
     let warnings = primitives(json!({"attributes": {"POSITION": 0}, "mode": 0}), 10_000, 1);
-    let left_out = "Points are left out";
+    let left_out = "no POSITION, it is left out";
     vec![
         instances(1000).case("instances", loads(2000, &[])),
         big(100_000, 100, "instances-too-many-vertices", fails(&["vertices from a file so small"])),
@@ -104,7 +104,7 @@ pub fn cases() -> Vec<Case> {
         textures(20).case("textures-20", loads(40, &[])),
         textures(400).case("textures-400", fails(&["texels in all images", "100663296"])),
         warnings.case("warnings-10000", fails(&["no triangle"])),
-        primitives(json!({"attributes": {"POSITION": 0}, "mode": 0}), 10_000, 1)
+        primitives(json!({"attributes": {}}), 10_000, 1)
             .set("/meshes/0/primitives/0", json!({"attributes": {"POSITION": 0}, "indices": 2}))
             .case("warnings-9999", loads(2, &[left_out, "and 9899 more"])),
         square().set("/skins", json!(vec![json!({"joints": [0]}); 50_000])).case("skins-unused", loads(2, &[])),

@@ -1,3 +1,5 @@
+mod authored;
+
 use super::*;
 use glam::Mat4;
 use npr_mesh::edges::{EdgeOptions, find};
@@ -25,6 +27,8 @@ const NO_CREASES: ContourOptions = ContourOptions {
     creases: true,
     boundaries: true,
     silhouettes: true,
+    authored: true,
+    file_edges: true,
     world_from_normal: DMat3::IDENTITY,
 };
 
@@ -416,7 +420,7 @@ fn invalid_angles_and_widths_are_refused() {
         assert!(matches!(error, OutlineError::CreaseAngle { .. }));
     }
     assert!(contour_edges(&model, &edges, &smooth(0.0)).is_ok());
-    let look = |width| crate::line_style::LineStyle { width_px: [1.0, 0.0, width, 2.0], ink: [0.0; 4] };
+    let look = |width| crate::line_style::LineStyle { width_px: [1.0, 0.0, width, 2.0, 0.0], ink: [0.0; 4] };
     for width in [-1.0, f32::NAN, f32::INFINITY] {
         assert!(matches!(look(width).validate(), Err(OutlineError::Width { .. })));
     }
@@ -680,14 +684,14 @@ fn edges_that_can_be_no_line_that_is_drawn_have_no_record() {
         LineKind::ALL.map(of_kind)
     };
     // Of twelve edges one is between the two missing sides; six bound what is left, and five are creases.
-    assert_eq!(counts(all), [0, 6, 5, 0]);
-    assert_eq!(counts(ContourOptions { creases: false, ..all }), [5, 6, 0, 0]);
-    assert_eq!(counts(ContourOptions { boundaries: false, ..all }), [0, 0, 5, 0]);
-    assert_eq!(counts(ContourOptions { creases: false, silhouettes: false, ..all }), [0, 6, 0, 0]);
-    assert_eq!(counts(ContourOptions { silhouettes: false, ..all }), [0, 6, 5, 0]);
+    assert_eq!(counts(all), [0, 6, 5, 0, 0]);
+    assert_eq!(counts(ContourOptions { creases: false, ..all }), [5, 6, 0, 0, 0]);
+    assert_eq!(counts(ContourOptions { boundaries: false, ..all }), [0, 0, 5, 0, 0]);
+    assert_eq!(counts(ContourOptions { creases: false, silhouettes: false, ..all }), [0, 6, 0, 0, 0]);
+    assert_eq!(counts(ContourOptions { silhouettes: false, ..all }), [0, 6, 5, 0, 0]);
     assert_eq!(
         counts(ContourOptions { creases: false, boundaries: false, silhouettes: false, ..all }),
-        [0; 4],
+        [0; 5],
         "no line is drawn"
     );
 }

@@ -102,7 +102,7 @@ fn stencil_formats_without_depth_or_without_stencil_are_refused() {
 fn the_line_pass_refuses_other_textures_and_matrices() {
     let Some(gpu) = gpu() else { return };
     let pass = LinePass::new(&gpu.device, COLOR_FORMAT, false).unwrap();
-    let style = LineStyle { width_px: [1.0; 4], ink: [0.0, 0.0, 0.0, 1.0] };
+    let style = LineStyle { width_px: [1.0; 5], ink: [0.0, 0.0, 0.0, 1.0] };
     let formats = [COLOR_FORMAT, TextureFormat::Depth32Float, COLOR_FORMAT, COVERAGE_FORMAT];
     let draw = |views: &[wgpu::TextureView; 4], view: &LineView, eye: DVec4| {
         let [painted, depth, inked, coverage] = views;

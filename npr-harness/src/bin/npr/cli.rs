@@ -1,6 +1,6 @@
 //! The command's arguments.
 
-use crate::{calibrate, chart, check, figures, inspect, plan, render, report, stability, tam};
+use crate::{calibrate, chart, check, export, figures, inspect, plan, render, report, stability, tam};
 use clap::{Parser, Subcommand};
 use clap_complete::Shell;
 
@@ -24,6 +24,8 @@ pub enum Command {
     Calibrate(calibrate::Options),
     /// What a model is made of.
     Inspect(inspect::Options),
+    /// Writes a model as .glb, with the edges that are lines (EXT_mesh_primitive_edge_visibility).
+    Export(export::Options),
     /// GPU against CPU reference, lines against exact contours; exit status 1 when a limit is exceeded.
     Check(check::Options),
     /// Accuracy against speed of every variant of every technique: a table and diagrams.

@@ -8,6 +8,7 @@ mod chart;
 mod check;
 mod cli;
 mod completions;
+mod export;
 mod figures;
 mod framing;
 mod gallery;
@@ -37,6 +38,7 @@ fn main() -> ExitCode {
         Some(Command::Plan(options)) => plan::run(&options),
         Some(Command::Calibrate(options)) => calibrate::run(&options),
         Some(Command::Inspect(options)) => inspect::run(&options),
+        Some(Command::Export(options)) => export::run(&options),
         Some(Command::Check(options)) => check::run(&options),
         Some(Command::Chart(options)) => chart::run(&options),
         Some(Command::Stability(options)) => stability::run(&options),

@@ -2,7 +2,7 @@
 
 use npr_harness::error::{HarnessError, PathRole};
 use std::fs;
-use std::io::ErrorKind;
+use std::io::{self, ErrorKind};
 use std::path::Path;
 
 /// Checks that a path exists and is not a directory.
@@ -29,6 +29,23 @@ pub fn check_output_folder(path: &Path) -> Result<(), HarnessError> {
         Some(true) | None => Ok(()),
         Some(false) => Err(not_a_directory(PathRole::Output, path)),
     }
+}
+
+/// Checks that an output is not a directory and overwrites no input.
+pub fn check_output_file(output: &Path, inputs: &[&Path]) -> Result<(), HarnessError> {
+    let real = |path: &Path| fs::canonicalize(path).ok();
+    if inputs.iter().any(|input| real(input).is_some_and(|input| Some(input) == real(output))) {
+        return Err(HarnessError::Overwrites { path: output.to_owned() });
+    }
+    if output.is_dir() {
+        return Err(HarnessError::IsDirectory { role: PathRole::Output, path: output.to_owned() });
+    }
+    Ok(())
+}
+
+/// The error of an output that cannot be written.
+pub fn unusable(path: &Path) -> impl FnOnce(io::Error) -> HarnessError {
+    move |source| HarnessError::Unusable { role: PathRole::Output, path: path.to_owned(), source }
 }
 
 fn not_a_directory(role: PathRole, path: &Path) -> HarnessError {

@@ -1,10 +1,10 @@
 //! The output of `npr render`.
 
+use crate::paths::{check_output_file, unusable};
 use crate::terminal::{say, tell};
-use npr_harness::error::{HarnessError, PathRole};
+use npr_harness::error::HarnessError;
 use npr_harness::picture::{Image, PictureFormat};
 use npr_hatch::files::{check_writable, write_file};
-use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
 
@@ -23,13 +23,7 @@ impl<'a> Destination<'a> {
         if output == Path::new("-") {
             return Ok(Self::StandardOutput);
         }
-        let real = |path: &Path| fs::canonicalize(path).ok();
-        if inputs.iter().any(|input| real(input).is_some_and(|input| Some(input) == real(output))) {
-            return Err(HarnessError::Overwrites { path: output.to_owned() });
-        }
-        if output.is_dir() {
-            return Err(HarnessError::IsDirectory { role: PathRole::Output, path: output.to_owned() });
-        }
+        check_output_file(output, inputs)?;
         let format = PictureFormat::of_path(output);
         let format = format.ok_or_else(|| HarnessError::PictureFormat { path: output.to_owned() })?;
         let ((width, height), limit) = (size, format.largest_side());
@@ -61,8 +55,4 @@ impl<'a> Destination<'a> {
             }
         }
     }
-}
-
-fn unusable(path: &Path) -> impl FnOnce(io::Error) -> HarnessError {
-    move |source| HarnessError::Unusable { role: PathRole::Output, path: path.to_owned(), source }
 }

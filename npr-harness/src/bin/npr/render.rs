@@ -87,7 +87,7 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
                 "width": width, "height": height, "executor": executor.describe(),
                 "objects": scene.objects().len(), "meshes": scene.meshes().len(), "faces": scene.face_count(),
                 "edges": edges, "folds": folds,
-                "lines": {"silhouette": counts[0], "boundary": counts[1], "crease": counts[2], "material_border": counts[3]},
+                "lines": {"silhouette": counts[0], "boundary": counts[1], "crease": counts[2], "material_border": counts[3], "authored": counts[4]},
                 "device_ms": device_ms, "load_ms": loaded_ms, "prepare_ms": prepared_ms, "render_ms": drawn_ms,
                 "bytes": total_bytes(&resources),
                 "resources": resources.iter().map(listed_resource).collect::<Vec<_>>(),

@@ -94,7 +94,7 @@ fn share_off_contour(ink: &[f64], width: u32) -> f64 {
 
 fn contour_noise(executor: &Executor) -> Result<Finding, HarnessError> {
     // No creases: noise would make them too.
-    let contours = Lines::edges(LineStyle { width_px: [1.0, 1.0, 0.0, 0.0], ink: [0.0, 0.0, 0.0, 1.0] });
+    let contours = Lines::edges(LineStyle { width_px: [1.0, 1.0, 0.0, 0.0, 0.0], ink: [0.0, 0.0, 0.0, 1.0] });
     let view = View::new(parallel(HEIGHT), (SIZE_PX, SIZE_PX));
     let picture = |share: f64| -> Result<Image, HarnessError> {
         drawn(executor, &Scene::new(noisy_ball(share)), contours, view, std::f32::consts::PI)

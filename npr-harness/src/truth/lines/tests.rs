@@ -267,7 +267,7 @@ fn what_runs_along_the_border_does_not_count_as_missed() {
 }
 
 fn one_px_style() -> Style {
-    let look = LineStyle { width_px: [1.0; 4], ink: [0.0, 0.0, 0.0, 1.0] };
+    let look = LineStyle { width_px: [1.0; 5], ink: [0.0, 0.0, 0.0, 1.0] };
     Style { paper: Vec3::ONE, lines: Lines::edges(look), ..style("lines").expect("there is such a style") }
 }
 

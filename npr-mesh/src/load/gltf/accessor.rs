@@ -50,6 +50,10 @@ pub(super) enum Purpose {
     Matrices,
     /// Rotations of instances.
     Rotation,
+    /// A bit field in bytes.
+    Bits,
+    /// The normals of `EXT_mesh_primitive_edge_visibility`, floats or normalised signed bytes.
+    Direction,
 }
 
 impl Purpose {
@@ -69,6 +73,8 @@ impl Purpose {
             Purpose::Indices => (unsigned || component == U32, false),
             Purpose::Matrices => (component == F32, false),
             Purpose::Rotation => (component == F32 || (signed && normalized), false),
+            Purpose::Bits => (component == U8, false),
+            Purpose::Direction => (matches!(component, F32 | I8), false),
         }
     }
 }
@@ -178,6 +184,15 @@ impl<'d> Accessor<'d> {
             (ComponentType::I16, false) => self.elements(|b| f32::from(i16::from_le_bytes(b))),
             (ComponentType::I16, true) => self.elements(|b| (f32::from(i16::from_le_bytes(b)) / 32767.0).max(-1.0)),
             (ComponentType::U32, _) => Err(self.fault("32-bit integers, which only indices may be")),
+        }
+    }
+
+    /// The largest number of the component type if that is unsigned, which separates line strings.
+    pub fn largest_integer(&self) -> u32 {
+        match self.component {
+            ComponentType::U8 => u8::MAX.into(),
+            ComponentType::U16 => u16::MAX.into(),
+            _ => u32::MAX,
         }
     }
 

@@ -4,13 +4,15 @@ use super::INSTANCING;
 use super::accessor::{Accessor, Integers, Purpose};
 use super::compressed::refuse_unsupported;
 use super::document::{self, Document};
+use super::edge_visibility;
 use super::instancing::Instances;
+use super::lines;
 use super::materials::{Materials, UvSource};
 use super::pose::{self, Influences};
 use super::scene::Nodes;
 use crate::edges::MOST_FACES;
 use crate::transform::Turn;
-use crate::{LoadError, Model, Object};
+use crate::{LoadError, Model, Object, SideVisibility};
 use glam::{BVec3, DAffine3, DMat3, DMat4, DVec3, Vec2, Vec3, Vec4};
 use gltf::json::mesh::{Mode, Primitive, Semantic};
 use gltf::json::validation::Checked;
@@ -21,7 +23,7 @@ use std::collections::hash_map::Entry;
 /// The maximum of a channel of a vertex colour.
 const BRIGHTEST: f32 = 1000.0;
 
-/// The meshes of the shown nodes, each once, and the nodes that place them. Without those that have no faces.
+/// The meshes of the shown nodes, each once, and the nodes that place them. Without those that have neither faces nor lines.
 ///
 /// # Errors
 /// [`LoadError`] for invalid data that a shown mesh refers to, and for exceeded limits.
@@ -43,7 +45,7 @@ pub(super) fn load(
     };
     let mut objects = Vec::new();
     let mut skins: HashMap<usize, Vec<DMat4>> = HashMap::new();
-    // By mesh and weights of a node, if they matter and differ from those of the mesh. `None` without faces.
+    // By mesh and weights of a node, if they matter and differ from those of the mesh. `None` without faces and lines.
     let mut known: HashMap<(usize, Option<Vec<u32>>), Option<usize>> = HashMap::new();
     for &number in &nodes.shown {
         let node = &document.root.nodes[number];
@@ -126,7 +128,7 @@ struct Loader<'a> {
     materials: Materials,
     /// Meshes that were loaded before, whose warnings are not repeated.
     seen: Vec<bool>,
-    /// The numbers of vertices and faces of all nodes before, each with its mesh.
+    /// The numbers of vertices, and of faces and line segments, of all nodes before, each with its mesh.
     placed: [usize; 2],
     /// The number of primitives so far, and of displacements and weights that were read for them.
     instances: u64,
@@ -138,6 +140,16 @@ struct Part<'a> {
     name: String,
     primitive: &'a Primitive,
     first_time: bool,
+}
+
+/// The number of faces and line segments.
+fn drawn(model: &Model) -> usize {
+    model.faces.len() + model.lines.len()
+}
+
+/// The vertices of faces and lines.
+fn used(model: &Model) -> impl Iterator<Item = u32> + '_ {
+    model.faces.iter().flatten().chain(model.lines.iter().flatten()).copied()
 }
 
 impl Part<'_> {
@@ -156,14 +168,15 @@ impl Loader<'_> {
     /// Counts the vertices and faces of a mesh that another node places.
     fn count_again(&mut self, slot: usize) -> Result<(), LoadError> {
         let mesh = &self.meshes[slot].0;
-        let [vertices, faces] = [mesh.positions.len(), mesh.faces.len()];
+        let [vertices, faces] = [mesh.positions.len(), drawn(mesh)];
         self.fits_vertices(vertices as u64)?;
         self.fits_faces(faces as u64)?;
         self.placed = [self.placed[0] + vertices, self.placed[1] + faces];
         Ok(())
     }
 
-    /// Loads a mesh, in its own space or posed by the joints of a skin. `None` if it has no faces.
+    /// Loads a mesh, in its own space or posed by the joints of a skin. `None` if it has neither faces nor
+    /// lines.
     fn mesh(
         &mut self,
         number: usize,
@@ -184,7 +197,7 @@ impl Loader<'_> {
         model.textures.shrink_to_fit();
         let vertices = model.positions.len();
         // Meshes without faces count as well, since reading them takes time.
-        self.placed = [self.placed[0] + vertices, self.placed[1] + model.faces.len()];
+        self.placed = [self.placed[0] + vertices, self.placed[1] + drawn(&model)];
         if !model.uvs.is_empty() {
             model.uvs.resize(vertices, Vec2::ZERO);
         }
@@ -197,7 +210,7 @@ impl Loader<'_> {
         }))
     }
 
-    /// A vertex of a face whose position in world space is not within the range of f32.
+    /// A vertex of a face or line whose position in world space is not within the range of f32.
     fn vertex_out_of_range(&self, slot: usize, world_from_mesh: &DAffine3) -> Option<u32> {
         let (mesh, (low, high)) = &self.meshes[slot];
         let is_finite = |p: Vec3| world_from_mesh.transform_point3(p.as_dvec3()).as_vec3().is_finite();
@@ -205,18 +218,20 @@ impl Loader<'_> {
         if (0..8).all(|i| is_finite(corner(i))) {
             return None;
         }
-        mesh.faces.iter().flatten().copied().find(|&vertex| !is_finite(mesh.positions[vertex as usize]))
+        used(mesh).find(|&vertex| !is_finite(mesh.positions[vertex as usize]))
     }
 
     fn primitive(&mut self, part: &Part, weights: &[f32], joints: Option<&[DMat4]>) -> Result<(), LoadError> {
         let document = self.document;
         let fail = |fault: String| document.malformed(format!("{}: {fault}", part.name));
         let mode = match part.primitive.mode {
-            Checked::Valid(mode @ (Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)) => mode,
-            Checked::Valid(mode) => {
-                self.warn(part, &format!("{mode:?} are left out"));
+            Checked::Valid(Mode::Points) => {
+                if part.first_time {
+                    self.warnings.push("primitives of points are left out".to_owned());
+                }
                 return Ok(());
             }
+            Checked::Valid(mode) => mode,
             Checked::Invalid => return Err(fail("unknown mode".to_owned())),
         };
         let Some(position_accessor) = part.attribute(Semantic::Positions) else {
@@ -236,14 +251,30 @@ impl Loader<'_> {
             None => None,
         };
         let corners = indices.as_ref().map_or(accessor.count, |indices| indices.count);
+        let is_lines = lines::are_lines(mode);
         let face_count = match mode {
+            _ if is_lines => 0,
             Mode::Triangles => corners / 3,
             _ => corners.saturating_sub(2),
         };
-        self.fits_faces(face_count)?;
-        if corners < 3 || (mode == Mode::Triangles && corners % 3 != 0) {
-            self.warn(part, &format!("{corners} corners, which are no whole number of triangles"));
+        if is_lines {
+            self.fits_lines(lines::count(mode, corners))?;
+            if lines::leaves_a_rest(mode, corners) {
+                self.warn(part, &format!("{corners} ends, which are no whole number of lines"));
+            }
+        } else {
+            self.fits_faces(face_count)?;
+            if corners < 3 || (mode == Mode::Triangles && corners % 3 != 0) {
+                self.warn(part, &format!("{corners} corners, which are no whole number of triangles"));
+            }
         }
+        let strings = if is_lines { 0 } else { edge_visibility::string_ends(document, part.primitive) };
+        self.fits_lines(face_count.saturating_add(strings))?;
+        let edges = if is_lines {
+            None
+        } else {
+            edge_visibility::read(document, part.primitive, face_count, vertices).map_err(fail)?
+        };
 
         let reads = pose::targets_in_use(part.primitive, weights) + pose::influence_sets(part.primitive);
         self.displacements = self.displacements.saturating_add(reads.saturating_mul(accessor.count));
@@ -280,12 +311,41 @@ impl Loader<'_> {
             None => None,
             Some(accessor) => Some(self.corners(part, &accessor, vertices)?),
         };
+        let (first_face, first_line) = (self.model.faces.len(), self.model.lines.len());
+        if is_lines {
+            let has_color = part.primitive.material.is_some() || part.attribute(Semantic::Colors(0)).is_some();
+            if has_color && part.first_time {
+                self.warnings.push("colours of lines are ignored: lines have the style's ink".to_owned());
+            }
+            let segments = lines::segments(mode, vertices, corners.as_deref());
+            self.model.lines.extend(segments.iter().map(|line| line.map(|vertex| first_vertex as u32 + vertex)));
+            return self.check_positions(part, first_vertex, self.model.faces.len(), first_line);
+        }
         let (material, uv) = self.materials.get(document, part.primitive.material, &mut self.model, self.warnings)?;
         self.uvs(part, first_vertex, vertices, uv)?;
         self.colors(part, first_vertex, vertices)?;
         self.faces(mode, first_vertex, vertices, corners.as_deref(), &mirrored);
         self.model.face_material.resize(self.model.faces.len(), material);
-        self.check_positions(part, first_vertex, face_count as usize)
+        if let Some(edges) = edges {
+            edges.warnings.iter().for_each(|warning| self.warn(part, warning));
+            self.model.lines.extend(edges.lines.iter().map(|line| line.map(|vertex| first_vertex as u32 + vertex)));
+            self.add_sides(first_face, first_vertex, &edges.sides, &mirrored);
+        }
+        self.check_positions(part, first_vertex, first_face, first_line)
+    }
+
+    /// Adds what the file says of the sides of the faces from `first_face` on.
+    fn add_sides(&mut self, first_face: usize, first_vertex: usize, sides: &[[SideVisibility; 3]], mirrored: &[bool]) {
+        if sides.is_empty() {
+            return;
+        }
+        let Model { faces, side_visibility, .. } = &mut self.model;
+        side_visibility.resize(first_face, Default::default());
+        side_visibility.extend(faces[first_face..].iter().zip(sides).map(|(face, &sides)| {
+            // As for the face itself, its first vertex decides.
+            let is_mirrored = mirrored.get(face[0] as usize - first_vertex) == Some(&true);
+            if is_mirrored { SideVisibility::reversed(sides) } else { sides }
+        }));
     }
 
     fn warn(&mut self, part: &Part, text: &str) {
@@ -302,7 +362,12 @@ impl Loader<'_> {
     /// The same for faces.
     fn fits_faces(&self, more: u64) -> Result<usize, LoadError> {
         let limit = self.document.limits.faces.min(MOST_FACES as u64);
-        self.fits("faces", self.placed[1] + self.model.faces.len(), more, limit)
+        self.fits("faces", self.placed[1] + drawn(&self.model), more, limit)
+    }
+
+    /// The same for line segments, which count as faces.
+    fn fits_lines(&self, more: u64) -> Result<usize, LoadError> {
+        self.fits("lines", self.placed[1] + drawn(&self.model), more, self.document.limits.faces)
     }
 
     fn fits(&self, what: &'static str, so_far: usize, more: u64, limit: u64) -> Result<usize, LoadError> {
@@ -314,7 +379,11 @@ impl Loader<'_> {
         };
         let limit = self.document.limits.repeated.saturating_add(self.document.bytes / 8);
         if count > limit {
-            let what = if what == "faces" { "faces from a file so small" } else { "vertices from a file so small" };
+            let what = match what {
+                "faces" => "faces from a file so small",
+                "lines" => "lines from a file so small",
+                _ => "vertices from a file so small",
+            };
             return Err(self.document.too_large(what, count, limit));
         }
         Ok(more)
@@ -424,14 +493,21 @@ impl Loader<'_> {
         }
     }
 
-    /// A position that is not finite is an error if one of the last `faces` faces uses it, and is replaced otherwise.
-    fn check_positions(&mut self, part: &Part, first: usize, faces: usize) -> Result<(), LoadError> {
+    /// A position that is not finite is an error if a face or line from these on uses it, and is replaced otherwise.
+    fn check_positions(
+        &mut self,
+        part: &Part,
+        first: usize,
+        first_face: usize,
+        first_line: usize,
+    ) -> Result<(), LoadError> {
         let positions = &mut self.model.positions;
         if positions[first..].iter().all(|p| p.is_finite()) {
             return Ok(());
         }
-        let new_faces = &self.model.faces[self.model.faces.len() - faces..];
-        if let Some(&vertex) = new_faces.iter().flatten().find(|&&v| !positions[v as usize].is_finite()) {
+        let used =
+            self.model.faces[first_face..].iter().flatten().chain(self.model.lines[first_line..].iter().flatten());
+        if let Some(&vertex) = used.into_iter().find(|&&v| !positions[v as usize].is_finite()) {
             let fault = format!("{}: the position of vertex {} is not finite", part.name, vertex as usize - first);
             return Err(self.document.malformed(fault));
         }
@@ -440,7 +516,7 @@ impl Loader<'_> {
             *position = Vec3::ZERO;
             unused += 1;
         }
-        self.warn(part, &format!("{unused} positions are not finite, and no face uses them"));
+        self.warn(part, &format!("{unused} positions are not finite, and nothing uses them"));
         Ok(())
     }
 }
