@@ -7,7 +7,7 @@ use std::path::PathBuf;
 #[non_exhaustive]
 pub enum LoadError {
     /// The file extension belongs to no enabled loader.
-    #[error("{}: unknown model format (expected .obj, .gltf or .glb)", path.display())]
+    #[error("{}: unknown model format (expected .obj, .gltf, .glb, .ply or .stl)", path.display())]
     UnknownFormat {
         /// The file.
         path: PathBuf,
@@ -36,7 +36,7 @@ pub enum LoadError {
         /// The element and its fault.
         fault: String,
     },
-    /// The file is valid but contains no triangle.
+    /// The file is valid but contains no triangle and no line.
     #[error("{}: no triangle in it{}", path.display(), why.as_ref().map(|why| format!(" ({why})")).unwrap_or_default())]
     Empty {
         /// The file.

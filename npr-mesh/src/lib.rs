@@ -55,7 +55,7 @@ pub mod edges;
 pub mod embedded;
 mod error;
 mod limits;
-#[cfg(any(feature = "obj", feature = "gltf"))]
+#[cfg(any(feature = "obj", feature = "gltf", feature = "ply", feature = "stl"))]
 mod load;
 mod model;
 pub mod normals;
@@ -71,12 +71,12 @@ pub use glam;
 
 pub use error::LoadError;
 pub use limits::Limits;
-#[cfg(any(feature = "obj", feature = "gltf"))]
-pub use load::{LoadOptions, Loaded, Warning, load};
+#[cfg(any(feature = "obj", feature = "gltf", feature = "ply", feature = "stl"))]
+pub use load::{LoadOptions, Loaded, Resolver, Warning, load, load_bytes};
 pub use model::{AlphaMode, Material, Model, Texture, Wrap};
 pub use object::Object;
 
 /// Compiles the example of the README.
-#[cfg(all(doctest, any(feature = "obj", feature = "gltf")))]
+#[cfg(all(doctest, any(feature = "obj", feature = "gltf", feature = "ply", feature = "stl")))]
 #[doc = include_str!("../README.md")]
 struct ReadMe;

@@ -8,11 +8,14 @@ use std::path::Path;
 /// The result of a format's loader: normals may be missing, and there may be no object.
 #[derive(Default)]
 pub struct Parsed {
-    /// Each with faces.
+    /// Each with faces or lines.
     pub meshes: Vec<Model>,
     pub objects: Vec<Object>,
     /// In the order of occurrence, with repetitions.
     pub warnings: Vec<String>,
+    /// Per mesh, or shorter: the smoothing group of each face, see [`crate::normals::fill_missing_in_groups`]. Empty
+    /// where the file has no groups.
+    pub smoothing: Vec<Vec<u32>>,
 }
 
 /// Reads a regular file within [`Limits::file_bytes`].

@@ -20,7 +20,7 @@ mod pose;
 mod scene;
 
 use super::external::{External, shortened};
-use super::file::{Parsed, read_file};
+use super::file::Parsed;
 use crate::LoadError;
 use document::{Bytes, Document, QUANTIZATION, malformed};
 use gltf::json::Root;
@@ -32,9 +32,8 @@ const EXTENSIONS: [&str; 3] = ["KHR_materials_unlit", QUANTIZATION, "KHR_texture
 ///
 /// # Errors
 /// [`LoadError`] with the file and the fault.
-pub(super) fn load(external: &External) -> Result<Parsed, LoadError> {
+pub(super) fn load(file: Vec<u8>, external: &External) -> Result<Parsed, LoadError> {
     let (path, limits) = (external.model, external.limits);
-    let file = read_file(path, limits)?;
     let mut warnings = Vec::new();
     let (text, binary) = files::split_container(&file, &mut warnings).map_err(|fault| malformed(path, fault))?;
     let root = parse::parse(text, &mut warnings).map_err(|fault| malformed(path, format!("not glTF 2.0: {fault}")))?;
@@ -49,7 +48,7 @@ pub(super) fn load(external: &External) -> Result<Parsed, LoadError> {
         Bytes::Missing(fault) => Some(format!("buffer {number} is left out, and no mesh needs it: {fault}")),
         _ => None,
     }));
-    Ok(Parsed { meshes, objects, warnings })
+    Ok(Parsed { meshes, objects, warnings, ..Parsed::default() })
 }
 
 /// Checks the version (glTF 2.0, 3.2 "Asset") and the extensions (3.12 "Specifying Extensions").

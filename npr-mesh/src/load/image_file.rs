@@ -1,10 +1,37 @@
-//! Decodes PNG and JPEG to RGBA8.
+//! Decodes images to RGBA8.
 
 use crate::{Limits, LoadError};
 use image::error::ImageFormatHint;
 use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader};
 use std::io::Cursor;
 use std::path::Path;
+
+/// A decoded image.
+pub(super) struct Decoded {
+    pub width: u32,
+    pub height: u32,
+    /// `width * height * 4` bytes, rows from the top.
+    pub rgba8: Vec<u8>,
+    /// Whether the file has alpha values.
+    #[cfg_attr(not(feature = "obj"), allow(dead_code))]
+    pub has_alpha: bool,
+}
+
+/// The formats of glTF 2.0, 3.8.3 "Images".
+#[cfg(feature = "gltf")]
+const OF_GLTF: [ImageFormat; 2] = [ImageFormat::Png, ImageFormat::Jpeg];
+
+/// The formats that exporters of OBJ files name in material files.
+#[cfg(feature = "obj")]
+const OF_OBJ: [ImageFormat; 7] = [
+    ImageFormat::Png,
+    ImageFormat::Jpeg,
+    ImageFormat::Bmp,
+    ImageFormat::Tga,
+    ImageFormat::Gif,
+    ImageFormat::WebP,
+    ImageFormat::Tiff,
+];
 
 /// Decodes a PNG or JPEG file in memory: width, height and `width * height * 4` bytes, rows from the top.
 ///
@@ -14,6 +41,7 @@ use std::path::Path;
 ///
 /// # Errors
 /// [`LoadError::TooLarge`] and [`LoadError::Malformed`] with `path`; the latter with the name of the image.
+#[cfg(feature = "gltf")]
 pub(super) fn decode(
     bytes: &[u8],
     name: &str,
@@ -21,11 +49,56 @@ pub(super) fn decode(
     limits: &Limits,
     so_far: &mut u64,
 ) -> Result<(u32, u32, Vec<u8>), LoadError> {
+    let image = decode_one_of(&OF_GLTF, bytes, name, path, limits, so_far)?;
+    Ok((image.width, image.height, image.rgba8))
+}
+
+/// Decodes a PNG, JPEG, BMP, TGA, GIF (its first frame), WebP or TIFF file in memory, otherwise as `decode`. TGA files
+/// have no mark, so any other bytes are read as TGA if the name says so.
+#[cfg(feature = "obj")]
+pub(super) fn decode_any(
+    bytes: &[u8],
+    name: &str,
+    path: &Path,
+    limits: &Limits,
+    so_far: &mut u64,
+) -> Result<Decoded, LoadError> {
+    decode_one_of(&OF_OBJ, bytes, name, path, limits, so_far)
+}
+
+/// Checks the number of texels of an image and, added to `so_far`, of all images.
+///
+/// # Errors
+/// [`LoadError::TooLarge`] with `path`.
+pub(super) fn check_texels(texels: u64, so_far: &mut u64, path: &Path, limits: &Limits) -> Result<(), LoadError> {
+    *so_far = so_far.saturating_add(texels);
+    for (what, count, limit) in
+        [("texels in an image", texels, limits.texels), ("texels in all images", *so_far, limits.texels_in_all)]
+    {
+        if count > limit {
+            return Err(LoadError::TooLarge { path: path.to_owned(), what, count, limit });
+        }
+    }
+    Ok(())
+}
+
+fn decode_one_of(
+    formats: &[ImageFormat],
+    bytes: &[u8],
+    name: &str,
+    path: &Path,
+    limits: &Limits,
+    so_far: &mut u64,
+) -> Result<Decoded, LoadError> {
     let malformed = |why: String| LoadError::Malformed { path: path.to_owned(), fault: format!("image {name}: {why}") };
     let mut reader =
         ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| malformed(e.to_string()))?;
+    let ending = Path::new(name).extension().and_then(|ending| ending.to_str());
+    if reader.format().is_none() && ending.is_some_and(|ending| ending.eq_ignore_ascii_case("tga")) {
+        reader.set_format(ImageFormat::Tga);
+    }
     // Another crate in the build may enable more formats of `image`.
-    if let Some(other) = reader.format().filter(|format| !matches!(format, ImageFormat::Png | ImageFormat::Jpeg)) {
+    if let Some(other) = reader.format().filter(|format| !formats.contains(format)) {
         return Err(malformed(ImageError::Unsupported(ImageFormatHint::Exact(other).into()).to_string()));
     }
     // The formats store at most eight bytes per texel; the rest is for the tables of the decoders.
@@ -36,22 +109,16 @@ pub(super) fn decode(
     let (width, height) = decoder.dimensions();
     let texels = u64::from(width) * u64::from(height);
     // Broken images count as well, since decoding them takes time.
-    *so_far = so_far.saturating_add(texels);
-    for (what, count, limit) in
-        [("texels in an image", texels, limits.texels), ("texels in all images", *so_far, limits.texels_in_all)]
-    {
-        if count > limit {
-            return Err(LoadError::TooLarge { path: path.to_owned(), what, count, limit });
-        }
-    }
+    check_texels(texels, so_far, path, limits)?;
     if texels == 0 {
         return Err(malformed("no texel in it".to_owned()));
     }
     let image = DynamicImage::from_decoder(decoder).map_err(|e| malformed(e.to_string()))?;
-    Ok((width, height, image.into_rgba8().into_raw()))
+    let has_alpha = image.color().has_alpha();
+    Ok(Decoded { width, height, rgba8: image.into_rgba8().into_raw(), has_alpha })
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "gltf", feature = "obj"))]
 mod tests {
     use super::*;
     use image::{Rgba, RgbaImage};

@@ -1,14 +1,16 @@
 //! What a file holds.
 
+use super::far;
 use super::options::CREASE_ANGLE_RAD;
 use crate::{AlphaMode, Material, Model, Object, Texture, Warning, Wrap, normals};
-use glam::{DAffine3, Vec3};
+use glam::{DAffine3, DVec3, Vec3};
 use std::collections::HashMap;
 
 /// What a file holds: meshes, each once, and the objects that place them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Loaded {
-    /// Each in its own space, with faces, and with the materials and textures that it uses. All normals are present.
+    /// Each in its own space, with faces or lines, and with the materials and textures that it uses. All normals are
+    /// present.
     pub meshes: Vec<Model>,
     /// In the order of the file's nodes, depth first. At least one.
     pub objects: Vec<Object>,
@@ -23,10 +25,41 @@ impl Loaded {
     /// [`Model::face_mesh`] is the index of the object, and equal materials and textures of different meshes are one.
     /// A singular transform destroys normals; they are made from the transformed faces.
     ///
+    /// Positions are f32 in world space, so digits are lost where objects are far from the origin.
+    /// [`Loaded::into_local_model`] keeps them.
+    ///
     /// # Panics
     /// If an object has a mesh that does not exist. The loader makes no such object.
     pub fn into_model(self) -> Model {
-        let Self { mut meshes, objects, .. } = self;
+        self.into_model_from(DVec3::ZERO)
+    }
+
+    /// All objects in one model as in [`Loaded::into_model`], with positions relative to an origin, and that origin.
+    ///
+    /// The origin is 0, or the centre of all objects where that is at least four times their diagonal away. It is
+    /// subtracted in f64, so that digits that the file has are not lost.
+    ///
+    /// # Panics
+    /// If an object has a mesh that does not exist. The loader makes no such object.
+    pub fn into_local_model(self) -> (Model, DVec3) {
+        let corners = self.objects.iter().flat_map(|object| {
+            let (low, high) = self.meshes[object.mesh].bounds().unwrap_or_default();
+            let [low, high] = [low.as_dvec3(), high.as_dvec3()];
+            let corner = move |axes: u8| {
+                let choice = |axis: u8, low: f64, high: f64| if axes & (1 << axis) == 0 { low } else { high };
+                DVec3::new(choice(0, low.x, high.x), choice(1, low.y, high.y), choice(2, low.z, high.z))
+            };
+            (0..8).map(move |axes| object.world_from_mesh.transform_point3(corner(axes)))
+        });
+        let origin = far::bounds(corners).and_then(|(low, high)| far::offset(low, high)).unwrap_or_default();
+        (self.into_model_from(origin), origin)
+    }
+
+    fn into_model_from(self, origin: DVec3) -> Model {
+        let Self { mut meshes, mut objects, .. } = self;
+        if origin != DVec3::ZERO {
+            objects.iter_mut().for_each(|object| object.world_from_mesh.translation -= origin);
+        }
         if let [object] = &objects[..] {
             return placed(meshes.swap_remove(object.mesh), &object.world_from_mesh);
         }
