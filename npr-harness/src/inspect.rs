@@ -1,6 +1,6 @@
 //! Statistics of a model.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use npr_mesh::{
     Model, Warning,
     edges::{self, EdgeKind, EdgeOptions, Edges},
@@ -54,11 +54,11 @@ pub struct Inspection {
     /// Two-face edges whose faces have opposite winding.
     pub wound_oppositely: usize,
     /// The size of the bounding box of all faces, per axis; zeros without faces.
-    pub extent: [f32; 3],
+    pub extent: [f64; 3],
     /// The box's lower corner.
-    pub min: [f32; 3],
+    pub min: [f64; 3],
     /// The box's upper corner.
-    pub max: [f32; 3],
+    pub max: [f64; 3],
     /// The repairs and omissions of the loader; in JSON, objects of `text` and `count`.
     #[serde(serialize_with = "texts_and_counts")]
     pub warnings: Vec<Warning>,
@@ -72,6 +72,15 @@ pub struct Inspection {
 /// # Panics
 /// If a face refers to a vertex that does not exist, or a per-face array does not have the length stated in [`Model`].
 pub fn inspect(name: &str, model: &Model, warnings: Vec<Warning>) -> Inspection {
+    inspect_at(name, model, DVec3::ZERO, warnings)
+}
+
+/// Computes the statistics of a model whose positions are relative to an origin
+/// ([`npr_mesh::Loaded::into_local_model`]), as [`inspect`]. The box is where the origin is added.
+///
+/// # Panics
+/// If a face refers to a vertex that does not exist, or a per-face array does not have the length stated in [`Model`].
+pub fn inspect_at(name: &str, model: &Model, origin: DVec3, warnings: Vec<Warning>) -> Inspection {
     let options = EdgeOptions { skip_redundant: false, ..EdgeOptions::default() };
     let found = edges::find(&model.positions, &model.faces, &model.face_polygon, &model.face_material, &options);
     let of_kind = |kind| found.edges.iter().filter(|edge| edge.kind() == kind).count();
@@ -105,11 +114,34 @@ pub fn inspect(name: &str, model: &Model, warnings: Vec<Warning>) -> Inspection 
             .iter()
             .filter(|edge| edge.kind() == EdgeKind::TwoFace && edge.wound_oppositely())
             .count(),
-        extent: (max - min).to_array(),
-        min: min.to_array(),
-        max: max.to_array(),
+        extent: std::array::from_fn(|axis| match max[axis] - min[axis] {
+            extent if extent.is_finite() => decimal(extent),
+            // Beyond f32.
+            _ => 2.0 * decimal(max[axis] / 2.0 - min[axis] / 2.0),
+        }),
+        min: placed(origin, min, max.abs().max(min.abs())),
+        max: placed(origin, max, max.abs().max(min.abs())),
         warnings,
     }
+}
+
+/// The shortest decimal number that is a given f32.
+fn decimal(number: f32) -> f64 {
+    number.to_string().parse().unwrap_or(f64::NAN)
+}
+
+/// A position relative to an origin, with as many digits as f32 has where the model is largest.
+fn placed(origin: DVec3, position: Vec3, largest: Vec3) -> [f64; 3] {
+    let rounding = f64::from(largest.max_element()) * f64::from(f32::EPSILON);
+    std::array::from_fn(|axis| {
+        let (origin, here) = (origin[axis], position[axis]);
+        if origin == 0.0 {
+            return decimal(here);
+        }
+        let sum = origin + f64::from(here);
+        let mut rounded = (0..17).filter_map(|digits| format!("{sum:.digits$}").parse::<f64>().ok());
+        rounded.find(|rounded| (rounded - sum).abs() <= rounding).unwrap_or(sum)
+    })
 }
 
 fn texts_and_counts<S: serde::Serializer>(warnings: &[Warning], to: S) -> Result<S::Ok, S::Error> {
@@ -211,7 +243,7 @@ fn area_vector(model: &Model, face: u32, areas: &mut HashMap<usize, DVec3>) -> D
 
 impl fmt::Display for Inspection {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let corner = |[x, y, z]: [f32; 3]| format!("{x} {y} {z}");
+        let corner = |[x, y, z]: [f64; 3]| format!("{x} {y} {z}");
         let mut rows = vec![
             ("model", self.model.clone()),
             ("meshes", self.meshes.to_string()),

@@ -134,11 +134,16 @@ impl<'a> External<'a> {
     ) -> Result<PathBuf, LoadError> {
         let mut outside = false;
         let mut failed = None;
+        let mut tried: Vec<String> = Vec::new();
         for name in names {
             let Some(name) = relative(&name.to_string_lossy()) else {
                 outside = true;
                 continue;
             };
+            if tried.contains(&name) {
+                continue;
+            }
+            tried.push(name.clone());
             let path = PathBuf::from(&name);
             if found.borrow().contains_key(&path) {
                 return Ok(path);

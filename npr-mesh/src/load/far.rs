@@ -37,7 +37,8 @@ pub fn lost_digits(low: DVec3, high: DVec3) -> Option<String> {
 
 fn warning(low: DVec3, high: DVec3, step: f64) -> Option<String> {
     offset(low, high)?;
-    let lost = step > 0.0 && (high - low).length() < LEAST_STEPS * step;
+    let diagonal = (high - low).length();
+    let lost = step > 0.0 && diagonal > 0.0 && diagonal < LEAST_STEPS * step;
     let distance = low.midpoint(high).length();
     lost.then(|| {
         format!(
@@ -84,6 +85,8 @@ impl Written {
         let step = (0..3)
             .filter(|&axis| self.is_f32[axis] && self.finest[axis] <= ulp(largest[axis]))
             .map(|axis| ulp(largest[axis]))
+            // Of whole numbers it cannot be told.
+            .filter(|step| *step != 1.0)
             .fold(0.0, f64::max);
         warning(self.low, self.high, step)
     }
@@ -138,6 +141,7 @@ mod tests {
         assert!(warning.contains("5.4e6 units") && warning.contains("a step of 0.5 units"), "{warning}");
         assert_eq!(written(&[5_400_000.1, 5_400_003.5, 5_400_020.0]), None, "a number that is no f32");
         assert_eq!(written(&[5_400_000.0, 5_400_003.0, 5_400_020.0]), None, "whole numbers need no more digits");
+        assert_eq!(written(&[1e7, 1e7 + 1.0, 1e7 + 3.0]), None, "whole numbers");
         assert_eq!(written(&[0.1f32.into(), 0.25]), None, "near the origin");
     }
 }

@@ -4,7 +4,7 @@ use crate::loading::{Loading, load};
 use crate::terminal::say;
 use clap::Args;
 use npr_harness::error::HarnessError;
-use npr_harness::inspect::{Inspection, inspect};
+use npr_harness::inspect::{Inspection, inspect_at};
 use std::path::PathBuf;
 
 #[derive(Args)]
@@ -24,7 +24,8 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
     let loaded = load(input, &options.loading)?;
     let name = input.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     let (meshes, objects, warnings) = (loaded.meshes.len(), loaded.objects.len(), loaded.warnings.clone());
-    let inspection = Inspection { meshes, objects, ..inspect(&name, &loaded.into_model(), warnings) };
+    let (model, origin) = loaded.into_local_model();
+    let inspection = Inspection { meshes, objects, ..inspect_at(&name, &model, origin, warnings) };
     if options.json {
         say(format_args!("{}\n", serde_json::to_string_pretty(&inspection)?))?;
     } else {

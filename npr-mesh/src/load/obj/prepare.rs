@@ -338,8 +338,9 @@ pub(super) fn prepare(mut bytes: Vec<u8>, path: &Path, limits: &Limits) -> Resul
             b"l" => {
                 let (mut vertices, mut before) = (0, None);
                 let mut polyline = Corners { rest };
-                while let Some([index, ..]) =
-                    polyline.next_corner().map_err(|fault| bad(fault.replace("face", "line")))?
+                while let Some([index, ..]) = polyline
+                    .next_corner()
+                    .map_err(|fault| bad(fault.replace("face corner", "line's end").replace("face", "line")))?
                 {
                     let count = counts.arrays[0];
                     let vertex = match index {

@@ -59,14 +59,14 @@ impl TextureMap {
         let mut map =
             Self { names: Vec::new(), written: String::new(), wrap: Wrap::Repeat, placement: Placement::default() };
         let mut ignored = Vec::new();
-        let mut rest = map.read_options(line.trim(), &mut ignored);
+        let mut rest = map.read_options(line.trim(), true, &mut ignored);
         if let Some(quoted) = rest.strip_prefix('"')
             && let Some((name, after)) = quoted.split_once('"')
         {
-            map.read_options(after.trim(), &mut ignored);
+            map.read_options(after.trim(), false, &mut ignored);
             rest = name;
         } else if let Some(at) = options_behind(rest) {
-            map.read_options(rest[at..].trim(), &mut ignored);
+            map.read_options(rest[at..].trim(), false, &mut ignored);
             rest = rest[..at].trim_end();
         }
         let name = rest.trim_matches('"').trim();
@@ -77,8 +77,8 @@ impl TextureMap {
         }
     }
 
-    /// Reads options, and returns what follows them.
-    fn read_options<'a>(&mut self, mut rest: &'a str, ignored: &mut Vec<&'static str>) -> &'a str {
+    /// Reads options, and returns what follows them: if a name must follow, at least the last word.
+    fn read_options<'a>(&mut self, mut rest: &'a str, name_follows: bool, ignored: &mut Vec<&'static str>) -> &'a str {
         while rest.starts_with('-') {
             let (word, after) = rest.split_once(char::is_whitespace).unwrap_or((rest, ""));
             // The name of a file may begin with a hyphen.
@@ -88,7 +88,10 @@ impl TextureMap {
             while operands.len() < most {
                 let (word, after) = rest.split_once(char::is_whitespace).unwrap_or((rest, ""));
                 // The name of the file follows fewer operands than there may be.
-                if word.is_empty() || (operands.len() >= least && word.parse::<f32>().is_err()) {
+                if word.is_empty()
+                    || (name_follows && after.is_empty())
+                    || (operands.len() >= least && word.parse::<f32>().is_err())
+                {
                     break;
                 }
                 operands.push(word);
@@ -118,7 +121,7 @@ impl TextureMap {
 }
 
 fn option(word: &str) -> Option<(&'static str, usize, usize)> {
-    OPTIONS.iter().find(|(name, ..)| word.eq_ignore_ascii_case(name)).copied()
+    OPTIONS.iter().find(|(name, ..)| *name == word).copied()
 }
 
 /// Where options with an operand follow a name.
@@ -159,13 +162,15 @@ mod tests {
             ("-hyphen.png", "-hyphen.png", same, Wrap::Repeat, &[]),
             ("-s nan inf t.png", "t.png", same, Wrap::Repeat, &[]),
             ("a -s b.png", "a -s b.png", same, Wrap::Repeat, &[]),
+            ("-s 1 2 3", "3", at([1.0, 2.0], [0.0; 2]), Wrap::Repeat, &[]),
+            ("-CLAMP", "-CLAMP", same, Wrap::Repeat, &[]),
         ] {
             let (map, found) = TextureMap::read(line);
             let map = map.unwrap_or_else(|| panic!("{line}: no name"));
             assert_eq!((map.names[0].to_str(), map.placement, map.wrap), (Some(name), placement, wrap), "{line}");
             assert_eq!(found, ignored, "{line}");
         }
-        for line in ["", "-s 1 1 1", "-clamp on", "\"\"", "-bm"] {
+        for line in ["", "\"\"", "-bm"] {
             assert!(TextureMap::read(line).0.is_none(), "{line}");
         }
     }
