@@ -64,4 +64,18 @@ pub enum LoadError {
         /// The maximum number.
         limit: u64,
     },
+    /// An image exceeds a limit of [`crate::Limits`].
+    #[error("{}: image {image}: {count} {what}, more than the limit of {limit}", path.display())]
+    ImageTooLarge {
+        /// The model file.
+        path: PathBuf,
+        /// The name of the image in the model, or its number.
+        image: String,
+        /// The counted elements.
+        what: &'static str,
+        /// Their number.
+        count: u64,
+        /// The maximum number.
+        limit: u64,
+    },
 }

@@ -40,7 +40,7 @@ const OF_OBJ: [ImageFormat; 7] = [
 /// samples are rounded to 8 bits. Colour profiles and Exif orientation are ignored, as glTF 2.0 requires (3.8.2).
 ///
 /// # Errors
-/// [`LoadError::TooLarge`] and [`LoadError::Malformed`] with `path`; the latter with the name of the image.
+/// [`LoadError::ImageTooLarge`] and [`LoadError::Malformed`] with `path` and the name of the image.
 #[cfg(feature = "gltf")]
 pub(super) fn decode(
     bytes: &[u8],
@@ -69,14 +69,20 @@ pub(super) fn decode_any(
 /// Checks the number of texels of an image and, added to `so_far`, of all images.
 ///
 /// # Errors
-/// [`LoadError::TooLarge`] with `path`.
-pub(super) fn check_texels(texels: u64, so_far: &mut u64, path: &Path, limits: &Limits) -> Result<(), LoadError> {
+/// [`LoadError::ImageTooLarge`] with `path` and the name of the image.
+pub(super) fn check_texels(
+    texels: u64,
+    name: &str,
+    so_far: &mut u64,
+    path: &Path,
+    limits: &Limits,
+) -> Result<(), LoadError> {
     *so_far = so_far.saturating_add(texels);
     for (what, count, limit) in
         [("texels in an image", texels, limits.texels), ("texels in all images", *so_far, limits.texels_in_all)]
     {
         if count > limit {
-            return Err(LoadError::TooLarge { path: path.to_owned(), what, count, limit });
+            return Err(LoadError::ImageTooLarge { path: path.to_owned(), image: name.to_owned(), what, count, limit });
         }
     }
     Ok(())
@@ -109,7 +115,7 @@ fn decode_one_of(
     let (width, height) = decoder.dimensions();
     let texels = u64::from(width) * u64::from(height);
     // Broken images count as well, since decoding them takes time.
-    check_texels(texels, so_far, path, limits)?;
+    check_texels(texels, name, so_far, path, limits)?;
     if texels == 0 {
         return Err(malformed("no texel in it".to_owned()));
     }
@@ -142,11 +148,11 @@ mod tests {
     fn too_many_texels_are_refused() {
         let limits = Limits { texels: 5, ..Limits::default() };
         let error = decode(&png(3, 2), "a", Path::new("m.obj"), &limits, &mut 0).unwrap_err();
-        assert!(matches!(error, LoadError::TooLarge { count: 6, limit: 5, .. }), "{error}");
+        assert!(matches!(error, LoadError::ImageTooLarge { count: 6, limit: 5, .. }), "{error}");
         let limits = Limits { texels_in_all: 10, ..Limits::default() };
         assert!(decode(&png(3, 2), "a", Path::new("m.obj"), &limits, &mut 4).is_ok());
         let error = decode(&png(3, 2), "a", Path::new("m.obj"), &limits, &mut 5).unwrap_err();
-        assert!(matches!(error, LoadError::TooLarge { count: 11, limit: 10, .. }), "{error}");
+        assert!(matches!(error, LoadError::ImageTooLarge { count: 11, limit: 10, .. }), "{error}");
     }
 
     #[test]

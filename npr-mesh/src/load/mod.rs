@@ -3,12 +3,15 @@
 //! A loader parses a file with the crate of its format, checks everything that is used afterwards (indices, lengths,
 //! finite numbers, [`Limits`]), and then converts it.
 
+// Files of the other formats refer to no files.
+#[cfg_attr(not(any(feature = "obj", feature = "gltf")), allow(dead_code))]
 mod external;
 mod far;
 mod file;
 mod format;
 #[cfg(feature = "gltf")]
 mod gltf;
+#[cfg(any(feature = "obj", feature = "gltf"))]
 mod image_file;
 mod loaded;
 #[cfg(feature = "obj")]

@@ -142,8 +142,8 @@ impl Solids<'_> {
         let mut corners = Vec::with_capacity(3);
         let mut in_facet = false;
         let mut facets = 0u64;
-        let mut line = 1u64;
-        for text in bytes.split(|byte| *byte == b'\n' || *byte == b'\r') {
+        let line_end = if bytes.contains(&b'\n') { b'\n' } else { b'\r' };
+        for (line, text) in (1u64..).zip(bytes.split(|byte| *byte == line_end)) {
             let bad = |fault: &str| format!("line {line}: {fault}");
             let mut words = words(text);
             let mut next = words.next();
@@ -188,7 +188,6 @@ impl Solids<'_> {
                 }
                 next = words.next();
             }
-            line += 1;
         }
         if in_facet {
             return Err(self.malformed("cut off within a facet".to_owned()));

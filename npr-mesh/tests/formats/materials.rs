@@ -4,7 +4,7 @@ use crate::folder::Folder;
 use crate::{load_with, warnings};
 use glam::Vec2;
 use image::{DynamicImage, GrayImage, ImageFormat, Luma, Rgb, RgbImage, Rgba, RgbaImage};
-use npr_mesh::{AlphaMode, LoadOptions, Loaded, Model, Wrap, load};
+use npr_mesh::{AlphaMode, Limits, LoadOptions, Loaded, Model, Wrap, load};
 use std::fs;
 use std::io::Cursor;
 
@@ -229,4 +229,31 @@ fn another_case_leads_nowhere_outside() {
             warnings(&loaded)
         );
     }
+}
+
+#[test]
+fn an_image_that_is_too_large_is_named_with_its_model() {
+    let folder = Folder::new();
+    folder.write("wall.png", png(four()));
+    folder.write("m.mtl", "newmtl a\nmap_Kd wall.png\n");
+    let model = folder.write("room.obj", format!("{SQUARE}usemtl a\nf 1/1 2/2 3/3\n"));
+    let options = LoadOptions { limits: Limits { texels: 3, ..Limits::default() }, ..LoadOptions::default() };
+    let error = load(&model, &options).unwrap_err().to_string();
+    assert!(error.contains("room.obj: image wall.png: 4 texels in an image, more than the limit of 3"), "{error}");
+}
+
+#[test]
+fn joined_images_of_unlike_shapes_are_within_the_limits() {
+    let wide = png(RgbImage::from_pixel(3000, 1, Rgb([255, 0, 0])));
+    let tall = png(GrayImage::from_pixel(1, 3000, Luma([128])));
+    let files = [("t.png", wide), ("d.png", tall)];
+    let obj = format!("{SQUARE}usemtl a\nf 1/1 2/2 3/3 4/4\n");
+    let all = |mtl: &str| [&files[..], &[("m.mtl", format!("newmtl a\n{mtl}\n").into())]].concat();
+    let resolver = |name: &str| {
+        let found = all("map_Kd t.png\nmap_d d.png").into_iter().find(|(known, _)| *known == name);
+        found.map(|(_, bytes)| bytes).ok_or_else(|| std::io::ErrorKind::NotFound.into())
+    };
+    let options = LoadOptions { limits: Limits { texels: 1 << 20, ..Limits::default() }, ..LoadOptions::default() };
+    let error = npr_mesh::load_bytes("m.obj", obj.into(), &resolver, &options).unwrap_err();
+    assert!(error.to_string().contains("9000000 texels in an image"), "{error}");
 }

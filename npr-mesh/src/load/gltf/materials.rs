@@ -176,7 +176,7 @@ impl Materials {
             }
             None => match decode(document, image, &mut self.texels) {
                 Ok(texture) => Texture { wrap, smooth, ..texture },
-                Err(error @ LoadError::TooLarge { .. }) => return Err(error),
+                Err(error @ (LoadError::TooLarge { .. } | LoadError::ImageTooLarge { .. })) => return Err(error),
                 Err(error) => {
                     let why = match error {
                         // Warnings do not contain the name of the model.

@@ -99,7 +99,8 @@ impl Loader<'_, '_> {
                 }
                 let size = joined.size(&color, &image);
                 let texels = u64::from(size.0) * u64::from(size.1);
-                image_file::check_texels(texels, &mut self.texels, self.external.model, self.external.limits)?;
+                let External { model, limits, .. } = self.external;
+                image_file::check_texels(texels, &shortened(&color_name), &mut self.texels, model, limits)?;
                 let values = alpha_of(&image);
                 let mode = mode_of(&values);
                 let both = joined.image(&color, &Decoded { rgba8: values, ..image }, size);
@@ -121,6 +122,10 @@ impl Loader<'_, '_> {
         match found.and_then(|file| read_image(&file, &mut self.texels, self.external)) {
             Ok(image) => return Ok(Some(image)),
             Err(error @ LoadError::TooLarge { .. }) => return Err(error),
+            Err(LoadError::ImageTooLarge { image, what, count, limit, .. }) => {
+                let path = self.external.model.to_owned();
+                return Err(LoadError::ImageTooLarge { path, image, what, count, limit });
+            }
             Err(LoadError::Outside { .. }) => {
                 self.warnings.push(format!("texture \"{}\" leads out of the model's folder", map.written));
             }
