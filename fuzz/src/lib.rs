@@ -96,7 +96,7 @@ fn model(bytes: &[u8], ending: &str) {
 /// Checks what was loaded from some bytes, and draws it.
 fn check(loaded: Loaded, bytes: &[u8]) {
     loaded.meshes.iter().for_each(sound);
-    let (local, origin) = loaded.clone().into_local_model();
+    let (local, origin) = loaded.clone().into_model_near();
     assert!(origin.is_finite() && local.positions.iter().all(|position| position.is_finite()), "the local model");
     assert!(
         !loaded.objects.is_empty() && loaded.objects.iter().all(|object| object.mesh < loaded.meshes.len()),
@@ -137,7 +137,10 @@ fn sound(model: &Model) {
     assert!(model.face_polygon.is_sorted(), "polygons");
     for material in &model.materials {
         assert!(material.base_color.is_finite(), "a material's colour");
-        assert!(material.texture.is_none_or(|number| (number as usize) < model.textures.len()), "a texture");
+        assert!(material.emissive.is_finite() && material.emissive.min_element() >= 0.0, "a material's emission");
+        for texture in [material.texture, material.emissive_texture].into_iter().flatten() {
+            assert!((texture as usize) < model.textures.len(), "a texture");
+        }
     }
     for texture in &model.textures {
         let texels = texture.width as usize * texture.height as usize;

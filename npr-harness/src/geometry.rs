@@ -1,10 +1,12 @@
 //! The vertices, faces and materials of a scene as an adapter gets them: which attributes of a vertex a plan reads, which
 //! vertices are copied, which faces are drawn together.
 
+use crate::color::encode_rgb;
 use crate::hatch::HatchMapping;
-use crate::plan::{PaintPlan, Plan};
+use crate::plan::{Emission, PaintPlan, Plan};
 use crate::scene::{Mesh, Object, Scene};
 use crate::texel_format::level_count;
+use glam::Vec3;
 use npr_mesh::{AlphaMode, Model};
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
@@ -200,10 +202,13 @@ pub(crate) fn index_count(scene: &Scene, splits: &[Option<Split>], duplicates: &
 }
 
 /// Whether a material's colour varies over a face or its alpha is tested.
-pub(crate) fn is_looked_up(scene: &Scene, material: usize) -> bool {
+pub(crate) fn is_looked_up(scene: &Scene, plan: &Plan, material: usize) -> bool {
     let m = &scene.materials()[material];
     let colored = || scene.meshes().iter().any(|mesh| !mesh.model().colors.is_empty());
-    m.texture.is_some() || matches!(m.alpha_mode, AlphaMode::Mask { .. }) || colored()
+    m.texture.is_some()
+        || matches!(m.alpha_mode, AlphaMode::Mask { .. })
+        || plan.emission(m) == Emission::Textured
+        || colored()
 }
 
 /// `SurfaceMaterial` of `surface.wgsl`.
@@ -215,15 +220,19 @@ pub(crate) struct MaterialUniform {
     pub(crate) last_level: f32,
     pub(crate) cutoff: f32,
     pub(crate) wrap: [u32; 2],
-    pub(crate) padding: [u32; 2],
+    pub(crate) emissive_size: [f32; 2],
+    pub(crate) emissive: [f32; 4],
 }
 
 /// The materials of a scene as a device gets them.
 pub(crate) struct MaterialTable {
     /// Per material: the first material with the same appearance.
     pub(crate) duplicates: Vec<usize>,
-    /// Per material: the number of its texture among those that are read, or the number of these if it reads none; and its
-    /// offset in the uniform buffer, bytes.
+    /// The pairs of textures that are bound together, of the colour and of the emission: their numbers among those that are
+    /// read, or the number of these where there is none.
+    #[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "a device alone reads it"))]
+    pub(crate) pairs: Vec<[usize; 2]>,
+    /// Per material: the index of its pair of textures, and its offset in the uniform buffer, bytes.
     #[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "a device alone reads it"))]
     pub(crate) places: Vec<(usize, u32)>,
     /// The uniforms of all distinct materials, at multiples of a stride; those of one where there are none.
@@ -237,6 +246,9 @@ pub(crate) fn material_table(scene: &Scene, plan: &Plan, stride: usize) -> Mater
     let mut next = 0..read;
     let mut group = |used: &bool| if *used { next.next() } else { None }.unwrap_or(read);
     let groups: Vec<usize> = plan.textures.iter().map(&mut group).collect();
+    // Those without an emissive texture come first, in the order of the textures.
+    let mut pairs: Vec<[usize; 2]> = (0..=read).map(|texture| [texture, read]).collect();
+    let mut pair_of: HashMap<[usize; 2], usize> = pairs.iter().copied().zip(0..).collect();
     let mut uniforms: Vec<u8> = Vec::new();
     let mut first: HashMap<_, usize> = HashMap::new();
     let (mut duplicates, mut places) = (Vec::new(), Vec::new());
@@ -247,7 +259,18 @@ pub(crate) fn material_table(scene: &Scene, plan: &Plan, stride: usize) -> Mater
             (texture.width, texture.height)
         });
         let cutoff = if let AlphaMode::Mask { cutoff } = material.alpha_mode { cutoff } else { f32::MIN };
-        let base_color = if is_looked_up(scene, number) {
+        let emission = plan.emission(material);
+        let emissive_texture = material.emissive_texture.filter(|_| emission == Emission::Textured);
+        let emissive_size = emissive_texture.map_or((1, 1), |texture| {
+            let texture = &scene.textures()[texture as usize];
+            (texture.width, texture.height)
+        });
+        let emissive = match emission {
+            Emission::None => Vec3::ZERO,
+            Emission::Constant => encode_rgb(material.emissive.as_dvec3()).as_vec3(),
+            Emission::Textured => material.emissive,
+        };
+        let base_color = if is_looked_up(scene, plan, number) {
             material.base_color
         } else {
             scene.material_colors[number].as_vec3().extend(material.base_color.w)
@@ -258,7 +281,8 @@ pub(crate) fn material_table(scene: &Scene, plan: &Plan, stride: usize) -> Mater
             last_level: (level_count((width, height)) - 1) as f32,
             cutoff,
             wrap: material.texture.map_or([0; 2], |t| scene.textures()[t as usize].wrap.map(|wrap| wrap as u32)),
-            padding: [0; 2],
+            emissive_size: [emissive_size.0 as f32, emissive_size.1 as f32],
+            emissive: emissive.extend((level_count(emissive_size) - 1) as f32).to_array(),
         };
         let bytes: [u8; size_of::<MaterialUniform>()] = bytemuck::cast(uniform);
         // Further properties on which the pipeline of a draw depends.
@@ -269,13 +293,20 @@ pub(crate) fn material_table(scene: &Scene, plan: &Plan, stride: usize) -> Mater
             && plan.image.is_none()
             && !is_blended
             && !matches!(material.alpha_mode, AlphaMode::Mask { .. });
-        let (seen, read_texture) = if is_hidden { (None, None) } else { (Some(bytes), material.texture) };
-        let looked_up = !is_hidden && is_looked_up(scene, number);
-        let key = (seen, read_texture, material.double_sided, looked_up, is_blended, line_kind);
+        let read_textures = [material.texture, emissive_texture];
+        let (seen, read_textures) = if is_hidden { (None, [None; 2]) } else { (Some(bytes), read_textures) };
+        let looked_up = !is_hidden && is_looked_up(scene, plan, number);
+        let key = (seen, read_textures, emission, material.double_sided, looked_up, is_blended, line_kind);
         let same = *first.entry(key).or_insert(number);
         duplicates.push(same);
         if same == number {
-            places.push((texture.map_or(read, |texture| groups[texture]), uniforms.len() as u32));
+            let group = |texture: Option<usize>| texture.map_or(read, |texture| groups[texture]);
+            let pair = [group(texture), group(emissive_texture.map(|texture| texture as usize))];
+            let pair = *pair_of.entry(pair).or_insert_with(|| {
+                pairs.push(pair);
+                pairs.len() - 1
+            });
+            places.push((pair, uniforms.len() as u32));
             uniforms.extend(bytes);
             uniforms.resize(uniforms.len().next_multiple_of(stride), 0);
         } else {
@@ -285,5 +316,5 @@ pub(crate) fn material_table(scene: &Scene, plan: &Plan, stride: usize) -> Mater
     if uniforms.is_empty() {
         uniforms.resize(stride, 0);
     }
-    MaterialTable { duplicates, places, uniforms }
+    MaterialTable { duplicates, pairs, places, uniforms }
 }

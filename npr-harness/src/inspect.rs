@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 use npr_mesh::{
-    Model, Warning,
+    Loaded, Model, Warning,
     edges::{self, EdgeKind, EdgeOptions, Edges},
 };
 use std::{collections::HashMap, fmt, ops::Range};
@@ -53,7 +53,8 @@ pub struct Inspection {
     pub closed: bool,
     /// Two-face edges whose faces have opposite winding.
     pub wound_oppositely: usize,
-    /// The size of the bounding box of all faces, per axis; zeros without faces.
+    /// The size of the bounding box of all faces, per axis; zeros without faces. In f64, since the size may exceed f32 and
+    /// positions may be far from 0; with as many decimal digits as the f32 numbers of the model have.
     pub extent: [f64; 3],
     /// The box's lower corner.
     pub min: [f64; 3],
@@ -75,12 +76,15 @@ pub fn inspect(name: &str, model: &Model, warnings: Vec<Warning>) -> Inspection 
     inspect_at(name, model, DVec3::ZERO, warnings)
 }
 
-/// Computes the statistics of a model whose positions are relative to an origin
-/// ([`npr_mesh::Loaded::into_local_model`]), as [`inspect`]. The box is where the origin is added.
-///
-/// # Panics
-/// If a face refers to a vertex that does not exist, or a per-face array does not have the length stated in [`Model`].
-pub fn inspect_at(name: &str, model: &Model, origin: DVec3, warnings: Vec<Warning>) -> Inspection {
+/// Computes the statistics of a file: as [`inspect`] of all its objects in one model.
+pub fn inspect_loaded(name: &str, loaded: Loaded) -> Inspection {
+    let (meshes, objects, warnings) = (loaded.meshes.len(), loaded.objects.len(), loaded.warnings.clone());
+    let (model, origin) = loaded.into_model_near();
+    Inspection { meshes, objects, ..inspect_at(name, &model, origin, warnings) }
+}
+
+/// [`inspect`] of a model whose positions are relative to an origin.
+fn inspect_at(name: &str, model: &Model, origin: DVec3, warnings: Vec<Warning>) -> Inspection {
     let options = EdgeOptions { skip_redundant: false, ..EdgeOptions::default() };
     let found = edges::find(&model.positions, &model.faces, &model.face_polygon, &model.face_material, &options);
     let of_kind = |kind| found.edges.iter().filter(|edge| edge.kind() == kind).count();

@@ -75,6 +75,28 @@ pub struct PaintPlan {
     pub hatch: Option<HatchPlan>,
 }
 
+/// The source of what a material emits.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub(crate) enum Emission {
+    /// It emits nothing.
+    #[default]
+    None,
+    /// Its colour.
+    Constant,
+    /// Its colour times a texture.
+    Textured,
+}
+
+impl Emission {
+    fn of(material: &npr_mesh::Material) -> Self {
+        match material.emissive_texture {
+            _ if material.emissive == Vec3::ZERO => Self::None,
+            None => Self::Constant,
+            Some(_) => Self::Textured,
+        }
+    }
+}
+
 /// The passes of a picture, decided once for both executors.
 #[derive(Clone, Debug)]
 pub struct Plan {
@@ -90,6 +112,9 @@ pub struct Plan {
     pub looks_up: bool,
     /// Per texture of the scene: whether it is read.
     pub textures: Vec<bool>,
+    /// Whether the emission of materials is part of the picture: a material has some, and the surfaces' own colours are
+    /// shown.
+    pub emits: bool,
     /// Whether any material is alpha-tested.
     pub cut_out: bool,
     /// Whether normals are used untransformed, [`Style::mesh_normals`].
@@ -157,9 +182,11 @@ impl Plan {
         let colored = || scene.meshes().iter().any(|mesh| !mesh.model().colors.is_empty());
         let shows_colors = paint.as_ref().is_some_and(PaintPlan::shows_surface_color);
         let blended = paint.is_some() && scene.has_blend();
-        let textured = (shows_colors || blended) && (used(&|m| m.texture.is_some()) || colored());
+        let emits = shows_colors && used(&|m| m.emissive != Vec3::ZERO);
+        let textured = (shows_colors || blended) && (used(&|m| m.texture.is_some()) || colored())
+            || emits && used(&|m| Emission::of(m) == Emission::Textured);
         let says_lines = |image: &ImagePlan| image.line_kinds.iter().any(|&kind| kind != InnerLines::Normals);
-        let textures = textures(scene, shows_colors, blended, image.as_ref());
+        let textures = textures(scene, shows_colors, emits, blended, image.as_ref());
         let beside_picture = image.as_ref().is_some_and(|image| !image.own_surfaces);
         let mut plan = Self {
             view,
@@ -171,6 +198,7 @@ impl Plan {
                 || beside_picture,
             looks_up: textured || cut_out || image.as_ref().is_some_and(says_lines),
             textures,
+            emits,
             cut_out,
             mesh_normals: style.mesh_normals,
             blended,
@@ -300,6 +328,11 @@ impl Plan {
         self.image.as_ref().map(|image| &image.regions)
     }
 
+    /// What a material adds to the shaded colour of its surfaces.
+    pub(crate) fn emission(&self, material: &npr_mesh::Material) -> Emission {
+        if self.emits { Emission::of(material) } else { Emission::None }
+    }
+
     /// The data for strokes, if surfaces are hatched.
     pub fn hatch(&self) -> Option<&HatchPlan> {
         self.paint.as_ref().and_then(|paint| paint.hatch.as_ref())
@@ -378,9 +411,9 @@ impl PaintPlan {
     }
 }
 
-/// Per texture of a scene: whether a picture depends on it. It does by a colour that is shown, by alpha, or by lines that
-/// an artist drew.
-fn textures(scene: &Scene, shows_colors: bool, blended: bool, image: Option<&ImagePlan>) -> Vec<bool> {
+/// Per texture of a scene: whether a picture depends on it. It does by a colour that is shown or emitted, by alpha, or by
+/// lines that an artist drew.
+fn textures(scene: &Scene, shows_colors: bool, emits: bool, blended: bool, image: Option<&ImagePlan>) -> Vec<bool> {
     let mut used = vec![false; scene.textures().len()];
     for (number, material) in scene.materials().iter().enumerate() {
         let Some(texture) = material.texture else { continue };
@@ -389,6 +422,11 @@ fn textures(scene: &Scene, shows_colors: bool, blended: bool, image: Option<&Ima
             || matches!(material.alpha_mode, AlphaMode::Mask { .. })
             || blended && material.alpha_mode == AlphaMode::Blend
             || matches!(line_kind, Some(InnerLines::Texture | InnerLines::Regions));
+    }
+    if emits {
+        for material in scene.materials().iter().filter(|material| Emission::of(material) == Emission::Textured) {
+            material.emissive_texture.into_iter().for_each(|texture| used[texture as usize] = true);
+        }
     }
     used
 }

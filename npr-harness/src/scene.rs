@@ -171,8 +171,7 @@ impl Scene {
         self.first_materials.push(self.materials.len());
         let textures: Vec<u32> = mesh.model().textures.iter().map(|texture| self.texture_number(texture)).collect();
         for material in &mesh.model().materials {
-            let texture = material.texture.map(|texture| textures[texture as usize]);
-            self.add_material(Material { texture, ..material.clone() });
+            self.add_material(material.with_textures(|texture| textures[texture as usize]));
         }
     }
 
@@ -234,7 +233,7 @@ impl Scene {
         Ok(())
     }
 
-    /// Overrides the material of all faces of an object. Its texture, if any, must be one of [`Scene::textures`].
+    /// Overrides the material of all faces of an object. Its textures, if any, must be some of [`Scene::textures`].
     ///
     /// # Errors
     /// [`HarnessError::ObjectMaterial`] if the alpha mode differs from that of the mesh's materials, or if there is no
@@ -245,8 +244,9 @@ impl Scene {
     pub fn set_material(&mut self, object: usize, material: Material) -> Result<(), HarnessError> {
         let of_mesh = &self.meshes[self.objects[object].mesh].model().materials;
         let kind = |material: &Material| std::mem::discriminant(&material.alpha_mode);
-        let has_texture = material.texture.is_none_or(|texture| (texture as usize) < self.textures.len());
-        if !has_texture || of_mesh.iter().any(|other| kind(other) != kind(&material)) {
+        let is_there = |texture: u32| (texture as usize) < self.textures.len();
+        let has_textures = [material.texture, material.emissive_texture].into_iter().flatten().all(is_there);
+        if !has_textures || of_mesh.iter().any(|other| kind(other) != kind(&material)) {
             return Err(HarnessError::ObjectMaterial { object, material: material.name });
         }
         self.materials_version += 1;

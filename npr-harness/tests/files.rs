@@ -9,7 +9,7 @@ use image::{DynamicImage, GrayImage, ImageFormat, Luma, Rgb, RgbImage};
 use npr_harness::camera::{Camera, Framing};
 use npr_harness::compare::compare;
 use npr_harness::executor::{Backend, Executor};
-use npr_harness::inspect::inspect_at;
+use npr_harness::inspect::inspect_loaded;
 use npr_harness::picture::Image;
 use npr_harness::scene::Scene;
 use npr_harness::shade::Shade;
@@ -237,16 +237,15 @@ fn statistics_of_what_is_far_are_exact() {
         obj += &format!("v 8388608.{} {} 8388608.{}\n", at(0), corner >> 1 & 1, at(2));
     }
     obj += "f 5 6 8 7\nf 2 4 8 6\nf 1 3 4 2\nf 1 5 7 3\nf 3 7 8 4\nf 1 2 6 5\n";
-    let (model, origin) = loaded("m.obj", &obj, &[]).into_local_model();
-    let inspection = inspect_at("m", &model, origin, Vec::new());
+    let inspection = inspect_loaded("m", loaded("m.obj", &obj, &[]));
     assert_eq!(inspection.extent, [0.6, 1.0, 0.6]);
     assert_eq!((inspection.min, inspection.max), ([8388608.2, 0.0, 8388608.2], [8388608.8, 1.0, 8388608.8]));
     assert!(inspection.closed && inspection.zero_area_faces == 0 && inspection.positions == 8);
     let utm = "v 500000.0 5400000.0 0\nv 500000.3 5400000.0 0\nv 500000.0 5400000.2 0\nf 1 2 3\n";
-    let (model, origin) = loaded("m.obj", utm, &[]).into_local_model();
-    let inspection = inspect_at("m", &model, origin, Vec::new());
+    let inspection = inspect_loaded("m", loaded("m.obj", utm, &[]));
     assert_eq!((inspection.extent, inspection.zero_area_faces), ([0.3, 0.2, 0.0], 0));
     assert_eq!(inspection.min, [500_000.0, 5_400_000.0, 0.0]);
+    let (model, _) = loaded("m.obj", utm, &[]).into_model_near();
     let [a, b, c] = model.faces[0].map(|vertex| model.positions[vertex as usize]);
     assert!(((b - a).cross(c - a).length() / 2.0 - 0.03).abs() < 1e-6, "its area");
 }
@@ -254,8 +253,7 @@ fn statistics_of_what_is_far_are_exact() {
 #[test]
 fn extents_beyond_f32_are_numbers() {
     let obj = "v -3e38 0 0\nv 3e38 0 0\nv 0 3e38 -1e-3\nf 1 2 3\n";
-    let (model, origin) = loaded("m.obj", obj, &[]).into_local_model();
-    let inspection = inspect_at("m", &model, origin, Vec::new());
+    let inspection = inspect_loaded("m", loaded("m.obj", obj, &[]));
     assert_eq!((inspection.extent[0], inspection.max[1]), (6e38, 3e38));
     let json = serde_json::to_string(&inspection).expect("plain numbers");
     assert!(!json.contains("null"), "{json}");

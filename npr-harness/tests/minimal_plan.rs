@@ -336,6 +336,14 @@ fn textured() -> Scene {
     Scene::new(model)
 }
 
+/// The card, whose texture is that of what it emits.
+fn emitting(emissive: Vec3) -> Scene {
+    let mut model = cards(1, 1.0, |_| Material { emissive, ..plain(glam::Vec4::ONE, AlphaMode::Opaque, true) });
+    model.textures = vec![waves(16, 8, [npr_mesh::Wrap::Repeat; 2], true)];
+    model.materials[0].emissive_texture = Some(0);
+    Scene::new(model)
+}
+
 /// A solid with two materials.
 fn of_two_materials() -> Scene {
     let mut model = embedded::cube();
@@ -472,6 +480,18 @@ fn each_resource_goes_when_the_need_for_it_goes() {
             vec!["waves", "texture coordinates"],
             (textured(), toon(hard())),
             (textured(), toon(Bands { absolute: true, ..hard() })),
+        ),
+        (
+            "a texture of what is emitted",
+            vec!["waves", "texture coordinates"],
+            (emitting(Vec3::ONE), toon(hard())),
+            (emitting(Vec3::ZERO), toon(hard())),
+        ),
+        (
+            "an emission that is shown",
+            vec!["waves", "texture coordinates"],
+            (emitting(Vec3::ONE), toon(hard())),
+            (emitting(Vec3::ONE), toon(Bands { absolute: true, ..hard() })),
         ),
         (
             "colours at vertices that are shown",

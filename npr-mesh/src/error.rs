@@ -44,6 +44,14 @@ pub enum LoadError {
         /// The first warning, if there is any.
         why: Option<String>,
     },
+    /// The file has meshes, but no node of its scene places one.
+    #[error("{}: no node of the scene places any of its {meshes} meshes", path.display())]
+    NotPlaced {
+        /// The file.
+        path: PathBuf,
+        /// The number of its meshes.
+        meshes: usize,
+    },
     /// The file requires an extension or another feature that is not supported.
     #[error("{}: needs {feature}, which is not supported", path.display())]
     Unsupported {

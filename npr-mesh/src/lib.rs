@@ -32,6 +32,9 @@
 //!   mesh inside out: [`Model::transformed`] reverses the faces.
 //! - There is a rule for non-manifold edges, opposite windings, faces of zero area and duplicate faces, see
 //!   [`edges`]. None of them removes a line that should be visible.
+//! - Transforms of nodes, instances and joints are composed in f64. [`Object::world_from_mesh`] keeps them, so that a city
+//!   at large coordinates has the digits of the file; `Loaded::into_model_near` subtracts its origin before it narrows
+//!   them to f32.
 //! - Files are not trusted: indices, lengths, types and numbers are checked before use, and sizes are checked against
 //!   [`Limits`] before memory is allocated. A violation is a [`LoadError`] that names the file, the element and the
 //!   fault. Repaired or skipped elements are reported as warnings.
@@ -45,8 +48,9 @@
 //!
 //! # Colours
 //!
-//! Material colours and vertex colours are linear, textures are sRGB-encoded bytes. They are multiplied in linear
-//! light and encoded once. OBJ and PLY files have sRGB-encoded colours, which are converted.
+//! Material colours, vertex colours and emission are linear, textures are sRGB-encoded bytes. They are multiplied in
+//! linear light and encoded once. What a surface emits is added to its shaded colour after that: display-referred, and
+//! unchanged by light and shadow. OBJ and PLY files have sRGB-encoded colours, which are converted.
 //!
 //! # Sources
 //!

@@ -51,6 +51,12 @@ pub struct Material {
     pub base_color: Vec4,
     /// Index into [`Model::textures`].
     pub texture: Option<u32>,
+    /// The colour that the surface emits: linear RGB, at least 0, and above 1 for strong lights. It is multiplied with
+    /// the emissive texture in linear light. Neither light nor shadow changes it; other surfaces are not lit by it.
+    pub emissive: Vec3,
+    /// Index into [`Model::textures`] of the texture of [`Material::emissive`], whose alpha has no meaning. It has the
+    /// same texture coordinates as [`Material::texture`].
+    pub emissive_texture: Option<u32>,
     /// The meaning of the alpha of the product.
     pub alpha_mode: AlphaMode,
     /// Whether back faces are shaded, with the normal negated, or culled.
@@ -63,9 +69,20 @@ impl Default for Material {
             name: String::new(),
             base_color: Vec4::new(0.8, 0.8, 0.8, 1.0),
             texture: None,
+            emissive: Vec3::ZERO,
+            emissive_texture: None,
             alpha_mode: AlphaMode::Opaque,
             double_sided: true,
         }
+    }
+}
+
+impl Material {
+    /// The material with other indices of its textures.
+    #[must_use]
+    pub fn with_textures(&self, mut number: impl FnMut(u32) -> u32) -> Self {
+        let [texture, emissive_texture] = [self.texture, self.emissive_texture].map(|of| of.map(&mut number));
+        Self { texture, emissive_texture, ..self.clone() }
     }
 }
 
@@ -149,9 +166,7 @@ impl Model {
         }
         self.append_geometry(other);
         self.face_material.extend(other.face_material.iter().map(|m| m + first_material));
-        self.materials.extend(
-            other.materials.iter().map(|m| Material { texture: m.texture.map(|t| t + first_texture), ..m.clone() }),
-        );
+        self.materials.extend(other.materials.iter().map(|m| m.with_textures(|t| t + first_texture)));
         self.textures.extend_from_slice(&other.textures);
         if has_materials && other.face_material.is_empty() && !other.faces.is_empty() {
             self.face_material.resize(self.faces.len(), self.materials.len() as u32);

@@ -245,13 +245,12 @@ fn two_nodes_place_one_mesh() {
     assert_eq!((loaded.meshes.len(), loaded.objects.len()), (1, 2));
     // In its own space, and the transforms are more precise than f32: depth first, so node 2 is before node 1.
     assert_corners(&loaded.meshes[0], &[TRIANGLE]);
-    let x = f64::from(0.1f32);
     let [first, second] = &loaded.objects[..] else { unreachable!() };
     assert_eq!((first.mesh, first.name.as_str()), (0, "mesh 0"));
-    assert_eq!(first.world_from_mesh, DAffine3::from_translation(dvec3(1e7 - x, 0., 0.)));
+    assert_eq!(first.world_from_mesh, DAffine3::from_translation(dvec3(1e7 - 0.1, 0., 0.)));
     assert_eq!((second.mesh, second.name.as_str()), (0, "right"));
     let scale = DAffine3::from_scale(DVec3::splat(2.));
-    assert_eq!(second.world_from_mesh, DAffine3::from_translation(dvec3(1e7 + x, 0., 0.)) * scale);
+    assert_eq!(second.world_from_mesh, DAffine3::from_translation(dvec3(1e7 + 0.1, 0., 0.)) * scale);
 }
 
 #[test]
@@ -622,7 +621,6 @@ fn an_image_that_is_not_there_is_a_warning() {
         r#"{"uri":"missing.png"}"#.to_owned(),
         r#"{"uri":"../secret.png"}"#.to_owned(),
         format!(r#"{{"bufferView":{garbage}}}"#),
-        r#"{"bufferView":77}"#.to_owned(),
         "{}".to_owned(),
     ] {
         let rest = format!(
@@ -692,12 +690,12 @@ fn broken_scenes() {
         (r#""nodes":[{"mesh":0},{"children":[2]},{"children":[1]}]"#, "is its own ancestor"),
         (r#""nodes":[{"mesh":0,"children":[0]}],"scenes":[{"nodes":[0]}]"#, "node 0 is its own ancestor"),
         (r#""nodes":[{"mesh":0},{"children":[0]},{"children":[0]}]"#, "node 0 is a child of node 1 and of node 2"),
-        (r#""nodes":[{"mesh":0,"children":[7]}]"#, "node 0: its child 7 does not exist"),
-        (r#""nodes":[{"mesh":0}],"scenes":[{"nodes":[3]}]"#, "the scene's node 3 does not exist"),
+        (r#""nodes":[{"mesh":0,"children":[7]}]"#, "node 0: children: node 7 does not exist"),
+        (r#""nodes":[{"mesh":0}],"scenes":[{"nodes":[3]}]"#, "scene 0: nodes: node 3 does not exist"),
         (r#""nodes":[{"mesh":0}],"scene":4"#, "scene 4 does not exist"),
-        (r#""nodes":[{"mesh":1}]"#, "node 0: its mesh 1 does not exist"),
-        (r#""nodes":[{"mesh":0,"skin":1}]"#, "node 0: skin 1 does not exist"),
-        (r#""nodes":[{"mesh":0,"skin":0}],"skins":[{"joints":[9]}]"#, "skin 0: its joint 9 does not exist"),
+        (r#""nodes":[{"mesh":1}]"#, "node 0: mesh: mesh 1 does not exist"),
+        (r#""nodes":[{"mesh":0,"skin":1}]"#, "node 0: skin: skin 1 does not exist"),
+        (r#""nodes":[{"mesh":0,"skin":0}],"skins":[{"joints":[9]}]"#, "skin 0: joints: node 9 does not exist"),
         (r#""nodes":[{"mesh":0,"skin":0}],"skins":[{"joints":[0]}]"#, "neither JOINTS_0 nor WEIGHTS_0"),
         (r#""nodes":[{"mesh":0,"rotation":[0,0,0,0]}]"#, "node 0: its rotation has no length"),
         (r#""nodes":[{"mesh":0,"scale":[1e38,1,1e38],"translation":[1e39,0,0]}]"#, "vertex 0 is not finite"),
@@ -719,7 +717,7 @@ fn broken_accessors() {
     let many = doc.accessor(r#"{"componentType":5125,"type":"SCALAR","count":4000000000}"#.into());
     let long = doc.accessor(float(r#""bufferView":0,"count":4"#));
     let late = doc.accessor(float(r#""bufferView":0,"byteOffset":18446744073709551615,"count":3"#));
-    let nowhere = doc.accessor(float(r#""bufferView":99,"count":3"#));
+    doc.accessor(float(r#""bufferView":0,"count":3"#));
     let outside = doc.accessor(float(r#""bufferView":2,"count":3"#));
     doc.views.push(r#"{"buffer":0,"byteOffset":40,"byteLength":36000}"#.into());
     let scalar = doc.floats("SCALAR", 1, &[0.; 3]);
@@ -734,7 +732,6 @@ fn broken_accessors() {
         (position(zeros), "4000000000 vertices, more than the limit of 100000000"),
         (position(long), "mesh 0 primitive 0: POSITION: accessor 5: 4 elements of 12 bytes every 12 bytes from byte 0"),
         (position(late), "reach beyond buffer view 0, which has 36 bytes"),
-        (position(nowhere), "buffer view 99 does not exist"),
         (position(outside), "buffer view 2: 36000 bytes from byte 40 reach beyond buffer 0"),
         (position(12345), "mesh 0 primitive 0: POSITION: accessor 12345 does not exist"),
         (position(scalar), "1 numbers in an element, expected 3"),
@@ -744,7 +741,7 @@ fn broken_accessors() {
         (format!(r#"{},"indices":0"#, position(0)), "indices: accessor 0: floats are not allowed here"),
         (format!(r#""attributes":{{"POSITION":0,"NORMAL":{four}}}"#), "NORMAL: accessor 10: 4 elements for 3 vertices"),
         (format!(r#"{},"mode":5"#, position(nan)), "mesh 0 primitive 0: the position of vertex 1 is not finite"),
-        (format!(r#"{},"material":5"#, position(0)), "material 5: does not exist"),
+        (format!(r#"{},"material":5"#, position(0)), "mesh 0 primitive 0: material: material 5 does not exist"),
         (format!(r#"{},"mode":9"#, position(0)), "unknown mode"),
     ] {
         assert_fault(doc.mesh(&primitive, "", ""), fault);
@@ -781,7 +778,7 @@ fn broken_files() {
         }
     }
     assert_fault(load_bytes("m.gltf", json.as_bytes()), "buffer view 0: buffer 0: no URI and no binary chunk");
-    assert_fault(load_bytes("m.gltf", b"{}"), "not glTF 2.0: missing field `asset`");
+    assert_fault(load_bytes("m.gltf", b"{}"), "not glTF 2.0: it states no version");
     assert_fault(load_bytes("m.gltf", b""), "not glTF 2.0");
     assert_fault(load_bytes("m.gltf", &[0x93; 1000]), "not glTF 2.0");
     assert_fault(load_bytes("m.gltf", &b"[".repeat(100_000)), "not glTF 2.0");

@@ -196,6 +196,23 @@ fn materials_colours_alpha_and_textures() {
 }
 
 #[test]
+fn emission_is_encoded_like_the_colour() {
+    let folder = Folder::new();
+    folder.write(
+        "m.mtl",
+        "newmtl one\nKe 1 0.5 0\nnewmtl two\nKe 2\nnewmtl three\nKe a b c\nnewmtl four\nmap_Ke a.png\nKe 1 1 1\n",
+    );
+    let faces = ["one", "two", "three", "four"].map(|name| format!("usemtl {name}\nf 1 2 3\n")).concat();
+    let path = folder.write("m.obj", format!("mtllib m.mtl\n{TRIANGLE}{faces}"));
+    let loaded = load(&path, &LoadOptions::default()).unwrap();
+    let emissive: Vec<Vec3> = loaded.meshes[0].materials.iter().map(|m| m.emissive).collect();
+    assert_eq!(emissive, [Vec3::new(1.0, 0.214_041_14, 0.0), Vec3::ONE, Vec3::ZERO, Vec3::ZERO]);
+    for part in ["material \"three\": Ke \"a b c\" is not understood", "material \"four\": map_Ke is not supported"] {
+        assert!(loaded.warnings.iter().any(|w| w.text.starts_with(part)), "{part} in {:?}", loaded.warnings);
+    }
+}
+
+#[test]
 fn faces_without_a_material_have_material_0_and_unknown_ones_are_named() {
     let folder = Folder::new();
     folder.write("m.mtl", "newmtl red\nKd 1 0 0\n");

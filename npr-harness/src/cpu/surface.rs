@@ -5,7 +5,7 @@ use crate::color::encode_rgb;
 use crate::image_lines::ImagePlan;
 use crate::image_lines::cpu::{InkSample, gbuffer_texel, texel};
 use crate::image_lines::gbuffer::texel::GBufferTexel;
-use crate::plan::PaintPlan;
+use crate::plan::{Emission, PaintPlan};
 use crate::rays::Hit;
 use crate::scene::Object;
 use crate::shadow::cpu::{ShadowAt, shadow_at};
@@ -154,7 +154,11 @@ impl FrameContext<'_> {
 
     /// The linear filtered texture colour; white if there is none.
     pub(super) fn texture_color(&self, hit: &Hit, x: u32, y: u32) -> DVec4 {
-        let Some(texture) = self.material(hit).texture else { return DVec4::ONE };
+        self.material(hit).texture.map_or(DVec4::ONE, |texture| self.sampled(texture, hit, x, y))
+    }
+
+    /// The linear filtered colour of a texture.
+    fn sampled(&self, texture: u32, hit: &Hit, x: u32, y: u32) -> DVec4 {
         let texture = self.scene.mip_mapped(texture);
         let Footprint { along_x, dx, along_y, dy } = self.footprint(hit, x, y);
         let uv = self.interpolate_uv(hit, hit.barycentric);
@@ -167,6 +171,17 @@ impl FrameContext<'_> {
     pub(super) fn line_kind(&self, hit: &Hit) -> LineKind {
         let material = self.scene.material_number(hit.object, hit.face);
         self.plan.image.as_ref().map_or(LineKind::Normals, |image| image.line_kinds[material])
+    }
+
+    /// The display-referred colour that a hit emits. Light and shadow do not change it.
+    fn emitted(&self, hit: &Hit, x: u32, y: u32) -> DVec3 {
+        let material = self.material(hit);
+        let emissive = material.emissive.as_dvec3();
+        match (self.plan.emission(material), material.emissive_texture) {
+            (Emission::None, _) => DVec3::ZERO,
+            (Emission::Textured, Some(texture)) => encode_rgb(emissive * self.sampled(texture, hit, x, y).truncate()),
+            _ => encode_rgb(emissive),
+        }
     }
 
     /// The display-referred colour of a hit, and its opacity.
@@ -184,7 +199,7 @@ impl FrameContext<'_> {
             (encode_rgb(linear.truncate()), linear.w)
         };
         // Clamped, as a render target clamps it before blending.
-        let lit = self.shaded(hit, base, x, y).clamp(DVec3::ZERO, DVec3::ONE);
+        let lit = (self.shaded(hit, base, x, y) + self.emitted(hit, x, y)).clamp(DVec3::ZERO, DVec3::ONE);
         let opacity = match material.alpha_mode {
             AlphaMode::Blend => alpha.clamp(0.0, 1.0),
             _ => 1.0,

@@ -96,7 +96,7 @@ fn facet_lit(in: FacetSurface) -> LitSurface {
 fn facet_color(in: FacetSurface, base: vec3<f32>, front: bool, at: ShadowAt) -> vec3<f32> {
     let rows = array<vec4<f32>, 5>(in.corners_a, in.corners_b, in.corners_c, in.corners_d, in.corners_e);
     let light = facet_light(FacetCorners(rows), in.uv_weights.zw, front);
-    return shade_color(base, light, toon_unit(facing(in.normal, front)), at);
+    return with_emission(shade_color(base, light, toon_unit(facing(in.normal, front)), at), in.uv_weights.xy);
 }
 
 @fragment

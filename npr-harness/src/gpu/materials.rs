@@ -11,12 +11,12 @@ use npr_outline::filled_buffer::filled_buffer;
 use std::sync::Arc;
 use wgpu::util::DeviceExt;
 
-/// The material uniforms and textures. They share one bind group per texture and use dynamic offsets: with one bind
+/// The material uniforms and textures. They share one bind group per pair of textures and use dynamic offsets: with one bind
 /// group per material, the driver's own memory would reach gigabytes for 40,000 materials.
 pub(super) struct Materials {
     /// Per material: the first material with the same appearance.
     pub(super) duplicates: Vec<usize>,
-    /// One bind group per texture and a last one without texture, each with the uniforms of all materials.
+    /// One bind group per pair of textures, each with the uniforms of all materials.
     groups: Vec<wgpu::BindGroup>,
     /// Per material: the index of its group and its offset in the uniform buffer, bytes.
     places: Vec<(usize, u32)>,
@@ -44,8 +44,7 @@ fn material_group(
     device: &wgpu::Device,
     layout: &wgpu::BindGroupLayout,
     uniforms: &wgpu::Buffer,
-    texture: &wgpu::TextureView,
-    sampler: &wgpu::Sampler,
+    [(texture, sampler), (emissive_texture, emissive_sampler)]: [&Uploaded; 2],
 ) -> wgpu::BindGroup {
     let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
     let size = wgpu::BufferSize::new(size_of::<MaterialUniform>() as u64);
@@ -57,6 +56,8 @@ fn material_group(
             entry(0, uniform),
             entry(1, wgpu::BindingResource::TextureView(texture)),
             entry(2, wgpu::BindingResource::Sampler(sampler)),
+            entry(3, wgpu::BindingResource::TextureView(emissive_texture)),
+            entry(4, wgpu::BindingResource::Sampler(emissive_sampler)),
         ],
     })
 }
@@ -92,15 +93,15 @@ fn materials(
     let upload = |texture| upload_texture(context, texture);
     let textures: Vec<_> = read.chain([&white]).map(upload).collect::<Result<_, _>>()?;
     // Dynamic offsets must be multiples of the device's alignment.
-    let MaterialTable { duplicates, places, uniforms } =
+    let MaterialTable { duplicates, pairs, places, uniforms } =
         material_table(scene, plan, context.capabilities.uniform_alignment as usize);
     if u32::try_from(uniforms.len()).is_err() {
         let bytes = uniforms.len() as u64;
         return Err(HarnessError::BufferTooLarge { what: "materials", bytes, limit: u32::MAX.into() });
     }
     let uniforms = buffer(context, "materials", &uniforms, wgpu::BufferUsages::UNIFORM)?;
-    let group = |(view, sampler): &_| material_group(&context.device, layout, &uniforms, view, sampler);
-    Ok(Materials { duplicates, groups: textures.iter().map(group).collect(), places })
+    let group = |pair: &[usize; 2]| material_group(&context.device, layout, &uniforms, pair.map(|of| &textures[of]));
+    Ok(Materials { duplicates, groups: pairs.iter().map(group).collect(), places })
 }
 
 /// A texture with its mip levels, and its sampler.

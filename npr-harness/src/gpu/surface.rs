@@ -14,7 +14,7 @@ use crate::geometry::{
 use crate::hatch::gpu::{HatchTextures, HatchUniform};
 use crate::image_lines::gbuffer::targets::TEXEL_FORMAT;
 use crate::image_lines::plan::ImagePlan;
-use crate::plan::{PaintPlan, Plan};
+use crate::plan::{Emission, PaintPlan, Plan};
 use crate::scene::Scene;
 use crate::shade::flag;
 use crate::shadow::ShadowLines;
@@ -143,6 +143,7 @@ struct Variant {
     paint: Paint,
     looked_up: bool,
     by_alpha: bool,
+    emission: Emission,
     cull_back: bool,
     mirrored: bool,
     blended: bool,
@@ -266,8 +267,10 @@ impl SurfacePass {
                 wgpu::BindGroupLayoutEntry { visibility: wgpu::ShaderStages::VERTEX, ..fragment(14, numbers) },
             ],
         );
-        let material_layout =
-            layout("surface material", &[one_of(0, true), fragment(1, texture), fragment(2, sampler)]);
+        let material_layout = layout(
+            "surface material",
+            &[one_of(0, true), fragment(1, texture), fragment(2, sampler), fragment(3, texture), fragment(4, sampler)],
+        );
         Self {
             shaders: RefCell::default(),
             layout: device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -413,8 +416,9 @@ impl SurfacePass {
                 || inking.is_some_and(|inking| inking.line_kind != LineKind::Normals);
             let variant = Variant {
                 paint,
-                looked_up: is_looked_up(scene, drawn.material) && wanted,
+                looked_up: is_looked_up(scene, plan, drawn.material) && wanted,
                 by_alpha: by_alpha && material.texture.is_some(),
+                emission: if paint == Paint::Nothing { Emission::None } else { plan.emission(material) },
                 cull_back: plan.cull_back || !double_sided,
                 mirrored: drawn.mirrored,
                 blended,
@@ -492,8 +496,19 @@ impl SurfacePass {
     }
 
     fn pipeline(&self, device: &wgpu::Device, variant: Variant) -> wgpu::RenderPipeline {
-        let Variant { paint, looked_up, by_alpha, cull_back, mirrored, blended, colored, clipped, inking, .. } =
-            variant;
+        let Variant {
+            paint,
+            looked_up,
+            by_alpha,
+            emission,
+            cull_back,
+            mirrored,
+            blended,
+            colored,
+            clipped,
+            inking,
+            ..
+        } = variant;
         let shaders = self.shaders.borrow();
         let (key, module) = &shaders[variant.shader];
         let inked = inking.is_some();
@@ -566,6 +581,7 @@ impl SurfacePass {
                 ("surface_by_alpha", flag(by_alpha)),
                 ("surface_looked_up", flag(looked_up)),
                 ("surface_blended", flag(blended)),
+                ("surface_emission", f64::from(emission as u32)),
             ])
             .collect();
         let targets = [colored.then_some(target), texels];

@@ -22,7 +22,11 @@ struct SurfaceMaterial {
     cutoff: f32,
     // The wrap mode of the texture for u and v: 0 repeat, 1 mirror, 2 clamp.
     wrap: vec2<u32>,
-    padding: vec2<u32>,
+    // As `texture_size`, of the emissive texture.
+    emissive_size: vec2<f32>,
+    // The emitted colour: display-referred, or linear where a texture multiplies it; and the number of levels of this
+    // texture - 1.
+    emissive: vec4<f32>,
 }
 
 // The uniform for lines in the image.
@@ -61,12 +65,16 @@ override surface_by_alpha: bool = false;
 override surface_looked_up: bool = false;
 // Whether the surface is alpha-blended.
 override surface_blended: bool = false;
+// What the surface emits: 0 nothing, 1 the material's colour, 2 that times a texture.
+override surface_emission: u32 = 0u;
 
 @group(0) @binding(0) var<uniform> view: SurfaceView;
 @group(0) @binding(2) var<uniform> ink: SurfaceInk;
 @group(1) @binding(0) var<uniform> material: SurfaceMaterial;
 @group(1) @binding(1) var base_texture: texture_2d<f32>;
 @group(1) @binding(2) var base_sampler: sampler;
+@group(1) @binding(3) var emissive_texture: texture_2d<f32>;
+@group(1) @binding(4) var emissive_sampler: sampler;
 
 struct Surface {
     @invariant @builtin(position) position: vec4<f32>,
@@ -293,13 +301,31 @@ fn encode_srgb(linear: vec3<f32>) -> vec3<f32> {
     return select(1.055 * pow(c, vec3<f32>(1.0 / 2.4)) - 0.055, c * 12.92, c <= vec3<f32>(0.0031308));
 }
 
+// The level at which a texture is sampled. Requires uniform control flow.
+fn texture_level(uv: vec2<f32>, size: vec2<f32>, last_level: f32) -> f32 {
+    let along_x = dpdxFine(uv) * size;
+    let along_y = dpdyFine(uv) * size;
+    let longest = max(max(dot(along_x, along_x), dot(along_y, along_y)), 1e-30);
+    return clamp(0.5 * log2(longest), 0.0, last_level);
+}
+
 // The texture's linear colour and alpha. Requires uniform control flow.
 fn texture_color(uv: vec2<f32>) -> vec4<f32> {
-    let along_x = dpdxFine(uv) * material.texture_size;
-    let along_y = dpdyFine(uv) * material.texture_size;
-    let longest = max(max(dot(along_x, along_x), dot(along_y, along_y)), 1e-30);
-    let level = clamp(0.5 * log2(longest), 0.0, material.last_level);
+    let level = texture_level(uv, material.texture_size, material.last_level);
     return textureSampleLevel(base_texture, base_sampler, uv, level);
+}
+
+// Adds the display-referred emission to a shaded colour; the target clamps the sum. Requires uniform control flow.
+fn with_emission(color: vec3<f32>, uv: vec2<f32>) -> vec3<f32> {
+    if surface_emission == 0u {
+        return color;
+    }
+    if surface_emission == 1u {
+        return color + material.emissive.rgb;
+    }
+    let level = texture_level(uv, material.emissive_size, material.emissive.w);
+    let texel = textureSampleLevel(emissive_texture, emissive_sampler, uv, level);
+    return color + encode_srgb(material.emissive.rgb * texel.rgb);
 }
 
 // Linear colour and alpha, excluding a vertex colour or texture that encodes lines. Requires uniform control flow.
@@ -338,7 +364,7 @@ fn facing(normal: vec3<f32>, front: bool) -> vec3<f32> {
 fn fs_painted(in: Surface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
     let normal = facing(in.normal, front);
     let at = shadow_at(in.position, normal);
-    let color = painted(material.base_color.rgb, normal, in.position.xy, at);
+    let color = with_emission(painted(material.base_color.rgb, normal, in.position.xy, at), vec2<f32>(0.0));
     clip_off(in.position);
     return vec4<f32>(color, surface_alpha(material.base_color.a));
 }
@@ -348,7 +374,7 @@ fn fs_painted_textured(in: TexturedSurface, @builtin(front_facing) front: bool) 
     let base = base_color(texture_color(in.uv), in.color);
     let normal = facing(in.normal, front);
     let at = shadow_at(in.position, normal);
-    let color = painted(encode_srgb(base.rgb), normal, in.position.xy, at);
+    let color = with_emission(painted(encode_srgb(base.rgb), normal, in.position.xy, at), in.uv);
     if base.a < material.cutoff {
         discard;
     }
@@ -451,7 +477,7 @@ fn textured_words(in: InkedTexturedSurface, front: bool, texel: vec4<f32>, at: S
 fn fs_painted_inked(in: InkedSurface, @builtin(front_facing) front: bool) -> Inked {
     let normal = facing(in.normal, front);
     let at = shadow_at(in.position, normal);
-    let color = painted(material.base_color.rgb, normal, in.position.xy, at);
+    let color = with_emission(painted(material.base_color.rgb, normal, in.position.xy, at), vec2<f32>(0.0));
     clip_off(in.position);
     return Inked(vec4<f32>(color, 1.0), plain_words(in, front, at));
 }
@@ -462,7 +488,7 @@ fn fs_painted_textured_inked(in: InkedTexturedSurface, @builtin(front_facing) fr
     let base = base_color(texel, in.color);
     let normal = facing(in.normal, front);
     let at = shadow_at(in.position, normal);
-    let color = painted(encode_srgb(base.rgb), normal, in.position.xy, at);
+    let color = with_emission(painted(encode_srgb(base.rgb), normal, in.position.xy, at), in.uv);
     if base.a < material.cutoff {
         discard;
     }
@@ -515,7 +541,7 @@ fn fs_lit(in: LitSurface, @builtin(front_facing) front: bool) -> @location(0) ve
     let base = lit_base(in, lit_texel(in));
     let at = shadow_at(in.position, facing(in.normal, front));
     let n = toon_unit(facing(in.normal, front));
-    let color = shade_color(base.rgb, light_of(without_lookups(in), front), n, at);
+    let color = with_emission(shade_color(base.rgb, light_of(without_lookups(in), front), n, at), in.uv);
     if surface_looked_up && base.a < material.cutoff {
         discard;
     }
@@ -527,7 +553,7 @@ fn fs_lit(in: LitSurface, @builtin(front_facing) front: bool) -> @location(0) ve
 fn fs_lit_plain(in: PlainLitSurface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
     let at = shadow_at(in.position, facing(in.normal, front));
     let n = toon_unit(facing(in.normal, front));
-    let color = shade_color(material.base_color.rgb, light_of(in, front), n, at);
+    let color = with_emission(shade_color(material.base_color.rgb, light_of(in, front), n, at), vec2<f32>(0.0));
     clip_off(in.position);
     return vec4<f32>(color, surface_alpha(material.base_color.a));
 }
@@ -535,7 +561,8 @@ fn fs_lit_plain(in: PlainLitSurface, @builtin(front_facing) front: bool) -> @loc
 @fragment
 fn fs_lit_vertex(in: VertexLitSurface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
     let light = select(light_of_back(in.light), in.light, front);
-    let color = shade_color(material.base_color.rgb, light, vec3<f32>(0.0), NO_SHADOW);
+    let shaded = shade_color(material.base_color.rgb, light, vec3<f32>(0.0), NO_SHADOW);
+    let color = with_emission(shaded, vec2<f32>(0.0));
     clip_off(in.position);
     return vec4<f32>(color, surface_alpha(material.base_color.a));
 }
@@ -546,7 +573,7 @@ fn fs_lit_inked(in: LitSurface, @builtin(front_facing) front: bool) -> Inked {
     let base = lit_base(in, texel);
     let at = shadow_at(in.position, facing(in.normal, front));
     let n = toon_unit(facing(in.normal, front));
-    let color = shade_color(base.rgb, light_of(without_lookups(in), front), n, at);
+    let color = with_emission(shade_color(base.rgb, light_of(without_lookups(in), front), n, at), in.uv);
     if surface_looked_up && base.a < material.cutoff {
         discard;
     }

@@ -226,7 +226,7 @@ fn hatched_color(in: HatchedSurface, base: vec3<f32>, light: vec2<f32>, front: b
     if surface_hatch_over_surface {
         ground = base;
     }
-    return hatch_color(paper, ground, hatch.ink);
+    return with_emission(hatch_color(paper, ground, hatch.ink), in.uv);
 }
 
 fn hatched_lit(in: HatchedSurface) -> LitSurface {

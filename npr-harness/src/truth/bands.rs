@@ -69,6 +69,7 @@ pub fn white(model: &Model) -> Model {
         material.texture = None;
         material.alpha_mode = npr_mesh::AlphaMode::Opaque;
         material.base_color = glam::Vec4::ONE;
+        material.emissive = Vec3::ZERO;
     }
     model
 }

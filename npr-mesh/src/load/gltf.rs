@@ -6,13 +6,22 @@
 //! checked here, and vertex data is read through [`accessor`], which checks bounds.
 //!
 //! The objects are the nodes with meshes of the default scene (or of the first scene, or all of them if there is no
-//! scene), with node transforms, skins and morph targets in the pose that the file states, without animation.
-//! Materials consist of base colour, alpha mode and sidedness, and there are vertex colours. Supported extensions: `KHR_texture_transform` (base colour
-//! texture), `KHR_mesh_quantization`, and `KHR_materials_unlit`, which has no effect here.
+//! scene), with node transforms, instances, skins and morph targets in the pose that the file states, without animation.
+//! Transforms are composed in f64. Materials consist of base colour, emission, alpha mode and sidedness, and there are
+//! vertex colours.
+//!
+//! Supported extensions are [`EXTENSIONS`]. Where an extension is supported, what it states is used, and what the file
+//! has for readers without the extension is not: a specular-glossiness material before a metallic-roughness material, a
+//! WebP image before the texture's own source, compressed data before those of the fallback buffer. Of an extension that
+//! is not supported, the fallback is used; without one, a texture is left out with a warning, and geometry is an error.
 
 mod accessor;
+mod compressed;
 mod document;
+mod extra;
 mod files;
+mod indices;
+mod instancing;
 mod materials;
 mod meshes;
 mod parse;
@@ -24,9 +33,27 @@ use super::file::Parsed;
 use crate::LoadError;
 use document::{Bytes, Document, QUANTIZATION, malformed};
 use gltf::json::Root;
+use parse::ParseFault;
 use std::path::Path;
 
-const EXTENSIONS: [&str; 3] = ["KHR_materials_unlit", QUANTIZATION, "KHR_texture_transform"];
+/// Instances of a node's mesh.
+const INSTANCING: &str = "EXT_mesh_gpu_instancing";
+
+/// Textures whose images are WebP files.
+const WEBP: &str = "EXT_texture_webp";
+
+/// The supported extensions. `KHR_materials_unlit` has no effect here.
+const EXTENSIONS: [&str; 9] = [
+    INSTANCING,
+    compressed::MESHOPT[0],
+    compressed::MESHOPT[1],
+    WEBP,
+    "KHR_materials_emissive_strength",
+    "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_unlit",
+    QUANTIZATION,
+    "KHR_texture_transform",
+];
 
 /// Loads a file. Missing normals are zero, and there may be no objects.
 ///
@@ -36,19 +63,39 @@ pub(super) fn load(file: Vec<u8>, external: &External) -> Result<Parsed, LoadErr
     let (path, limits) = (external.model, external.limits);
     let mut warnings = Vec::new();
     let (text, binary) = files::split_container(&file, &mut warnings).map_err(|fault| malformed(path, fault))?;
-    let root = parse::parse(text, &mut warnings).map_err(|fault| malformed(path, format!("not glTF 2.0: {fault}")))?;
+    let (root, extra) = parse::parse(text, &mut warnings).map_err(|fault| match fault {
+        ParseFault::Version(version) => version_error(path, &version),
+        ParseFault::Malformed(fault) => malformed(path, format!("not glTF 2.0: {fault}")),
+    })?;
     check_requirements(path, &root, &mut warnings)?;
     let (buffers, of_buffers) = files::buffers(external, &root, binary)?;
     let quantized = root.extensions_used.iter().chain(&root.extensions_required).any(|name| name == QUANTIZATION);
     let bytes = file.len() as u64 + of_buffers;
-    let document = Document { path, limits, external, root, buffers, bytes, quantized };
+    let mut document =
+        Document { path, limits, external, root, extra, buffers, bytes, quantized, decoded: Default::default() };
+    indices::check(&document)?;
+    compressed::find(&mut document)?;
     let nodes = scene::pose(&document)?;
     let (meshes, objects) = meshes::load(&document, &nodes, &mut warnings)?;
+    if objects.is_empty() && nodes.shown.iter().all(|&node| document.root.nodes[node].mesh.is_none()) {
+        let meshes = document.root.meshes.len();
+        return if meshes == 0 {
+            Ok(Parsed { objects, warnings, ..Parsed::default() })
+        } else {
+            Err(LoadError::NotPlaced { path: path.to_owned(), meshes })
+        };
+    }
     warnings.extend(document.buffers.iter().enumerate().filter_map(|(number, bytes)| match bytes {
-        Bytes::Missing(fault) => Some(format!("buffer {number} is left out, and no mesh needs it: {fault}")),
+        Bytes::Missing(fault) if !compressed::is_fallback(&document, number) => {
+            Some(format!("buffer {number} is left out, and no mesh needs it: {fault}"))
+        }
         _ => None,
     }));
     Ok(Parsed { meshes, objects, warnings, ..Parsed::default() })
+}
+
+fn version_error(path: &Path, version: &str) -> LoadError {
+    LoadError::Unsupported { path: path.to_owned(), feature: format!("glTF {version}") }
 }
 
 /// Checks the version (glTF 2.0, 3.2 "Asset") and the extensions (3.12 "Specifying Extensions").
@@ -67,7 +114,7 @@ fn check_requirements(path: &Path, root: &Root, warnings: &mut Vec<String>) -> R
         return unsupported(format!("glTF {}", shortened(needed)));
     }
     if asset.version != "2" && version(&asset.version).is_none_or(|(major, _)| major != 2) {
-        return unsupported(format!("glTF {}", shortened(&asset.version)));
+        return Err(version_error(path, &shortened(&asset.version)));
     }
     let unknown = |names: &[String]| -> Vec<String> {
         names.iter().filter(|name| !EXTENSIONS.contains(&name.as_str())).map(|name| shortened(name)).collect()

@@ -17,9 +17,9 @@ pub(super) struct Decoded {
     pub has_alpha: bool,
 }
 
-/// The formats of glTF 2.0, 3.8.3 "Images".
+/// The formats of glTF 2.0, 3.8.3 "Images", and of `EXT_texture_webp`.
 #[cfg(feature = "gltf")]
-const OF_GLTF: [ImageFormat; 2] = [ImageFormat::Png, ImageFormat::Jpeg];
+const OF_GLTF: [ImageFormat; 3] = [ImageFormat::Png, ImageFormat::Jpeg, ImageFormat::WebP];
 
 /// The formats that exporters of OBJ files name in material files.
 #[cfg(feature = "obj")]
@@ -33,7 +33,7 @@ const OF_OBJ: [ImageFormat; 7] = [
     ImageFormat::Tiff,
 ];
 
-/// Decodes a PNG or JPEG file in memory: width, height and `width * height * 4` bytes, rows from the top.
+/// Decodes a PNG, JPEG or WebP file in memory: width, height and `width * height * 4` bytes, rows from the top.
 ///
 /// The format is determined by the first bytes, not by the file extension. The size in the header is checked against
 /// [`Limits::texels`] and, added to `so_far`, against [`Limits::texels_in_all`] before memory is allocated. 16-bit

@@ -1,16 +1,14 @@
 //! What a file holds.
 
-use super::far;
 use super::options::CREASE_ANGLE_RAD;
 use crate::{AlphaMode, Material, Model, Object, Texture, Warning, Wrap, normals};
-use glam::{DAffine3, DVec3, Vec3};
+use glam::{BVec3, DAffine3, DVec3, Vec3};
 use std::collections::HashMap;
 
 /// What a file holds: meshes, each once, and the objects that place them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Loaded {
-    /// Each in its own space, with faces or lines, and with the materials and textures that it uses. All normals are
-    /// present.
+    /// Each in its own space, with faces or lines, and with the materials and textures that it uses. All normals are present.
     pub meshes: Vec<Model>,
     /// In the order of the file's nodes, depth first. At least one.
     pub objects: Vec<Object>,
@@ -26,40 +24,12 @@ impl Loaded {
     /// A singular transform destroys normals; they are made from the transformed faces.
     ///
     /// Positions are f32 in world space, so digits are lost where objects are far from the origin.
-    /// [`Loaded::into_local_model`] keeps them.
+    /// [`Loaded::into_model_near`] keeps them.
     ///
     /// # Panics
     /// If an object has a mesh that does not exist. The loader makes no such object.
     pub fn into_model(self) -> Model {
-        self.into_model_from(DVec3::ZERO)
-    }
-
-    /// All objects in one model as in [`Loaded::into_model`], with positions relative to an origin, and that origin.
-    ///
-    /// The origin is 0, or the centre of all objects where that is at least four times their diagonal away. It is
-    /// subtracted in f64, so that digits that the file has are not lost.
-    ///
-    /// # Panics
-    /// If an object has a mesh that does not exist. The loader makes no such object.
-    pub fn into_local_model(self) -> (Model, DVec3) {
-        let corners = self.objects.iter().flat_map(|object| {
-            let (low, high) = self.meshes[object.mesh].bounds().unwrap_or_default();
-            let [low, high] = [low.as_dvec3(), high.as_dvec3()];
-            let corner = move |axes: u8| {
-                let choice = |axis: u8, low: f64, high: f64| if axes & (1 << axis) == 0 { low } else { high };
-                DVec3::new(choice(0, low.x, high.x), choice(1, low.y, high.y), choice(2, low.z, high.z))
-            };
-            (0..8).map(move |axes| object.world_from_mesh.transform_point3(corner(axes)))
-        });
-        let origin = far::bounds(corners).and_then(|(low, high)| far::offset(low, high)).unwrap_or_default();
-        (self.into_model_from(origin), origin)
-    }
-
-    fn into_model_from(self, origin: DVec3) -> Model {
-        let Self { mut meshes, mut objects, .. } = self;
-        if origin != DVec3::ZERO {
-            objects.iter_mut().for_each(|object| object.world_from_mesh.translation -= origin);
-        }
+        let Self { mut meshes, objects, .. } = self;
         if let [object] = &objects[..] {
             return placed(meshes.swap_remove(object.mesh), &object.world_from_mesh);
         }
@@ -81,6 +51,31 @@ impl Loaded {
             model.face_mesh.resize(model.faces.len(), number as u32);
         }
         model
+    }
+
+    /// All objects in one model, as by [`Loaded::into_model`], with an origin that was subtracted from the positions in
+    /// f64. It is 0, or the middle of the box around all objects, rounded to f32, where that is at least four times as far
+    /// from 0 as the box is large. Positions far from 0 keep their digits then.
+    ///
+    /// # Panics
+    /// As [`Loaded::into_model`].
+    pub fn into_model_near(mut self) -> (Model, DVec3) {
+        let origin = self.far_middle().unwrap_or_default();
+        self.objects.iter_mut().for_each(|object| object.world_from_mesh.translation -= origin);
+        (self.into_model(), origin)
+    }
+
+    /// The middle of the box around all objects, if it is far from 0.
+    fn far_middle(&self) -> Option<DVec3> {
+        let boxes: Vec<_> = self.meshes.iter().map(Model::bounds).collect();
+        let corners = self.objects.iter().filter_map(|object| Some((object, boxes[object.mesh]?)));
+        let corners = corners.flat_map(|(object, (low, high))| {
+            let corner = move |i: u32| Vec3::select(BVec3::new(i & 1 > 0, i & 2 > 0, i & 4 > 0), low, high);
+            (0..8).map(move |i| object.world_from_mesh.transform_point3(corner(i).as_dvec3()))
+        });
+        let (low, high) = corners.map(|corner| (corner, corner)).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
+        let middle = low.midpoint(high);
+        (middle.length() >= 4.0 * low.distance(high)).then(|| middle.as_vec3().as_dvec3())
     }
 }
 
@@ -105,7 +100,7 @@ struct Merge {
 }
 
 type TextureKey = (*const u8, [Wrap; 2], bool);
-type MaterialKey = (String, [u32; 4], Option<u32>, (bool, Option<u32>), bool);
+type MaterialKey = (String, [u32; 4], [u32; 3], [Option<u32>; 2], (bool, Option<u32>), bool);
 
 impl Merge {
     /// Moves the materials and textures of a mesh to the model.
@@ -119,8 +114,8 @@ impl Merge {
         };
         let textures: Vec<u32> = mesh.textures.drain(..).map(add_texture).collect();
         let mut equal: HashMap<MaterialKey, u32> = HashMap::new();
-        let add_material = |mut material: Material| {
-            material.texture = material.texture.map(|texture| textures[texture as usize]);
+        let add_material = |material: Material| {
+            let material = material.with_textures(|texture| textures[texture as usize]);
             let before = equal.entry(key(&material)).or_default();
             *before += 1;
             *self.materials.entry((key(&material), *before)).or_insert_with(|| {
@@ -140,5 +135,7 @@ fn key(material: &Material) -> MaterialKey {
         AlphaMode::Blend => (true, None),
     };
     let color = material.base_color.to_array().map(f32::to_bits);
-    (material.name.clone(), color, material.texture, alpha, material.double_sided)
+    let emissive = material.emissive.to_array().map(f32::to_bits);
+    let textures = [material.texture, material.emissive_texture];
+    (material.name.clone(), color, emissive, textures, alpha, material.double_sided)
 }

@@ -67,7 +67,7 @@ fn a_city_at_utm_coordinates_is_that_at_the_origin() {
             assert_eq!(counts(a), counts(b));
             assert!(a.normals.iter().zip(&b.normals).all(|(a, b)| a.distance(*b) < 1e-6));
             assert_eq!(warnings(&far), [""; 0]);
-            let (local, origin) = far.clone().into_local_model();
+            let (local, origin) = far.clone().into_model_near();
             assert_eq!(counts(&local), counts(a));
             assert!(origin.distance(at) < 100.0);
         }

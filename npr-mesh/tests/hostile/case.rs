@@ -180,7 +180,10 @@ fn sound_model(model: &Model) -> Result<(), String> {
     for material in &model.materials {
         let color = material.base_color;
         check(color.min_element() >= 0.0 && color.max_element() <= 1.0, "a material's colour")?;
-        check(material.texture.is_none_or(|t| (t as usize) < model.textures.len()), "a texture is out of range")?;
+        let emits = material.emissive;
+        check(emits.is_finite() && emits.min_element() >= 0.0, "a material's emission is not within its range")?;
+        let mut textures = [material.texture, material.emissive_texture].into_iter().flatten();
+        check(textures.all(|t| (t as usize) < model.textures.len()), "a texture is out of range")?;
     }
     let texels = |t: &npr_mesh::Texture| t.rgba8.len() == t.width as usize * t.height as usize * 4;
     check(model.textures.iter().all(texels), "texels")?;

@@ -4,7 +4,7 @@ use crate::loading::{Loading, load};
 use crate::terminal::say;
 use clap::Args;
 use npr_harness::error::HarnessError;
-use npr_harness::inspect::{Inspection, inspect_at};
+use npr_harness::inspect::inspect_loaded;
 use std::path::PathBuf;
 
 #[derive(Args)]
@@ -23,9 +23,7 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
     options.loading.check([input])?;
     let loaded = load(input, &options.loading)?;
     let name = input.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
-    let (meshes, objects, warnings) = (loaded.meshes.len(), loaded.objects.len(), loaded.warnings.clone());
-    let (model, origin) = loaded.into_local_model();
-    let inspection = Inspection { meshes, objects, ..inspect_at(&name, &model, origin, warnings) };
+    let inspection = inspect_loaded(&name, loaded);
     if options.json {
         say(format_args!("{}\n", serde_json::to_string_pretty(&inspection)?))?;
     } else {

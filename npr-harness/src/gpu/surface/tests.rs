@@ -37,7 +37,8 @@ fn the_uniforms_lie_as_the_shader_has_them() {
         ("last_level", offset_of!(MaterialUniform, last_level)),
         ("cutoff", offset_of!(MaterialUniform, cutoff)),
         ("wrap", offset_of!(MaterialUniform, wrap)),
-        ("padding", offset_of!(MaterialUniform, padding)),
+        ("emissive_size", offset_of!(MaterialUniform, emissive_size)),
+        ("emissive", offset_of!(MaterialUniform, emissive)),
     ];
     assert_eq!(layout("SurfaceMaterial"), ours(&material, size_of::<MaterialUniform>()));
     let ink = [

@@ -46,7 +46,10 @@ pub(super) enum Purpose {
     Displacement,
     Joints,
     Indices,
+    /// Matrices, and the translations and scales of instances.
     Matrices,
+    /// Rotations of instances.
+    Rotation,
 }
 
 impl Purpose {
@@ -65,6 +68,7 @@ impl Purpose {
             Purpose::Joints => (unsigned, false),
             Purpose::Indices => (unsigned || component == U32, false),
             Purpose::Matrices => (component == F32, false),
+            Purpose::Rotation => (component == F32 || (signed && normalized), false),
         }
     }
 }
@@ -85,7 +89,7 @@ impl<'d> Accessor<'d> {
     /// The fault with the index of the accessor.
     pub fn new(document: &'d Document, index: Index<json::Accessor>, purpose: Purpose) -> Result<Self, String> {
         let number = index.value();
-        let accessor = document.root.get(index).ok_or_else(|| format!("accessor {number} does not exist"))?;
+        let accessor = &document.root.accessors[number];
         let fail = |fault: String| format!("accessor {number}: {fault}");
         let Checked::Valid(component) = accessor.component_type else {
             return Err(fail("unknown component type".to_owned()));

@@ -1,8 +1,11 @@
 //! A parsed glTF file.
 
+use super::compressed::CompressedView;
+use super::extra::Extra;
 use crate::load::external::External;
 use crate::{Limits, LoadError};
 use gltf::json::Root;
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::rc::Rc;
 
@@ -10,22 +13,29 @@ use std::rc::Rc;
 pub const QUANTIZATION: &str = "KHR_mesh_quantization";
 
 /// A parsed file and the data that it refers to.
-pub struct Document<'a> {
+pub(super) struct Document<'a> {
     pub path: &'a Path,
     pub limits: &'a Limits,
     pub external: &'a External<'a>,
     pub root: Root,
+    pub extra: Extra,
     /// The buffers, with the lengths that the file states.
     pub buffers: Vec<Bytes<'a>>,
     /// The total size of the file and its buffers in bytes.
     pub bytes: u64,
     /// Whether attributes may have the types of `KHR_mesh_quantization`.
     pub quantized: bool,
+    /// Compressed buffer views, decompressed on first use.
+    pub decoded: BTreeMap<usize, CompressedView>,
 }
 
 impl Document<'_> {
     pub fn malformed(&self, fault: impl Into<String>) -> LoadError {
         malformed(self.path, fault)
+    }
+
+    pub fn unsupported(&self, feature: String) -> LoadError {
+        LoadError::Unsupported { path: self.path.to_owned(), feature }
     }
 
     pub fn too_large(&self, what: &'static str, count: u64, limit: u64) -> LoadError {

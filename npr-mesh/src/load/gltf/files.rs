@@ -125,12 +125,14 @@ pub(super) fn view<'d>(
     index: Index<buffer::View>,
 ) -> Result<(&'d [u8], Option<usize>), String> {
     let number = index.value();
-    let view = document.root.get(index).ok_or_else(|| format!("buffer view {number} does not exist"))?;
+    let view = &document.root.buffer_views[number];
+    let stride = view.byte_stride.map(|stride| stride.0);
+    if let Some(compressed) = document.decoded.get(&number) {
+        let content = compressed.content(document).map_err(|fault| format!("buffer view {number}: {fault}"))?;
+        return Ok((content, stride));
+    }
     let buffer_number = view.buffer.value();
-    let bytes = document
-        .buffers
-        .get(buffer_number)
-        .ok_or_else(|| format!("buffer view {number}: buffer {buffer_number} does not exist"))?
+    let bytes = document.buffers[buffer_number]
         .as_slice()
         .map_err(|fault| format!("buffer view {number}: buffer {buffer_number}: {fault}"))?;
     let (offset, length) = (view.byte_offset.unwrap_or_default().0, view.byte_length.0);
@@ -140,7 +142,7 @@ pub(super) fn view<'d>(
             bytes.len()
         )
     })?;
-    Ok((slice, view.byte_stride.map(|stride| stride.0)))
+    Ok((slice, stride))
 }
 
 /// `length` bytes from `offset`, or `None` if out of range.

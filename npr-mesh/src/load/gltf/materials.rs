@@ -1,11 +1,11 @@
 //! Materials, their textures, and the texture coordinates that they use.
 
 use super::document::{self, Document};
-use super::files;
+use super::{WEBP, files};
 use crate::load::external::shortened;
 use crate::load::image_file;
 use crate::{AlphaMode, LoadError, Material, Model, Texture, Wrap};
-use glam::{Vec2, Vec4};
+use glam::{Vec2, Vec3, Vec4};
 use gltf::json::texture::{Info, MagFilter, WrappingMode};
 use gltf::json::validation::Checked;
 use gltf::json::{self, Index, material};
@@ -30,10 +30,10 @@ pub(super) struct Materials {
 
 /// The value of the `gltf` crate for the source of a texture without source. Such textures have images of other
 /// formats in extensions.
-const NO_SOURCE: usize = u32::MAX as usize;
+pub(super) const NO_SOURCE: usize = u32::MAX as usize;
 
 /// The source of a primitive's texture coordinates.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq)]
 pub(super) struct UvSource {
     /// The `n` of `TEXCOORD_n`.
     pub set: u32,
@@ -66,7 +66,7 @@ impl Materials {
     /// single-sided (glTF 2.0, 3.9.6 "Default Material").
     ///
     /// # Errors
-    /// An invalid index, a number that is not finite, or an image that exceeds a limit.
+    /// A number that is not finite, or an image that exceeds a limit.
     pub fn get(
         &mut self,
         document: &Document,
@@ -87,7 +87,7 @@ impl Materials {
                     model.textures.len() as u32 - 1
                 })
             };
-            model.materials.push(Material { texture: material.texture.map(place), ..material.clone() });
+            model.materials.push(material.with_textures(place));
             model.materials.len() as u32 - 1
         });
         Ok((slot, *uv))
@@ -99,38 +99,87 @@ impl Materials {
         index: Option<Index<json::Material>>,
         warnings: &mut Vec<String>,
     ) -> Result<(Material, UvSource), LoadError> {
-        let mut material = Material {
-            name: String::new(),
-            base_color: Vec4::ONE,
-            texture: None,
-            alpha_mode: AlphaMode::Opaque,
-            double_sided: false,
-        };
+        let mut material = Material { base_color: Vec4::ONE, double_sided: false, ..Material::default() };
         let mut uv = UvSource::DEFAULT;
-        if let Some(index) = index {
-            let number = index.value();
-            let fail = |fault: &str| document.malformed(format!("material {number}: {fault}"));
-            let source = document.root.get(index).ok_or_else(|| fail("does not exist"))?;
-            let pbr = &source.pbr_metallic_roughness;
-            material.name = document::name(source.name.as_deref());
-            material.base_color = Vec4::from_array(pbr.base_color_factor.0);
-            material.alpha_mode = alpha_mode(source).ok_or_else(|| fail("unknown alpha mode"))?;
-            material.double_sided = source.double_sided;
-            if !material.base_color.is_finite() {
-                return Err(fail("its base colour is not finite"));
+        let Some(index) = index else { return Ok((material, uv)) };
+        let number = index.value();
+        let fail = |fault: &str| document.malformed(format!("material {number}: {fault}"));
+        let source = &document.root.materials[number];
+        material.name = document::name(source.name.as_deref());
+        material.alpha_mode = alpha_mode(source).ok_or_else(|| fail("unknown alpha mode"))?;
+        material.double_sided = source.double_sided;
+        let extensions = source.extensions.as_ref();
+        // Readers that support the specular-glossiness model always use it where a material has both.
+        let (factor, info) = match extensions.and_then(|extensions| extensions.pbr_specular_glossiness.as_ref()) {
+            Some(glossy) => (glossy.diffuse_factor.0, &glossy.diffuse_texture),
+            None => {
+                let metallic = &source.pbr_metallic_roughness;
+                (metallic.base_color_factor.0, &metallic.base_color_texture)
             }
-            let clamped = material.base_color.clamp(Vec4::ZERO, Vec4::ONE);
-            if clamped != material.base_color {
-                warnings
-                    .push(format!("material {number}: its base colour {} is not within 0 to 1", material.base_color));
-                material.base_color = clamped;
-            }
-            if let Some(info) = &pbr.base_color_texture {
-                uv = uv_source(info).ok_or_else(|| fail("its texture transform is not finite"))?;
-                material.texture = self.texture(document, number, info, warnings)?;
-            }
+        };
+        material.base_color = Vec4::from_array(factor);
+        if !material.base_color.is_finite() {
+            return Err(fail("its base colour is not finite"));
         }
+        let clamped = material.base_color.clamp(Vec4::ZERO, Vec4::ONE);
+        if clamped != material.base_color {
+            warnings.push(format!("material {number}: its base colour {} is not within 0 to 1", material.base_color));
+            material.base_color = clamped;
+        }
+        if let Some(info) = info {
+            uv = uv_source(info).ok_or_else(|| fail("its texture transform is not finite"))?;
+            material.texture = self.texture(document, number, info, warnings)?;
+        }
+        self.emission(document, number, &mut material, &mut uv, warnings)?;
         Ok((material, uv))
+    }
+
+    /// Reads the emissive factor, strength and texture.
+    fn emission(
+        &mut self,
+        document: &Document,
+        number: usize,
+        material: &mut Material,
+        uv: &mut UvSource,
+        warnings: &mut Vec<String>,
+    ) -> Result<(), LoadError> {
+        let fail = |fault: &str| document.malformed(format!("material {number}: {fault}"));
+        let source = &document.root.materials[number];
+        let stated = Vec3::from_array(source.emissive_factor.0);
+        if !stated.is_finite() {
+            return Err(fail("its emission is not finite"));
+        }
+        let factor = stated.clamp(Vec3::ZERO, Vec3::ONE);
+        if factor != stated {
+            warnings.push(format!("material {number}: its emission {stated} is not within 0 to 1"));
+        }
+        let strength = source.extensions.as_ref().and_then(|extensions| extensions.emissive_strength.as_ref());
+        let strength = strength.map_or(1.0, |strength| strength.emissive_strength.0);
+        if !strength.is_finite() || strength < 0.0 {
+            return Err(fail("its emissive strength is negative or not finite"));
+        }
+        let emissive = factor * strength;
+        if emissive == Vec3::ZERO {
+            return Ok(());
+        }
+        if let Some(info) = &source.emissive_texture {
+            let own = uv_source(info).ok_or_else(|| fail("its texture transform is not finite"))?;
+            if material.texture.is_some() && own != *uv {
+                warnings.push(format!(
+                    "material {number}: its emission is left out: the texture has other texture coordinates than that \
+                     of the colour"
+                ));
+                return Ok(());
+            }
+            material.emissive_texture = self.texture(document, number, info, warnings)?;
+            if material.emissive_texture.is_none() {
+                // Without its texture, the whole surface would be bright.
+                return Ok(());
+            }
+            *uv = own;
+        }
+        material.emissive = emissive;
+        Ok(())
     }
 
     fn texture(
@@ -140,23 +189,22 @@ impl Materials {
         info: &Info,
         warnings: &mut Vec<String>,
     ) -> Result<Option<u32>, LoadError> {
-        let fail = |fault: String| document.malformed(format!("material {material}: {fault}"));
         let number = info.index.value();
-        let texture = document.root.get(info.index).ok_or_else(|| fail(format!("texture {number} does not exist")))?;
-        let sampler = match texture.sampler {
-            Some(index) => Some(
-                document
-                    .root
-                    .get(index)
-                    .ok_or_else(|| fail(format!("texture {number}: sampler {} does not exist", index.value())))?,
-            ),
-            None => None,
-        };
+        let texture = &document.root.textures[number];
+        let sampler = texture.sampler.map(|index| &document.root.samplers[index.value()]);
         let wrap = sampler.map_or([Wrap::Repeat; 2], |s| [wrap(&s.wrap_s), wrap(&s.wrap_t)]);
         let smooth = !sampler.is_some_and(|s| matches!(s.mag_filter, Some(Checked::Valid(MagFilter::Nearest))));
-        let image = texture.source.value();
+        let extra = document.extra.textures.get(number);
+        let webp = extra.and_then(|texture| texture.source(WEBP)).map(|source| source as usize);
+        let image = webp.unwrap_or(texture.source.value());
         if image == NO_SOURCE {
-            warnings.push(format!("material {material}: texture {number} is left out: it has no image of its own"));
+            let names = extra.and_then(|texture| texture.extensions.as_ref()).into_iter().flat_map(|of| of.keys());
+            let names: Vec<String> = names.map(|name| shortened(name)).collect();
+            let why = match &names[..] {
+                [] => "it has no image".to_owned(),
+                names => format!("its image is in the extension {}, which is not supported", names.join(" or ")),
+            };
+            warnings.push(format!("material {material}: texture {number} is left out: {why}"));
             return Ok(None);
         }
 
@@ -201,7 +249,7 @@ impl Materials {
 /// Decodes an image from a buffer view, a `data:` URI or a file, with default sampling.
 fn decode(document: &Document, number: usize, texels: &mut u64) -> Result<Texture, LoadError> {
     let fail = |fault: String| document.malformed(fault);
-    let image = document.root.images.get(number).ok_or_else(|| fail("does not exist".to_owned()))?;
+    let image = &document.root.images[number];
     let mut name = shortened(image.name.as_deref().unwrap_or_default());
     if name.is_empty() {
         name = format!("#{number}");
@@ -216,7 +264,7 @@ fn decode(document: &Document, number: usize, texels: &mut u64) -> Result<Textur
             None => {
                 let file = document.external.find(&files::names(uri).map_err(fail)?)?;
                 name = shortened(uri);
-                image_file::decode(&document.external.read(&file)?, &name, &file, limits, texels)?
+                image_file::decode(&document.external.read(&file)?, &name, document.path, limits, texels)?
             }
         },
         (None, None) => return Err(fail("neither a buffer view nor a URI".to_owned())),

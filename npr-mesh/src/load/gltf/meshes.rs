@@ -1,14 +1,17 @@
 //! Loads meshes, and places them.
 
+use super::INSTANCING;
 use super::accessor::{Accessor, Integers, Purpose};
+use super::compressed::refuse_unsupported;
 use super::document::{self, Document};
+use super::instancing::Instances;
 use super::materials::{Materials, UvSource};
 use super::pose::{self, Influences};
 use super::scene::Nodes;
 use crate::edges::MOST_FACES;
 use crate::transform::Turn;
 use crate::{LoadError, Model, Object};
-use glam::{BVec3, DAffine3, DMat3, DMat4, Vec2, Vec3, Vec4};
+use glam::{BVec3, DAffine3, DMat3, DMat4, DVec3, Vec2, Vec3, Vec4};
 use gltf::json::mesh::{Mode, Primitive, Semantic};
 use gltf::json::validation::Checked;
 use gltf::json::{self, Index};
@@ -46,9 +49,18 @@ pub(super) fn load(
         let node = &document.root.nodes[number];
         let Some(index) = node.mesh else { continue };
         let fail = |fault: String| document.malformed(format!("node {number}: {fault}"));
-        let mesh =
-            document.root.get(index).ok_or_else(|| fail(format!("its mesh {} does not exist", index.value())))?;
-        loader.count_primitives(mesh)?;
+        let mesh = &document.root.meshes[index.value()];
+        let mut instances = Instances::of_node(document, number).map_err(fail)?;
+        if instances.is_some() && node.skin.is_some() {
+            // A skin places its mesh in the world, whatever the node.
+            loader.warnings.push(format!("node {number}: {INSTANCING} is ignored, since its mesh has a skin"));
+            instances = None;
+        }
+        let count = instances.as_ref().map_or(1, |instances| instances.count);
+        loader.count_primitives(mesh, count)?;
+        if count == 0 {
+            continue;
+        }
         let is_morphed = mesh.primitives.iter().any(|primitive| primitive.targets.is_some());
         let of_node = node.weights.as_deref().filter(|_| is_morphed && node.weights != mesh.weights);
         let weights = of_node.or(mesh.weights.as_deref()).unwrap_or(&[]);
@@ -58,7 +70,16 @@ pub(super) fn load(
                     Entry::Occupied(known) => known.into_mut(),
                     Entry::Vacant(slot) => slot.insert(pose::joint_matrices(document, nodes, skin).map_err(fail)?),
                 };
-                (loader.mesh(index.value(), mesh, weights, Some(joints))?, DAffine3::IDENTITY)
+                let origin = pose::far_origin(document, mesh, joints);
+                let near: Vec<DMat4>;
+                let joints = if origin == DVec3::ZERO {
+                    &joints[..]
+                } else {
+                    near = joints.iter().map(|joint| DMat4::from_translation(-origin) * *joint).collect();
+                    &near
+                };
+                let slot = loader.mesh(index.value(), mesh, weights, Some(joints))?;
+                (slot, DAffine3::from_translation(origin))
             }
             None => {
                 let key = (index.value(), of_node.map(|weights| weights.iter().map(|w| w.to_bits()).collect()));
@@ -73,12 +94,22 @@ pub(super) fn load(
             }
         };
         let Some(slot) = slot else { continue };
-        if let Some(vertex) = loader.vertex_out_of_range(slot, &world_from_mesh) {
-            let fault = format!("in world space the position of its mesh's vertex {vertex} is not finite");
-            return Err(fail(fault));
+        let transforms = match instances {
+            Some(instances) => instances.transforms().map_err(fail)?,
+            None => vec![DAffine3::IDENTITY],
+        };
+        let name = document::name(node.name.as_deref().filter(|name| !name.is_empty()).or(mesh.name.as_deref()));
+        for (at, node_from_mesh) in transforms.into_iter().enumerate() {
+            if at > 0 {
+                loader.count_again(slot)?;
+            }
+            let world_from_mesh = world_from_mesh * node_from_mesh;
+            if let Some(vertex) = loader.vertex_out_of_range(slot, &world_from_mesh) {
+                let fault = format!("in world space the position of its mesh's vertex {vertex} is not finite");
+                return Err(fail(fault));
+            }
+            objects.push(Object { name: name.clone(), mesh: slot, world_from_mesh });
         }
-        let name = node.name.as_deref().filter(|name| !name.is_empty()).or(mesh.name.as_deref());
-        objects.push(Object { name: document::name(name), mesh: slot, world_from_mesh });
     }
     let meshes = loader.meshes.into_iter().map(|(mesh, _)| mesh).collect();
     Ok((meshes, objects))
@@ -116,9 +147,9 @@ impl Part<'_> {
 }
 
 impl Loader<'_> {
-    fn count_primitives(&mut self, mesh: &json::Mesh) -> Result<(), LoadError> {
+    fn count_primitives(&mut self, mesh: &json::Mesh, objects: u64) -> Result<(), LoadError> {
         let limit = self.document.limits.instances;
-        self.instances += mesh.primitives.len() as u64;
+        self.instances = self.instances.saturating_add(objects.saturating_mul(mesh.primitives.len() as u64));
         if self.instances > limit { Err(self.document.too_large("primitives", self.instances, limit)) } else { Ok(()) }
     }
 
@@ -143,6 +174,7 @@ impl Loader<'_> {
         let first_time = !std::mem::replace(&mut self.seen[number], true);
         self.materials.begin_mesh();
         for (at, primitive) in mesh.primitives.iter().enumerate() {
+            refuse_unsupported(self.document, number, at, primitive)?;
             let part = Part { name: format!("mesh {number} primitive {at}"), primitive, first_time };
             self.primitive(&part, weights, joints)?;
         }

@@ -4,22 +4,23 @@ use super::accessor::{Accessor, Integers, Purpose};
 use super::document::Document;
 use super::scene::Nodes;
 use crate::transform::Turn;
-use glam::{DMat3, DMat4, Vec3};
+use glam::{DMat3, DMat4, DVec3, Vec3};
 use gltf::json::mesh::{Primitive, Semantic};
 use gltf::json::validation::Checked;
 use gltf::json::{self, Index};
+use serde_json::Value;
 
 /// The joint matrices: the world transform of each joint times its inverse bind matrix.
 ///
 /// # Errors
-/// A missing joint or accessor, or too few matrices.
+/// An invalid accessor, or too few matrices.
 pub(super) fn joint_matrices(
     document: &Document,
     nodes: &Nodes,
     index: Index<json::Skin>,
 ) -> Result<Vec<DMat4>, String> {
     let number = index.value();
-    let skin = document.root.get(index).ok_or_else(|| format!("skin {number} does not exist"))?;
+    let skin = &document.root.skins[number];
     let fail = |fault: String| format!("skin {number}: {fault}");
     let inverse_binds = match skin.inverse_bind_matrices {
         None => Vec::new(),
@@ -33,14 +34,38 @@ pub(super) fn joint_matrices(
         }
     };
     let matrix = |(at, joint): (usize, &Index<json::Node>)| {
-        let joint = joint.value();
-        let world =
-            nodes.world_from_node.get(joint).ok_or_else(|| fail(format!("its joint {joint} does not exist")))?;
+        let world = nodes.world_from_node[joint.value()];
         // Without the accessor all inverse bind matrices are the identity.
-        Ok(inverse_binds.get(at).map_or(*world, |bind| *world * DMat4::from_cols_array(&bind.map(f64::from))))
+        inverse_binds.get(at).map_or(world, |bind| world * DMat4::from_cols_array(&bind.map(f64::from)))
     };
-    skin.joints.iter().enumerate().map(matrix).collect()
+    Ok(skin.joints.iter().enumerate().map(matrix).collect())
 }
+
+/// The origin of a skinned mesh, which is subtracted in f64 so that its positions keep their digits far from 0: the place
+/// of the middle of its box, by the first joint, rounded to f32. It is 0 where that is less than [`FAR`] times as far as
+/// the box is large.
+pub(super) fn far_origin(document: &Document, mesh: &json::Mesh, joints: &[DMat4]) -> DVec3 {
+    let bounds = |primitive: &Primitive| {
+        let index = primitive.attributes.get(&Checked::Valid(Semantic::Positions))?;
+        let accessor = &document.root.accessors[index.value()];
+        let vector = |corner: &Option<Value>| -> Option<DVec3> {
+            let [x, y, z] = corner.as_ref()?.as_array()?.as_slice() else { return None };
+            Some(DVec3::new(x.as_f64()?, y.as_f64()?, z.as_f64()?))
+        };
+        // The bounds of normalised integers are integers.
+        let (low, high) = (vector(&accessor.min)?, vector(&accessor.max)?);
+        (!accessor.normalized).then_some((low, high))
+    };
+    let all = mesh.primitives.iter().filter_map(bounds).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+    let (Some((low, high)), Some(joint)) = (all, joints.first()) else { return DVec3::ZERO };
+    let [low, high] = [low, high].map(|corner| joint.transform_point3(corner));
+    let middle = low.midpoint(high).as_vec3();
+    let is_far = middle.is_finite() && f64::from(middle.length()) >= FAR * low.distance(high);
+    if is_far { middle.as_dvec3() } else { DVec3::ZERO }
+}
+
+/// At this distance, in sizes of the mesh, a position in f32 has lost half of its 24 bits.
+const FAR: f64 = 4096.0;
 
 /// The maximum number of sets of four joints and weights per vertex.
 const MOST_INFLUENCE_SETS: u32 = 8;

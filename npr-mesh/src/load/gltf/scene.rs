@@ -1,6 +1,7 @@
 //! The node hierarchy (glTF 2.0, 3.5 "Scenes").
 
 use super::document::Document;
+use super::extra::ExtraNode;
 use crate::LoadError;
 use glam::{DMat4, DQuat, DVec3};
 use gltf::json::Node;
@@ -16,7 +17,7 @@ pub(super) struct Nodes {
 /// Computes the world transforms of all nodes.
 ///
 /// # Errors
-/// A missing child, a child with two parents, a cycle, or more nodes than the limit.
+/// A child with two parents, a cycle, or more nodes than the limit.
 pub(super) fn pose(document: &Document) -> Result<Nodes, LoadError> {
     let nodes = &document.root.nodes;
     if nodes.len() as u64 > document.limits.nodes {
@@ -25,10 +26,7 @@ pub(super) fn pose(document: &Document) -> Result<Nodes, LoadError> {
     let mut parents: Vec<Option<usize>> = vec![None; nodes.len()];
     for (parent, node) in nodes.iter().enumerate() {
         for child in children(node) {
-            let slot = parents
-                .get_mut(child)
-                .ok_or_else(|| document.malformed(format!("node {parent}: its child {child} does not exist")))?;
-            if let Some(other) = slot.replace(parent) {
+            if let Some(other) = parents[child].replace(parent) {
                 return Err(document.malformed(format!("node {child} is a child of node {other} and of node {parent}")));
             }
         }
@@ -38,7 +36,7 @@ pub(super) fn pose(document: &Document) -> Result<Nodes, LoadError> {
     let mut world_from_node = vec![DMat4::IDENTITY; nodes.len()];
     let order = descend(nodes, &roots);
     for &node in &order {
-        let local = local_transform(&nodes[node])
+        let local = local_transform(&document.extra.nodes[node])
             .ok_or_else(|| document.malformed(format!("node {node}: its rotation has no length")))?;
         world_from_node[node] = parents[node].map_or(local, |parent| world_from_node[parent] * local);
     }
@@ -54,20 +52,13 @@ pub(super) fn pose(document: &Document) -> Result<Nodes, LoadError> {
 
     let scenes = &document.root.scenes;
     let scene = match document.root.scene {
-        Some(index) => Some(
-            scenes
-                .get(index.value())
-                .ok_or_else(|| document.malformed(format!("scene {} does not exist", index.value())))?,
-        ),
+        Some(index) => Some(&scenes[index.value()]),
         None => scenes.first(),
     };
     let shown = match scene {
         None => order,
         Some(scene) => {
             let roots: Vec<usize> = scene.nodes.iter().map(|n| n.value()).collect();
-            if let Some(missing) = roots.iter().find(|&&n| n >= nodes.len()) {
-                return Err(document.malformed(format!("the scene's node {missing} does not exist")));
-            }
             descend(nodes, &roots)
         }
     };
@@ -94,20 +85,28 @@ fn descend(nodes: &[Node], roots: &[usize]) -> Vec<usize> {
 }
 
 /// `None` if the rotation has no length.
-fn local_transform(node: &Node) -> Option<DMat4> {
-    if let Some(matrix) = node.matrix {
-        return Some(DMat4::from_cols_array(&matrix.map(f64::from)));
+fn local_transform(node: &ExtraNode) -> Option<DMat4> {
+    if let Some(matrix) = &node.matrix {
+        return Some(DMat4::from_cols_array(matrix));
     }
-    let vector = |v: [f32; 3]| DVec3::from_array(v.map(f64::from));
-    let rotation = DQuat::from_array(node.rotation.unwrap_or_default().0.map(f64::from));
+    trs(node.translation.as_deref(), node.rotation.as_deref(), node.scale.as_deref())
+}
+
+/// The matrix of a translation, a rotation as a quaternion xyzw, and a scale. `None` if the rotation has no length.
+pub(super) fn trs(
+    translation: Option<&[f64; 3]>,
+    rotation: Option<&[f64; 4]>,
+    scale: Option<&[f64; 3]>,
+) -> Option<DMat4> {
+    let rotation = rotation.map_or(DQuat::IDENTITY, |xyzw| DQuat::from_array(*xyzw));
     let length = rotation.length();
     if !length.is_finite() || length < 1e-6 {
         return None;
     }
     Some(DMat4::from_scale_rotation_translation(
-        node.scale.map_or(DVec3::ONE, vector),
+        scale.map_or(DVec3::ONE, |scale| DVec3::from_array(*scale)),
         // The file's rotation has unit length only up to rounding.
         rotation / length,
-        node.translation.map_or(DVec3::ZERO, vector),
+        translation.map_or(DVec3::ZERO, |translation| DVec3::from_array(*translation)),
     ))
 }

@@ -173,12 +173,12 @@ impl Opacity {
     }
 }
 
-/// Adds the materials of an MTL file: `newmtl`, `Kd`, `d`, `Tr`, `map_Kd` and `map_d`. Emission is ignored with a
-/// warning, and other statements without one.
+/// Adds the materials of an MTL file: `newmtl`, `Kd`, `Ke`, `d`, `Tr`, `map_Kd` and `map_d`. Other statements are
+/// ignored.
 fn read_materials(text: &str, materials: &mut Vec<MtlMaterial>, warnings: &mut Vec<String>) {
     let first = materials.len();
-    // Per material whether it has its own `Kd`, and its opacity.
-    let mut given: Vec<(bool, Opacity)> = Vec::new();
+    // Per material whether it has its own `Kd` and `map_Ke`, and its opacity.
+    let mut given: Vec<(bool, bool, Opacity)> = Vec::new();
     for line in text.trim_start_matches('\u{feff}').split(['\n', '\r']) {
         let line = line.trim();
         let (keyword, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
@@ -189,10 +189,10 @@ fn read_materials(text: &str, materials: &mut Vec<MtlMaterial>, warnings: &mut V
                 color_map: None,
                 alpha_map: None,
             });
-            given.push((false, Opacity::default()));
+            given.push((false, false, Opacity::default()));
             continue;
         }
-        let (Some(MtlMaterial { material, color_map, alpha_map }), Some((has_color, opacity))) =
+        let (Some(MtlMaterial { material, color_map, alpha_map }), Some((has_color, has_emission_map, opacity))) =
             (materials[first..].last_mut(), given.last_mut())
         else {
             continue;
@@ -228,9 +228,14 @@ fn read_materials(text: &str, materials: &mut Vec<MtlMaterial>, warnings: &mut V
                 }
                 *map = read;
             }
-            "map_Ke" => warnings.push("emission (Ke, map_Ke) is ignored".to_owned()),
-            "Ke" if numbers().flatten().any(|x| x != 0.0) => {
-                warnings.push("emission (Ke, map_Ke) is ignored".to_owned());
+            "Ke" => match numbers().collect::<Vec<_>>()[..] {
+                [Some(grey)] => material.emissive = emission(Vec3::splat(grey)),
+                [Some(r), Some(g), Some(b), ..] => material.emissive = emission(Vec3::new(r, g, b)),
+                _ => not_understood(),
+            },
+            "map_Ke" => {
+                warnings.push(format!("material \"{name}\": map_Ke is not supported, and its emission is left out"));
+                *has_emission_map = true;
             }
             _ => {}
         }
@@ -242,9 +247,15 @@ fn read_materials(text: &str, materials: &mut Vec<MtlMaterial>, warnings: &mut V
             (material.base_color, *has_color) = (linear_from_srgb(clamped).extend(1.0), true);
         }
     }
-    for (MtlMaterial { material, color_map, .. }, (has_color, opacity)) in materials[first..].iter_mut().zip(given) {
+    for (MtlMaterial { material, color_map, .. }, (has_color, has_emission_map, opacity)) in
+        materials[first..].iter_mut().zip(given)
+    {
         if color_map.is_some() && !has_color {
             material.base_color = Vec4::ONE;
+        }
+        if has_emission_map {
+            // Without its texture, the whole surface would be bright.
+            material.emissive = Vec3::ZERO;
         }
         let (alpha, contradiction) = opacity.alpha();
         material.base_color.w = alpha;
@@ -255,6 +266,11 @@ fn read_materials(text: &str, materials: &mut Vec<MtlMaterial>, warnings: &mut V
             material.alpha_mode = AlphaMode::Blend;
         }
     }
+}
+
+/// The linear colour of `Ke`, which is encoded like `Kd`.
+fn emission(encoded: Vec3) -> Vec3 {
+    linear_from_srgb(encoded.clamp(Vec3::ZERO, Vec3::ONE))
 }
 
 #[cfg(test)]
