@@ -1,5 +1,6 @@
 //! What a file holds.
 
+use super::far;
 use super::options::CREASE_ANGLE_RAD;
 use crate::{AlphaMode, Material, Model, Object, Texture, Warning, Wrap, normals};
 use glam::{BVec3, DAffine3, DVec3, Vec3};
@@ -74,8 +75,7 @@ impl Loaded {
             (0..8).map(move |i| object.world_from_mesh.transform_point3(corner(i).as_dvec3()))
         });
         let (low, high) = corners.map(|corner| (corner, corner)).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
-        let middle = low.midpoint(high);
-        (middle.length() >= 4.0 * low.distance(high)).then(|| middle.as_vec3().as_dvec3())
+        far::offset(low, high)
     }
 }
 
