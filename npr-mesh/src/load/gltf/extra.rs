@@ -58,7 +58,7 @@ pub(super) struct ExtraMesh {
 #[derive(Default, Deserialize)]
 #[serde(default)]
 struct ExtraPrimitive {
-    extensions: Option<Box<BTreeMap<String, IgnoredAny>>>,
+    extensions: Option<BTreeMap<String, IgnoredAny>>,
 }
 
 #[derive(Default, Deserialize)]
@@ -114,7 +114,7 @@ impl Extra {
     pub fn primitive_extensions(&self, mesh: usize, primitive: usize) -> impl Iterator<Item = &str> {
         let found = self.meshes.get(mesh).and_then(|mesh| mesh.primitives.get(primitive));
         found
-            .and_then(|primitive| primitive.extensions.as_deref())
+            .and_then(|primitive| primitive.extensions.as_ref())
             .into_iter()
             .flat_map(|of| of.keys().map(String::as_str))
     }
