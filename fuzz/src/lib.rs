@@ -14,7 +14,7 @@ use npr_harness::style::{Style, styles};
 use npr_harness::view::View;
 use npr_hatch::{sheet, store};
 use npr_mesh::export::ExportOptions;
-use npr_mesh::{Model, embedded};
+use npr_mesh::{Loaded, Model, embedded};
 use std::path::{Path, PathBuf};
 
 /// Larger models are loaded and looked at, but not drawn.
@@ -32,6 +32,56 @@ pub fn gltf(bytes: &[u8]) {
     model(bytes, if bytes.starts_with(b"glTF") { "glb" } else { "gltf" });
 }
 
+/// As a model's `.ply`.
+pub fn ply(bytes: &[u8]) {
+    model(bytes, "ply");
+}
+
+/// As a model's `.stl`.
+pub fn stl(bytes: &[u8]) {
+    model(bytes, "stl");
+}
+
+/// As a material file of two materials, `a` and `b`, whose textures are all there.
+pub fn mtl(bytes: &[u8]) {
+    const OBJ: &str = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 1\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n\
+                       usemtl a\nf 1/1 2/2 3/3\nusemtl b\nf 1/1 3/3 4/4\n";
+    // Two texels each: red and half transparent green; white and black.
+    const COLORED: &[u8] = b"\0\0\x02\0\0\0\0\0\0\0\0\0\x02\0\x01\0\x20\x08\0\0\xff\xff\0\xff\0\x80";
+    const GRAY: &[u8] = b"\0\0\x03\0\0\0\0\0\0\0\0\0\x02\0\x01\0\x08\0\xff\0";
+    let resolver = |name: &str| match name {
+        "m.mtl" => Ok(bytes.to_vec()),
+        name if name.len().is_multiple_of(2) => Ok(COLORED.to_vec()),
+        _ => Ok(GRAY.to_vec()),
+    };
+    if let Ok(loaded) = npr_mesh::load_bytes("m.obj", OBJ.into(), &resolver, &Default::default()) {
+        check(loaded, bytes);
+    }
+}
+
+/// As a model in memory and the files that it refers to: the first byte tells the format, and each name that is asked
+/// for a part of the bytes.
+pub fn memory(bytes: &[u8]) {
+    let Some((&format, bytes)) = bytes.split_first() else { return };
+    let resolver = |name: &str| {
+        assert!(
+            !name.is_empty() && name.split('/').all(|part| !["", ".", ".."].contains(&part)) && !name.contains('\\'),
+            "{name:?} is asked for"
+        );
+        let from = name.bytes().fold(0usize, |sum, byte| sum.wrapping_mul(7).wrapping_add(byte.into()));
+        match from % 5 {
+            0 => Err(std::io::ErrorKind::NotFound.into()),
+            1 => Err(std::io::Error::other("broken")),
+            _ => Ok(bytes[from % (bytes.len() + 1)..].to_vec()),
+        }
+    };
+    let name = ["obj", "a.gltf", "sub/a.glb", "a.ply", "a.STL", "none"][usize::from(format) % 6];
+    match npr_mesh::load_bytes(name, bytes.to_vec(), &resolver, &Default::default()) {
+        Ok(loaded) => check(loaded, bytes),
+        Err(error) => assert!(!error.to_string().is_empty()),
+    }
+}
+
 fn model(bytes: &[u8], ending: &str) {
     let folder = folder();
     let path = folder.join(format!("model.{ending}"));
@@ -39,10 +89,18 @@ fn model(bytes: &[u8], ending: &str) {
     let loaded = npr_mesh::load(&path, &Default::default());
     std::fs::remove_file(&path).expect("it was there");
     let _ = std::fs::remove_dir(&folder);
-    let Ok(loaded) = loaded else { return };
+    if let Ok(loaded) = loaded {
+        check(loaded, bytes);
+    }
+}
+
+/// Checks what was loaded from some bytes, and draws it.
+fn check(loaded: Loaded, bytes: &[u8]) {
     loaded.meshes.iter().for_each(sound);
     let options = ExportOptions { edges: Some(0.8) };
     npr_mesh::export::glb(&loaded.meshes, &loaded.objects, &options).expect("what was read can be written");
+    let (local, origin) = loaded.clone().into_model_near();
+    assert!(origin.is_finite() && local.positions.iter().all(|position| position.is_finite()), "the local model");
     assert!(
         !loaded.objects.is_empty() && loaded.objects.iter().all(|object| object.mesh < loaded.meshes.len()),
         "objects"

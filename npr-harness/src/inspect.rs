@@ -1,6 +1,6 @@
 //! Statistics of a model.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use npr_mesh::{
     Loaded, Model, SideVisibility, Warning,
     edges::{self, EdgeKind, EdgeOptions, Edges},
@@ -60,14 +60,11 @@ pub struct Inspection {
     /// Two-face edges whose faces have opposite winding.
     pub wound_oppositely: usize,
     /// The size of the bounding box of all faces and lines, per axis; zeros without either. In f64, since the size may exceed f32 and
-    /// positions may be far from 0; rounded to f32 where it can be.
-    #[serde(serialize_with = "short")]
+    /// positions may be far from 0; with as many decimal digits as the f32 numbers of the model have.
     pub extent: [f64; 3],
     /// The box's lower corner.
-    #[serde(serialize_with = "short")]
     pub min: [f64; 3],
     /// The box's upper corner.
-    #[serde(serialize_with = "short")]
     pub max: [f64; 3],
     /// The repairs and omissions of the loader; in JSON, objects of `text` and `count`.
     #[serde(serialize_with = "texts_and_counts")]
@@ -82,6 +79,18 @@ pub struct Inspection {
 /// # Panics
 /// If a face refers to a vertex that does not exist, or a per-face array does not have the length stated in [`Model`].
 pub fn inspect(name: &str, model: &Model, warnings: Vec<Warning>) -> Inspection {
+    inspect_at(name, model, DVec3::ZERO, warnings)
+}
+
+/// Computes the statistics of a file: as [`inspect`] of all its objects in one model.
+pub fn inspect_loaded(name: &str, loaded: Loaded) -> Inspection {
+    let (meshes, objects, warnings) = (loaded.meshes.len(), loaded.objects.len(), loaded.warnings.clone());
+    let (model, origin) = loaded.into_model_near();
+    Inspection { meshes, objects, ..inspect_at(name, &model, origin, warnings) }
+}
+
+/// [`inspect`] of a model whose positions are relative to an origin.
+fn inspect_at(name: &str, model: &Model, origin: DVec3, warnings: Vec<Warning>) -> Inspection {
     let options = EdgeOptions { skip_redundant: false, ..EdgeOptions::default() };
     let found = edges::find(&model.positions, &model.faces, &model.face_polygon, &model.face_material, &options);
     let of_kind = |kind| found.edges.iter().filter(|edge| edge.kind() == kind).count();
@@ -117,51 +126,34 @@ pub fn inspect(name: &str, model: &Model, warnings: Vec<Warning>) -> Inspection 
             .iter()
             .filter(|edge| edge.kind() == EdgeKind::TwoFace && edge.wound_oppositely())
             .count(),
-        extent: [0, 1, 2].map(|axis| {
-            let extent = max[axis] - min[axis];
-            if extent.is_finite() { extent.into() } else { f64::from(max[axis]) - f64::from(min[axis]) }
+        extent: std::array::from_fn(|axis| match max[axis] - min[axis] {
+            extent if extent.is_finite() => decimal(extent),
+            // Beyond f32.
+            _ => 2.0 * decimal(max[axis] / 2.0 - min[axis] / 2.0),
         }),
-        min: min.to_array().map(f64::from),
-        max: max.to_array().map(f64::from),
+        min: placed(origin, min, max.abs().max(min.abs())),
+        max: placed(origin, max, max.abs().max(min.abs())),
         warnings,
     }
 }
 
-/// Computes the statistics of a file: as [`inspect`] of all its objects in one model.
-pub fn inspect_loaded(name: &str, loaded: Loaded) -> Inspection {
-    let (meshes, objects, warnings) = (loaded.meshes.len(), loaded.objects.len(), loaded.warnings.clone());
-    let (model, origin) = loaded.into_model_near();
-    let near = inspect(name, &model, warnings);
-    let [min, max] = [near.min, near.max].map(|corner| (DVec3::from_array(corner) + origin).to_array());
-    Inspection { meshes, objects, min, max, ..near }
+/// The shortest decimal number that is a given f32.
+fn decimal(number: f32) -> f64 {
+    number.to_string().parse().unwrap_or(f64::NAN)
 }
 
-/// A number with the digits of an f32, where it is one.
-#[derive(Clone, Copy, serde::Serialize)]
-#[serde(untagged)]
-enum Short {
-    F32(f32),
-    F64(f64),
-}
-
-impl From<f64> for Short {
-    fn from(number: f64) -> Self {
-        let short = number as f32;
-        if f64::from(short) == number { Self::F32(short) } else { Self::F64(number) }
-    }
-}
-
-impl fmt::Display for Short {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::F32(number) => number.fmt(f),
-            Self::F64(number) => number.fmt(f),
+/// A position relative to an origin, with as many digits as f32 has where the model is largest.
+fn placed(origin: DVec3, position: Vec3, largest: Vec3) -> [f64; 3] {
+    let rounding = f64::from(largest.max_element()) * f64::from(f32::EPSILON);
+    std::array::from_fn(|axis| {
+        let (origin, here) = (origin[axis], position[axis]);
+        if origin == 0.0 {
+            return decimal(here);
         }
-    }
-}
-
-fn short<S: serde::Serializer>(numbers: &[f64; 3], to: S) -> Result<S::Ok, S::Error> {
-    to.collect_seq(numbers.map(Short::from))
+        let sum = origin + f64::from(here);
+        let mut rounded = (0..17).filter_map(|digits| format!("{sum:.digits$}").parse::<f64>().ok());
+        rounded.find(|rounded| (rounded - sum).abs() <= rounding).unwrap_or(sum)
+    })
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
@@ -268,7 +260,7 @@ fn area_vector(model: &Model, face: u32, areas: &mut HashMap<usize, DVec3>) -> D
 
 impl fmt::Display for Inspection {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let corner = |numbers: [f64; 3]| numbers.map(|number| Short::from(number).to_string()).join(" ");
+        let corner = |[x, y, z]: [f64; 3]| format!("{x} {y} {z}");
         let mut rows = vec![
             ("model", self.model.clone()),
             ("meshes", self.meshes.to_string()),

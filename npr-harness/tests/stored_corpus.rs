@@ -1,6 +1,6 @@
 //! Runs the fuzz targets' code on the stored corpus and on random changes of it, with a stable compiler.
 //!
-//! `NPR_FUZZ_SECONDS` is the time for changed files, for all four kinds together (2 by default); the changes are the
+//! `NPR_FUZZ_SECONDS` is the time for changed files, for all kinds together (2 by default); the changes are the
 //! same in each run. `fuzz/README.md` describes the targets.
 
 #[path = "../../fuzz/src/lib.rs"]
@@ -12,8 +12,16 @@ use std::time::{Duration, Instant};
 
 type Entry = fn(&[u8]);
 
-const TARGETS: [(&str, Entry); 4] =
-    [("obj", entries::obj), ("gltf", entries::gltf), ("style", entries::style), ("tam", entries::tam)];
+const TARGETS: [(&str, Entry); 8] = [
+    ("obj", entries::obj),
+    ("gltf", entries::gltf),
+    ("style", entries::style),
+    ("tam", entries::tam),
+    ("ply", entries::ply),
+    ("stl", entries::stl),
+    ("mtl", entries::mtl),
+    ("memory", entries::memory),
+];
 
 /// The largest file allowed in the corpus, bytes.
 const MOST_BYTES: usize = 8192;
@@ -62,6 +70,26 @@ fn stored_styles() {
 #[test]
 fn stored_tonal_art_maps() {
     store("tam");
+}
+
+#[test]
+fn stored_ply_files() {
+    store("ply");
+}
+
+#[test]
+fn stored_stl_files() {
+    store("stl");
+}
+
+#[test]
+fn stored_material_files() {
+    store("mtl");
+}
+
+#[test]
+fn stored_models_in_memory() {
+    store("memory");
 }
 
 /// The kinds share the time equally. If one panics, the file remains in the temporary folder and is named.

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 #[non_exhaustive]
 pub enum LoadError {
     /// The file extension belongs to no enabled loader.
-    #[error("{}: unknown model format (expected .obj, .gltf or .glb)", path.display())]
+    #[error("{}: unknown model format (expected .obj, .gltf, .glb, .ply or .stl)", path.display())]
     UnknownFormat {
         /// The file.
         path: PathBuf,

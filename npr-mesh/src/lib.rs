@@ -11,10 +11,10 @@
 //! ```
 //!
 //! [`Model`] consists of plain arrays: positions, normals, texture coordinates, triangles. `load` reads `.obj`
-//! (feature `obj`), `.gltf` and `.glb` (feature `gltf`): the meshes of the file, each once as a `Model` of its own, and
-//! the [`Object`]s that place them. `Loaded::into_model` puts all objects into one model in world space. With the feature
-//! `export`, `export::glb` writes models. [`embedded`]
-//! has built-in models. Both features are enabled by default.
+//! (feature `obj`), `.gltf` and `.glb` (feature `gltf`), `.ply` (feature `ply`) and `.stl` (feature `stl`): the meshes of
+//! the file, each once as a `Model` of its own, and the [`Object`]s that place them. `load_bytes` does so in memory.
+//! `Loaded::into_model` puts all objects into one model in world space. With the feature `export`, `export::glb` writes
+//! models. [`embedded`] has built-in models. The features of formats are enabled by default.
 //!
 //! # Rules
 //!
@@ -22,7 +22,8 @@
 //!   that texture and normal seams are not boundaries. For shading they remain separate.
 //! - A polygon of n corners becomes n − 2 triangles ([`triangulate`]). Diagonals are not edges, and all triangles of
 //!   a polygon have its Newell normal.
-//! - Missing normals are computed within each mesh ([`normals`]): weighted by angle, and split at creases.
+//! - Missing normals are computed within each mesh ([`normals`]): weighted by angle, and split at creases, or by the
+//!   smoothing groups of an OBJ file.
 //! - Coarse models can be smoothed by their normals ([`pn_triangles`]): closed surfaces remain closed, and edges
 //!   within a smoothed face can be contours.
 //! - Lines that a file has besides its faces are kept ([`Model::lines`]), and so is what it says of the edges of its faces
@@ -45,12 +46,15 @@
 //!   subfolders, and from `LoadOptions::asset_root`. `..`, absolute names and symbolic links must not leave these
 //!   folders. Only regular files are read, and nothing from a network.
 //! - Results do not depend on the scale of the model: sizes of 1e-30 or 1e30 work like 1.
+//! - Results do not depend on the distance from the origin, as far as the file has digits. Where the centre of an OBJ, PLY
+//!   or STL model is at least four times its diagonal away, an offset is subtracted in f64 before positions become f32,
+//!   and the object carries it as its translation. Where the file's numbers have lost digits, a warning tells the step.
 //!
 //! # Colours
 //!
 //! Material colours, vertex colours and emission are linear, textures are sRGB-encoded bytes. They are multiplied in
 //! linear light and encoded once. What a surface emits is added to its shaded colour after that: display-referred, and
-//! unchanged by light and shadow.
+//! unchanged by light and shadow. OBJ and PLY files have sRGB-encoded colours, which are converted.
 //!
 //! # Sources
 //!
@@ -67,7 +71,7 @@ mod error;
 #[cfg(feature = "export")]
 pub mod export;
 mod limits;
-#[cfg(any(feature = "obj", feature = "gltf"))]
+#[cfg(any(feature = "obj", feature = "gltf", feature = "ply", feature = "stl"))]
 mod load;
 mod model;
 pub mod normals;
@@ -85,14 +89,14 @@ pub use glam;
 
 pub use error::LoadError;
 pub use limits::Limits;
-#[cfg(any(feature = "obj", feature = "gltf"))]
-pub use load::{LoadOptions, Loaded, Warning, load};
+#[cfg(any(feature = "obj", feature = "gltf", feature = "ply", feature = "stl"))]
+pub use load::{LoadOptions, Loaded, Resolver, Warning, load, load_bytes};
 pub use model::{AlphaMode, Material, Model, Texture, Wrap};
 pub use object::Object;
 pub use side_visibility::{SideVisibility, edge_visibility};
 pub use up::UpAxis;
 
 /// Compiles the example of the README.
-#[cfg(all(doctest, any(feature = "obj", feature = "gltf")))]
+#[cfg(all(doctest, any(feature = "obj", feature = "gltf", feature = "ply", feature = "stl")))]
 #[doc = include_str!("../README.md")]
 struct ReadMe;

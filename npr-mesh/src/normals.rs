@@ -26,6 +26,18 @@ use glam::{DVec3, Vec3};
 /// Afterwards all normals are finite and of unit length. The time is approximately linear; the memory is about 60
 /// bytes per face.
 pub fn fill_missing(model: &mut Model, crease_angle_rad: f32) {
+    fill_missing_in_groups(model, crease_angle_rad, &[]);
+}
+
+/// The group of faces for which the crease angle decides.
+pub(crate) const UNSTATED: u32 = u32::MAX;
+
+/// [`fill_missing`] with a smoothing group for each face, as in OBJ files. Empty means [`UNSTATED`] for all.
+///
+/// All faces of a group at one position are one smooth group whatever their angle, faces of group 0 are flat, and
+/// faces of different groups share no normal. Between faces of group [`UNSTATED`] the crease angle decides.
+pub(crate) fn fill_missing_in_groups(model: &mut Model, crease_angle_rad: f32, groups: &[u32]) {
+    debug_assert!(groups.is_empty() || groups.len() == model.faces.len());
     let missing = normalize_given(model);
     if !model.faces.iter().flatten().any(|&v| missing[v as usize]) {
         return;
@@ -39,7 +51,7 @@ pub fn fill_missing(model: &mut Model, crease_angle_rad: f32) {
     // A tolerance, so that rounding of positions does not separate faces that meet at exactly the crease angle.
     let widest = (f64::from(crease_angle_rad).clamp(0.0, std::f64::consts::PI) + 1e-5).min(std::f64::consts::PI);
     let (least_cos, half_cos) = (widest.cos() - 1e-12, (0.5 * widest).cos());
-    let means = smooth_means(model, &representative, &shapes, half_cos);
+    let means = smooth_means(model, &representative, &shapes, half_cos, groups);
     for (vertex, normal) in model.normals.iter_mut().enumerate().filter(|(vertex, _)| missing[*vertex]) {
         let mean = means[representative[vertex] as usize].as_vec3();
         if mean != Vec3::ZERO {
@@ -53,7 +65,7 @@ pub fn fill_missing(model: &mut Model, crease_angle_rad: f32) {
     for here in 0..wanted.len() {
         let around = &corners[first_corner[here] as usize..first_corner[here + 1] as usize];
         if !around.is_empty() {
-            fan.group(model, &representative, &shapes, here as u32, around, least_cos);
+            fan.group(model, &representative, &shapes, here as u32, around, (least_cos, groups));
             fan.sum_up(&shapes, around);
             fan.assign(model, &mut representative, &missing, around);
         }
@@ -209,7 +221,13 @@ fn angle_rad(cross_length: f64, dot: f64) -> f64 {
 /// other.)
 ///
 /// Most positions of most models are smooth, and need no list of faces then.
-fn smooth_means(model: &Model, representative: &[u32], shapes: &[FaceShape], half_cos: f64) -> Vec<DVec3> {
+fn smooth_means(
+    model: &Model,
+    representative: &[u32],
+    shapes: &[FaceShape],
+    half_cos: f64,
+    groups: &[u32],
+) -> Vec<DVec3> {
     let mut means = vec![DVec3::ZERO; representative.len()];
     let corners = |face: &[u32; 3]| face.map(|vertex| representative[vertex as usize] as usize);
     for (face, shape) in model.faces.iter().zip(shapes) {
@@ -225,6 +243,17 @@ fn smooth_means(model: &Model, representative: &[u32], shapes: &[FaceShape], hal
             // Any normal fails this test if the mean is zero.
             if !shape.sound || shape.normal.dot(means[here]) < half_cos {
                 means[here] = DVec3::ZERO;
+            }
+        }
+    }
+    if !groups.is_empty() {
+        // The group of the first face at each position; flat faces share no normal, nor do those of different groups.
+        let mut group_at = vec![None; representative.len()];
+        for (face, group) in model.faces.iter().zip(groups) {
+            for here in corners(face) {
+                if *group == 0 || *group_at[here].get_or_insert(*group) != *group {
+                    means[here] = DVec3::ZERO;
+                }
             }
         }
     }
@@ -308,7 +337,7 @@ impl Fan {
         shapes: &[FaceShape],
         here: u32,
         around: &[u32],
-        least_cos: f64,
+        (least_cos, groups): (f64, &[u32]),
     ) {
         self.edges.clear();
         self.parent.clear();
@@ -326,9 +355,13 @@ impl Fan {
         }
         self.edges.sort_unstable();
         let face_of = |i: u32| around[i as usize] as usize / 3;
+        let group_of = |i: u32| groups.get(face_of(i)).copied().unwrap_or(UNSTATED);
         let meet_smoothly = |i: u32, j: u32, opposite: bool| {
             let cos = shapes[face_of(i)].normal.dot(shapes[face_of(j)].normal);
-            (if opposite { -cos } else { cos }) >= least_cos
+            match (group_of(i), group_of(j)) {
+                (UNSTATED, UNSTATED) => (if opposite { -cos } else { cos }) >= least_cos,
+                (a, b) => a == b && a != 0,
+            }
         };
         let edges = std::mem::take(&mut self.edges);
         for at_edge in edges.chunk_by(|a, b| a >> 32 == b >> 32) {
@@ -354,6 +387,17 @@ impl Fan {
             }
         }
         self.edges = edges;
+        if !groups.is_empty() {
+            // Faces of one group share a normal even where they share no edge.
+            let mut first_of: Vec<(u32, u32)> = Vec::new();
+            for i in (0..around.len() as u32).filter(|&i| shapes[face_of(i)].sound) {
+                match (group_of(i), first_of.iter().find(|(group, _)| *group == group_of(i))) {
+                    (0 | UNSTATED, _) => {}
+                    (_, Some(&(_, first))) => self.join(first, i, false),
+                    (group, None) => first_of.push((group, i)),
+                }
+            }
+        }
         self.settle_unsound(shapes, around, &meet_smoothly);
     }
 

@@ -321,7 +321,7 @@ fn delaunay(corners: &[Vec3], flat: &[DVec2], triangles: &mut Vec<[u32; 3]>) -> 
 const EAR_TESTS: usize = 20_000_000;
 
 /// The maximum for all polygons of a file, for a time of some seconds.
-#[cfg(feature = "obj")]
+#[cfg(any(feature = "obj", feature = "ply"))]
 pub(crate) const EAR_TESTS_OF_A_FILE: usize = 10 * EAR_TESTS;
 
 /// Cuts off corners until three are left: an ear if there is one, else a corner without area, else the next convex

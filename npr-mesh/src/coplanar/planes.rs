@@ -92,9 +92,9 @@ impl Cells {
     fn meeting<'a>(&'a self, is_uncertain: &'a [bool]) -> impl Iterator<Item = usize> + 'a {
         let count = self.ends.len();
         let [mut of_all, mut of_uncertain] = [Bits::new(count, SEEDS[0]), Bits::new(count, SEEDS[0])];
-        for at in 0..count {
+        for (at, &is_uncertain) in is_uncertain.iter().enumerate() {
             self.of(at).iter().for_each(|&cell| of_all.enter(cell));
-            if is_uncertain[at] {
+            if is_uncertain {
                 self.of(at).iter().for_each(|&cell| of_uncertain.enter(cell));
             }
         }

@@ -13,6 +13,9 @@ pub struct Parsed {
     pub objects: Vec<Object>,
     /// In the order of occurrence, with repetitions.
     pub warnings: Vec<String>,
+    /// Per mesh, or shorter: the smoothing group of each face, see [`crate::normals::fill_missing_in_groups`]. Empty
+    /// where the file has no groups.
+    pub smoothing: Vec<Vec<u32>>,
 }
 
 /// Reads a regular file within [`Limits::file_bytes`].

@@ -31,7 +31,7 @@ mod pose;
 mod scene;
 
 use super::external::{External, shortened};
-use super::file::{Parsed, read_file};
+use super::file::Parsed;
 use crate::LoadError;
 use document::{Bytes, Document, QUANTIZATION, malformed};
 use gltf::json::Root;
@@ -62,9 +62,8 @@ const EXTENSIONS: [&str; 10] = [
 ///
 /// # Errors
 /// [`LoadError`] with the file and the fault.
-pub(super) fn load(external: &External) -> Result<Parsed, LoadError> {
+pub(super) fn load(file: Vec<u8>, external: &External) -> Result<Parsed, LoadError> {
     let (path, limits) = (external.model, external.limits);
-    let file = read_file(path, limits)?;
     let mut warnings = Vec::new();
     let (text, binary) = files::split_container(&file, &mut warnings).map_err(|fault| malformed(path, fault))?;
     let (root, extra) = parse::parse(text, &mut warnings).map_err(|fault| match fault {
@@ -84,7 +83,7 @@ pub(super) fn load(external: &External) -> Result<Parsed, LoadError> {
     if objects.is_empty() && nodes.shown.iter().all(|&node| document.root.nodes[node].mesh.is_none()) {
         let meshes = document.root.meshes.len();
         return if meshes == 0 {
-            Ok(Parsed { meshes: Vec::new(), objects, warnings })
+            Ok(Parsed { objects, warnings, ..Parsed::default() })
         } else {
             Err(LoadError::NotPlaced { path: path.to_owned(), meshes })
         };
@@ -95,7 +94,7 @@ pub(super) fn load(external: &External) -> Result<Parsed, LoadError> {
         }
         _ => None,
     }));
-    Ok(Parsed { meshes, objects, warnings })
+    Ok(Parsed { meshes, objects, warnings, ..Parsed::default() })
 }
 
 fn version_error(path: &Path, version: &str) -> LoadError {

@@ -1,4 +1,4 @@
-//! Decodes PNG, JPEG and WebP to RGBA8.
+//! Decodes images to RGBA8.
 
 use crate::{Limits, LoadError};
 use image::error::ImageFormatHint;
@@ -6,8 +6,32 @@ use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader};
 use std::io::Cursor;
 use std::path::Path;
 
-/// The supported formats.
-const SUPPORTED: [ImageFormat; 3] = [ImageFormat::Png, ImageFormat::Jpeg, ImageFormat::WebP];
+/// A decoded image.
+pub(super) struct Decoded {
+    pub width: u32,
+    pub height: u32,
+    /// `width * height * 4` bytes, rows from the top.
+    pub rgba8: Vec<u8>,
+    /// Whether the file has alpha values.
+    #[cfg_attr(not(feature = "obj"), allow(dead_code))]
+    pub has_alpha: bool,
+}
+
+/// The formats of glTF 2.0, 3.8.3 "Images", and of `EXT_texture_webp`.
+#[cfg(feature = "gltf")]
+const OF_GLTF: [ImageFormat; 3] = [ImageFormat::Png, ImageFormat::Jpeg, ImageFormat::WebP];
+
+/// The formats that exporters of OBJ files name in material files.
+#[cfg(feature = "obj")]
+const OF_OBJ: [ImageFormat; 7] = [
+    ImageFormat::Png,
+    ImageFormat::Jpeg,
+    ImageFormat::Bmp,
+    ImageFormat::Tga,
+    ImageFormat::Gif,
+    ImageFormat::WebP,
+    ImageFormat::Tiff,
+];
 
 /// Decodes a PNG, JPEG or WebP file in memory: width, height and `width * height * 4` bytes, rows from the top.
 ///
@@ -17,6 +41,7 @@ const SUPPORTED: [ImageFormat; 3] = [ImageFormat::Png, ImageFormat::Jpeg, ImageF
 ///
 /// # Errors
 /// [`LoadError::ImageTooLarge`] and [`LoadError::Malformed`] with `path` and the name of the image.
+#[cfg(feature = "gltf")]
 pub(super) fn decode(
     bytes: &[u8],
     name: &str,
@@ -24,11 +49,62 @@ pub(super) fn decode(
     limits: &Limits,
     so_far: &mut u64,
 ) -> Result<(u32, u32, Vec<u8>), LoadError> {
+    let image = decode_one_of(&OF_GLTF, bytes, name, path, limits, so_far)?;
+    Ok((image.width, image.height, image.rgba8))
+}
+
+/// Decodes a PNG, JPEG, BMP, TGA, GIF (its first frame), WebP or TIFF file in memory, otherwise as `decode`. TGA files
+/// have no mark, so any other bytes are read as TGA if the name says so.
+#[cfg(feature = "obj")]
+pub(super) fn decode_any(
+    bytes: &[u8],
+    name: &str,
+    path: &Path,
+    limits: &Limits,
+    so_far: &mut u64,
+) -> Result<Decoded, LoadError> {
+    decode_one_of(&OF_OBJ, bytes, name, path, limits, so_far)
+}
+
+/// Checks the number of texels of an image and, added to `so_far`, of all images.
+///
+/// # Errors
+/// [`LoadError::ImageTooLarge`] with `path` and the name of the image.
+pub(super) fn check_texels(
+    texels: u64,
+    name: &str,
+    so_far: &mut u64,
+    path: &Path,
+    limits: &Limits,
+) -> Result<(), LoadError> {
+    *so_far = so_far.saturating_add(texels);
+    for (what, count, limit) in
+        [("texels in an image", texels, limits.texels), ("texels in all images", *so_far, limits.texels_in_all)]
+    {
+        if count > limit {
+            return Err(LoadError::ImageTooLarge { path: path.to_owned(), image: name.to_owned(), what, count, limit });
+        }
+    }
+    Ok(())
+}
+
+fn decode_one_of(
+    formats: &[ImageFormat],
+    bytes: &[u8],
+    name: &str,
+    path: &Path,
+    limits: &Limits,
+    so_far: &mut u64,
+) -> Result<Decoded, LoadError> {
     let malformed = |why: String| LoadError::Malformed { path: path.to_owned(), fault: format!("image {name}: {why}") };
     let mut reader =
         ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| malformed(e.to_string()))?;
+    let ending = Path::new(name).extension().and_then(|ending| ending.to_str());
+    if reader.format().is_none() && ending.is_some_and(|ending| ending.eq_ignore_ascii_case("tga")) {
+        reader.set_format(ImageFormat::Tga);
+    }
     // Another crate in the build may enable more formats of `image`.
-    if let Some(other) = reader.format().filter(|format| !SUPPORTED.contains(format)) {
+    if let Some(other) = reader.format().filter(|format| !formats.contains(format)) {
         return Err(malformed(ImageError::Unsupported(ImageFormatHint::Exact(other).into()).to_string()));
     }
     // The formats store at most eight bytes per texel; the rest is for the tables of the decoders.
@@ -39,22 +115,16 @@ pub(super) fn decode(
     let (width, height) = decoder.dimensions();
     let texels = u64::from(width) * u64::from(height);
     // Broken images count as well, since decoding them takes time.
-    *so_far = so_far.saturating_add(texels);
-    for (what, count, limit) in
-        [("texels in an image", texels, limits.texels), ("texels in all images", *so_far, limits.texels_in_all)]
-    {
-        if count > limit {
-            return Err(LoadError::ImageTooLarge { path: path.to_owned(), image: name.to_owned(), what, count, limit });
-        }
-    }
+    check_texels(texels, name, so_far, path, limits)?;
     if texels == 0 {
         return Err(malformed("no texel in it".to_owned()));
     }
     let image = DynamicImage::from_decoder(decoder).map_err(|e| malformed(e.to_string()))?;
-    Ok((width, height, image.into_rgba8().into_raw()))
+    let has_alpha = image.color().has_alpha();
+    Ok(Decoded { width, height, rgba8: image.into_rgba8().into_raw(), has_alpha })
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "gltf", feature = "obj"))]
 mod tests {
     use super::*;
     use image::{Rgba, RgbaImage};

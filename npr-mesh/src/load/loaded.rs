@@ -1,5 +1,6 @@
 //! What a file holds.
 
+use super::far;
 use super::options::CREASE_ANGLE_RAD;
 use crate::{AlphaMode, Material, Model, Object, Texture, Warning, Wrap, normals};
 use glam::{BVec3, DAffine3, DVec3, Vec3};
@@ -8,7 +9,8 @@ use std::collections::HashMap;
 /// What a file holds: meshes, each once, and the objects that place them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Loaded {
-    /// Each in its own space, with faces or lines or both, and with the materials and textures that it uses. All normals are present.
+    /// Each in its own space, with faces or lines or both, and with the materials and textures that it uses. All normals
+    /// are present.
     pub meshes: Vec<Model>,
     /// In the order of the file's nodes, depth first. At least one.
     pub objects: Vec<Object>,
@@ -22,6 +24,9 @@ impl Loaded {
     /// Objects are appended in their order, [transformed](Model::transformed). If there are several,
     /// [`Model::face_mesh`] is the index of the object, and equal materials and textures of different meshes are one.
     /// A singular transform destroys normals; they are made from the transformed faces.
+    ///
+    /// Positions are f32 in world space, so digits are lost where objects are far from the origin.
+    /// [`Loaded::into_model_near`] keeps them.
     ///
     /// # Panics
     /// If an object has a mesh that does not exist. The loader makes no such object.
@@ -71,8 +76,7 @@ impl Loaded {
             (0..8).map(move |i| object.world_from_mesh.transform_point3(corner(i).as_dvec3()))
         });
         let (low, high) = corners.map(|corner| (corner, corner)).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
-        let middle = low.midpoint(high);
-        (middle.length() >= 4.0 * low.distance(high)).then(|| middle.as_vec3().as_dvec3())
+        far::offset(low, high)
     }
 }
 

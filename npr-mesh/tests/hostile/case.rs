@@ -152,7 +152,7 @@ pub fn sound(loaded: Loaded) -> Result<Model, String> {
     check(loaded.objects.iter().all(|o| o.mesh < loaded.meshes.len()), "a mesh is out of range")?;
     check(loaded.objects.iter().all(|o| o.world_from_mesh.is_finite()), "a transform is not finite")?;
     for (number, mesh) in loaded.meshes.iter().enumerate() {
-        check(!mesh.faces.is_empty(), "a mesh without faces")?;
+        check(!mesh.faces.is_empty() || !mesh.lines.is_empty(), "a mesh without faces and lines")?;
         check(loaded.objects.iter().any(|o| o.mesh == number), "a mesh without objects")?;
         sound_model(mesh)?;
     }
@@ -165,6 +165,7 @@ fn sound_model(model: &Model) -> Result<(), String> {
     let vertices = model.positions.len();
     let fits = |length: usize, of: usize| length == 0 || length == of;
     check(model.faces.iter().flatten().all(|&v| (v as usize) < vertices), "a vertex is out of range")?;
+    check(model.lines.iter().flatten().all(|&v| (v as usize) < vertices), "a line's vertex is out of range")?;
     check(model.positions.iter().all(|p| p.is_finite()), "a position is not finite")?;
     check(model.normals.len() == vertices, "normals")?;
     check(model.normals.iter().all(|n| (n.length() - 1.0).abs() < 1e-4), "a normal is not unit")?;

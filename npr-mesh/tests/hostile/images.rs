@@ -59,7 +59,12 @@ pub fn cases() -> Vec<Case> {
     };
     vec![
         named("plain", "t.png"),
-        named("options", "-blendu on -o 1 2 3 -s 1 -mm 0 1 -clamp on -bm 1.0 t.png"),
+        texture(
+            "options",
+            "-blendu on -o 1 2 3 -s 1 -mm 0 1 -clamp on -bm 1.0 t.png",
+            &["option -blendu is ignored", "option -mm is ignored", "option -bm is ignored"],
+        )
+        .with("t.png", png()),
         named("quoted", "\"t.png\""),
         named("dot", "./t.png"),
         named("absolute-elsewhere", "/home/somebody/t.png"),
@@ -67,7 +72,7 @@ pub fn cases() -> Vec<Case> {
         named("case-of-the-option", "-CLAMP").with("-CLAMP", png()),
         texture("spaces", "my texture.png", &[]).with("my texture.png", png()),
         texture("options-only", "-o 1 2 3", &["/3: "]),
-        texture("option-cut-off", "-clamp", &[]),
+        texture("option-cut-off", "-clamp", &["map_Kd names no file"]),
         texture("missing", "none.png", &["none.png"]),
         texture("long-name", &"x".repeat(100_000), &["texture"]),
         texture("folder", "sub", &["not a regular file"]).with("sub/x", ""),

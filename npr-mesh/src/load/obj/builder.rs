@@ -1,6 +1,8 @@
 //! Merges tobj's meshes into one [`Model`].
 
 use super::prepare::{Runs, runs_within};
+use super::texture_map::Placement;
+use crate::normals::UNSTATED;
 use crate::triangulate::triangulate_within;
 use crate::{Limits, LoadError, Model};
 use glam::{Vec2, Vec3, Vec4};
@@ -21,6 +23,10 @@ pub(super) struct Builder<'a> {
     pub absent: &'a [Runs; 2],
     /// The corners at which an object or group begins.
     pub objects: &'a [u64],
+    /// The corners at which a smoothing group begins, and the group.
+    pub smoothing: &'a [(u64, u32)],
+    /// Per face its smoothing group; empty without groups.
+    pub face_group: Vec<u32>,
     /// The remaining budget of ear tests for polygons that intersect themselves.
     pub ear_tests: usize,
     /// The number of texture coordinates and colours that were replaced.
@@ -33,8 +39,8 @@ impl Builder<'_> {
     }
 
     /// Adds a mesh as returned by tobj without `single_index`: finite positions, and one index into each array per
-    /// corner.
-    pub fn add(&mut self, mesh: &tobj::Mesh, material: u32) -> Result<(), LoadError> {
+    /// corner. Meshes share no vertices, so texture coordinates may be placed for the material.
+    pub fn add(&mut self, mesh: &tobj::Mesh, material: u32, placement: &Placement) -> Result<(), LoadError> {
         let base = self.model.positions.len();
         let positions = mesh.positions.as_chunks::<3>().0;
         let corners = mesh.indices.len();
@@ -91,7 +97,7 @@ impl Builder<'_> {
         if !uv_of.is_empty() || !model.uvs.is_empty() {
             model.uvs.resize(base, Vec2::ZERO);
             for source in sources.into_iter().flatten() {
-                let [u, v] = uvs.get(source[1] as usize).copied().unwrap_or([0.0, 1.0]);
+                let [u, v] = uvs.get(source[1] as usize).map_or([0.0, 1.0], |uv| placement.place(*uv));
                 let finite = u.is_finite() && v.is_finite();
                 self.repaired += u64::from(!finite);
                 model.uvs.push(if finite { Vec2::new(u, 1.0 - v) } else { Vec2::ZERO });
@@ -122,6 +128,12 @@ impl Builder<'_> {
         let objects = self.objects;
         // With a single object, the array stays empty.
         let object_of = |corner: usize| objects.partition_point(|&begin| begin <= first_corner + corner as u64) as u32;
+        let groups = self.smoothing;
+        let group_of = |corner: usize| match groups.partition_point(|&(begin, _)| begin <= first_corner + corner as u64)
+        {
+            0 => UNSTATED,
+            after => groups[after - 1].1,
+        };
         let model = &mut self.model;
         let first_face = model.faces.len();
         if mesh.face_arities.is_empty() {
@@ -132,6 +144,9 @@ impl Builder<'_> {
             model.faces.extend(triangles.iter().map(|t| t.map(|v| base + v)));
             if !objects.is_empty() {
                 model.face_mesh.extend((0..triangles.len()).map(|triangle| object_of(3 * triangle)));
+            }
+            if !groups.is_empty() {
+                self.face_group.extend((0..triangles.len()).map(|triangle| group_of(3 * triangle)));
             }
             if !model.face_polygon.is_empty() {
                 extend_polygons(&mut model.face_polygon, triangles.len());
@@ -149,7 +164,7 @@ impl Builder<'_> {
                 let Some(corners) = vertex_of.get(at..at + arity as usize) else {
                     return Err(self.malformed("a face with corners that are not there".to_owned()));
                 };
-                let object = object_of(at);
+                let (object, group) = (object_of(at), group_of(at));
                 at += arity as usize;
                 if arity == 3 {
                     model.faces.push([base + corners[0], base + corners[1], base + corners[2]]);
@@ -161,6 +176,9 @@ impl Builder<'_> {
                 }
                 if !objects.is_empty() {
                     model.face_mesh.resize(model.faces.len(), object);
+                }
+                if !groups.is_empty() {
+                    self.face_group.resize(model.faces.len(), group);
                 }
                 if counts_polygons {
                     model.face_polygon.resize(model.faces.len(), polygon);

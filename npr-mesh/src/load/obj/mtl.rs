@@ -1,23 +1,18 @@
-//! Material files and their textures.
+//! Material files.
 
+use super::texture_map::TextureMap;
 use crate::load::external::{External, meanings, shortened};
-use crate::load::image_file;
-use crate::{AlphaMode, LoadError, Material, Model, Texture, Wrap};
-use glam::Vec3;
+use crate::load::linear_from_srgb;
+use crate::{AlphaMode, LoadError, Material};
+use glam::{Vec3, Vec4};
 use std::collections::{BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 
-/// A material and the name of its texture.
+/// A material and the names of its textures.
 pub(super) struct MtlMaterial {
     pub material: Material,
-    texture: Option<TextureName>,
-}
-
-struct TextureName {
-    /// The possible file names, and the name as written.
-    names: Vec<PathBuf>,
-    written: String,
-    wrap: Wrap,
+    pub color_map: Option<TextureMap>,
+    pub alpha_map: Option<TextureMap>,
 }
 
 #[derive(Default)]
@@ -33,16 +28,7 @@ impl Library {
     /// # Errors
     /// Only exceeded limits.
     pub fn read(&mut self, external: &External, line: &str) -> Result<(), LoadError> {
-        let line = line.trim();
-        // The line may list several files, file names may contain spaces, and a comment may follow.
-        let files = match find(external, line) {
-            Ok(whole) => vec![Ok(whole)],
-            Err(_) => {
-                let names = line.split_once(" #").map_or(line, |(names, _)| names);
-                names.split_whitespace().map(|name| find(external, name)).collect()
-            }
-        };
-        for file in files {
+        for file in material_files(external, line.trim()) {
             let bytes = file.and_then(|file| {
                 // Each file is read once, however many `mtllib` lines name it.
                 Ok(if self.read.insert(file.clone()) { Some((external.read(&file)?, file)) } else { None })
@@ -57,8 +43,10 @@ impl Library {
                     let text = String::from_utf8_lossy(&bytes);
                     let first = self.materials.len();
                     read_materials(&text, &mut self.materials, &mut self.warnings);
-                    for texture in self.materials[first..].iter_mut().filter_map(|m| m.texture.as_mut()) {
-                        texture.names = external.beside(&file, std::mem::take(&mut texture.names));
+                    for material in &mut self.materials[first..] {
+                        for map in [&mut material.color_map, &mut material.alpha_map].into_iter().flatten() {
+                            map.names = external.beside(&file, std::mem::take(&mut map.names));
+                        }
                     }
                 }
                 Err(error @ LoadError::TooLarge { .. }) => return Err(error),
@@ -67,6 +55,49 @@ impl Library {
         }
         Ok(())
     }
+}
+
+/// The files that a `mtllib` line names. It may name several, in quotes or not, names may contain spaces, and a comment
+/// may follow.
+fn material_files(external: &External, line: &str) -> Vec<Result<PathBuf, LoadError>> {
+    if let Ok(whole) = find(external, line) {
+        return vec![Ok(whole)];
+    }
+    let names = line.split_once(" #").map_or(line, |(names, _)| names);
+    let of_piece = |piece: &str| match find(external, piece) {
+        Err(LoadError::TooLarge { path, what, count, limit }) => {
+            vec![Err(LoadError::TooLarge { path, what, count, limit })]
+        }
+        Err(_) if piece.contains(char::is_whitespace) => {
+            piece.split_whitespace().map(|name| find(external, name)).collect()
+        }
+        found => vec![found],
+    };
+    pieces(names).into_iter().flat_map(of_piece).collect()
+}
+
+/// The names on a line: what is in quotes, and what ends in `.mtl`, spaces included.
+fn pieces(line: &str) -> Vec<&str> {
+    let mut pieces = Vec::new();
+    // Every second part is within quotes.
+    for (number, part) in line.split('"').enumerate() {
+        if number % 2 == 1 {
+            pieces.push(part);
+            continue;
+        }
+        let mut start = 0;
+        for (at, space) in part.match_indices(char::is_whitespace) {
+            let ends_name = part[..at].len() >= start + 4
+                && part.is_char_boundary(at - 4)
+                && part[at - 4..at].eq_ignore_ascii_case(".mtl");
+            if ends_name {
+                pieces.push(&part[start..at]);
+                start = at + space.len();
+            }
+        }
+        pieces.push(&part[start..]);
+    }
+    pieces.iter().map(|piece| piece.trim()).filter(|piece| !piece.is_empty()).collect()
 }
 
 /// The indices of materials by name; the first of several with one name.
@@ -111,12 +142,43 @@ fn find(external: &External, name: &str) -> Result<PathBuf, LoadError> {
     external.find(&meanings(name).unwrap_or_default())
 }
 
-/// Adds the materials of an MTL file: `newmtl`, `Kd`, `Ke`, `d`, `Tr` and `map_Kd`. Other statements are ignored.
+/// The opacity statements of a material.
+#[derive(Default)]
+struct Opacity {
+    /// The last `d`.
+    dissolve: Option<f32>,
+    /// The last `Tr`.
+    transparency: Option<f32>,
+}
+
+impl Opacity {
+    /// The alpha that a material's statements mean, and why it needs a warning.
+    ///
+    /// `d` is opacity and `Tr` is 1 - `d`, but some exporters write the opacity for both. So `d` has precedence, wherever
+    /// it is, and a material vanishes only if nothing else says otherwise: it is opaque with a `d` of 0 that `Tr`
+    /// contradicts, and with a `Tr` of 1 without `d`.
+    fn alpha(&self) -> (f32, Option<String>) {
+        let range = |x: f32| x.clamp(0.0, 1.0);
+        match (self.dissolve, self.transparency) {
+            (None, None) => (1.0, None),
+            (Some(d), None) => (range(d), None),
+            (None, Some(tr)) if tr >= 1.0 => (1.0, Some(format!("Tr {tr} without d is taken as opaque"))),
+            (None, Some(tr)) => (1.0 - range(tr), None),
+            (Some(d), Some(tr)) if (range(d) - (1.0 - range(tr))).abs() < 0.01 => (range(d), None),
+            (Some(d), Some(tr)) => {
+                let alpha = if d <= 0.0 { 1.0 } else { range(d) };
+                (alpha, Some(format!("d {d} and Tr {tr} contradict each other: its opacity is {alpha}")))
+            }
+        }
+    }
+}
+
+/// Adds the materials of an MTL file: `newmtl`, `Kd`, `Ke`, `d`, `Tr`, `map_Kd` and `map_d`. Other statements are
+/// ignored.
 fn read_materials(text: &str, materials: &mut Vec<MtlMaterial>, warnings: &mut Vec<String>) {
     let first = materials.len();
-    // Per material whether it has its own `Kd` and `d`.
-    let mut given = Vec::new();
-    let mut textured_emission = Vec::new();
+    // Per material whether it has its own `Kd` and `map_Ke`, and its opacity.
+    let mut given: Vec<(bool, bool, Opacity)> = Vec::new();
     for line in text.trim_start_matches('\u{feff}').split(['\n', '\r']) {
         let line = line.trim();
         let (keyword, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
@@ -124,13 +186,13 @@ fn read_materials(text: &str, materials: &mut Vec<MtlMaterial>, warnings: &mut V
         if keyword == "newmtl" {
             materials.push(MtlMaterial {
                 material: Material { name: rest.to_owned(), ..Material::default() },
-                texture: None,
+                color_map: None,
+                alpha_map: None,
             });
-            given.push((false, false));
+            given.push((false, false, Opacity::default()));
             continue;
         }
-        let number = materials.len().saturating_sub(1);
-        let (Some(MtlMaterial { material, texture }), Some((has_color, has_dissolve))) =
+        let (Some(MtlMaterial { material, color_map, alpha_map }), Some((has_color, has_emission_map, opacity))) =
             (materials[first..].last_mut(), given.last_mut())
         else {
             continue;
@@ -138,36 +200,43 @@ fn read_materials(text: &str, materials: &mut Vec<MtlMaterial>, warnings: &mut V
         let name = shortened(&material.name);
         let shown = shortened(rest);
         let numbers = || rest.split_whitespace().map(|w| w.parse::<f32>().ok().filter(|x| x.is_finite()));
+        let mut not_understood =
+            || warnings.push(format!("material \"{name}\": {keyword} \"{shown}\" is not understood"));
         let mut color = None;
         match keyword {
             "Kd" => match numbers().collect::<Vec<_>>()[..] {
                 // A single number is a gray.
                 [Some(grey)] => color = Some(Vec3::splat(grey)),
                 [Some(r), Some(g), Some(b), ..] => color = Some(Vec3::new(r, g, b)),
-                _ => warnings.push(format!("material \"{name}\": Kd \"{shown}\" is not understood")),
+                _ => not_understood(),
             },
             // The number is last; `-halo` may precede it.
             "d" => match numbers().next_back().flatten() {
-                Some(alpha) => (material.base_color.w, *has_dissolve) = (alpha.clamp(0.0, 1.0), true),
-                None => warnings.push(format!("material \"{name}\": d \"{shown}\" is not understood")),
+                Some(alpha) => opacity.dissolve = Some(alpha),
+                None => not_understood(),
             },
-            // Exporters disagree about `Tr`, so `d` has precedence.
-            "Tr" if !*has_dissolve => match numbers().next_back().flatten() {
-                Some(clear) => material.base_color.w = (1.0 - clear).clamp(0.0, 1.0),
-                None => warnings.push(format!("material \"{name}\": Tr \"{shown}\" is not understood")),
+            "Tr" => match numbers().next_back().flatten() {
+                Some(clear) => opacity.transparency = Some(clear),
+                None => not_understood(),
             },
-            "map_Kd" => *texture = texture_name(rest),
+            "map_Kd" | "map_d" => {
+                let map = if keyword == "map_Kd" { color_map } else { alpha_map };
+                let (read, ignored) = TextureMap::read(rest);
+                warnings.extend(ignored.iter().map(|option| format!("the texture option {option} is ignored")));
+                if read.is_none() {
+                    warnings.push(format!("material \"{name}\": {keyword} names no file"));
+                }
+                *map = read;
+            }
             "Ke" => match numbers().collect::<Vec<_>>()[..] {
                 [Some(grey)] => material.emissive = emission(Vec3::splat(grey)),
                 [Some(r), Some(g), Some(b), ..] => material.emissive = emission(Vec3::new(r, g, b)),
-                _ => warnings.push(format!("material \"{name}\": Ke \"{shown}\" is not understood")),
+                _ => not_understood(),
             },
             "map_Ke" => {
                 warnings.push(format!("material \"{name}\": map_Ke is not supported, and its emission is left out"));
-                // Without its texture, the whole surface would be bright.
-                textured_emission.push(number);
+                *has_emission_map = true;
             }
-            "map_d" => warnings.push(format!("material \"{name}\": map_d is not supported")),
             _ => {}
         }
         if let Some(encoded) = color {
@@ -175,15 +244,25 @@ fn read_materials(text: &str, materials: &mut Vec<MtlMaterial>, warnings: &mut V
             if clamped != encoded {
                 warnings.push(format!("material \"{name}\": Kd \"{shown}\" is not within 0 to 1"));
             }
-            (material.base_color, *has_color) = (linear_from_srgb(clamped).extend(material.base_color.w), true);
+            (material.base_color, *has_color) = (linear_from_srgb(clamped).extend(1.0), true);
         }
     }
-    textured_emission.into_iter().for_each(|number| materials[number].material.emissive = Vec3::ZERO);
-    for (MtlMaterial { material, texture }, (has_color, _)) in materials[first..].iter_mut().zip(given) {
-        if texture.is_some() && !has_color {
-            material.base_color = Vec3::ONE.extend(material.base_color.w);
+    for (MtlMaterial { material, color_map, .. }, (has_color, has_emission_map, opacity)) in
+        materials[first..].iter_mut().zip(given)
+    {
+        if color_map.is_some() && !has_color {
+            material.base_color = Vec4::ONE;
         }
-        if material.base_color.w < 1.0 {
+        if has_emission_map {
+            // Without its texture, the whole surface would be bright.
+            material.emissive = Vec3::ZERO;
+        }
+        let (alpha, contradiction) = opacity.alpha();
+        material.base_color.w = alpha;
+        if let Some(what) = contradiction {
+            warnings.push(format!("material \"{}\": {what}", shortened(&material.name)));
+        }
+        if alpha < 1.0 {
             material.alpha_mode = AlphaMode::Blend;
         }
     }
@@ -194,99 +273,44 @@ fn emission(encoded: Vec3) -> Vec3 {
     linear_from_srgb(encoded.clamp(Vec3::ZERO, Vec3::ONE))
 }
 
-/// The file that a `map_…` line names after its options.
-fn texture_name(line: &str) -> Option<TextureName> {
-    let mut rest = line.trim();
-    let mut wrap = Wrap::Repeat;
-    while rest.starts_with('-') {
-        let (option, after) = rest.split_once(char::is_whitespace)?;
-        rest = after.trim_start();
-        let (least, most) = match option {
-            "-o" | "-s" | "-t" => (1, 3),
-            "-mm" => (2, 2),
-            "-blendu" | "-blendv" | "-cc" | "-clamp" | "-imfchan" | "-type" | "-texres" | "-boost" | "-bm" => (1, 1),
-            // The name of a file may begin with a hyphen.
-            _ => {
-                rest = line[line.len() - after.len() - option.len() - 1..].trim();
-                break;
-            }
-        };
-        for argument in 0..most {
-            let Some((word, after)) = rest.split_once(char::is_whitespace) else { break };
-            if argument >= least && word.parse::<f32>().is_err() {
-                break;
-            }
-            if option == "-clamp" && word == "on" {
-                wrap = Wrap::Clamp;
-            }
-            rest = after.trim_start();
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_on_a_mtllib_line() {
+        for (line, names) in [
+            ("a.mtl", &["a.mtl"][..]),
+            ("a.mtl  b.MTL", &["a.mtl", "b.MTL"]),
+            ("my own.mtl other one.mtl", &["my own.mtl", "other one.mtl"]),
+            ("\"my own.mtl\" b.mtl", &["my own.mtl", "b.mtl"]),
+            ("\"my own\" \"b\"", &["my own", "b"]),
+            ("a b", &["a b"]),
+            ("é.mtl ü", &["é.mtl", "ü"]),
+            ("\"\"", &[]),
+            ("", &[]),
+        ] {
+            assert_eq!(pieces(line), names, "{line}");
         }
     }
-    let name = rest.trim_matches('"');
-    meanings(name).map(|names| TextureName { names, written: shortened(name), wrap })
-}
 
-/// Moves the materials to the model and loads the textures of those that are `used`, each file once per wrap mode.
-///
-/// # Errors
-/// Only exceeded limits. A missing or invalid texture gives a warning.
-pub(super) fn move_materials(
-    materials: Vec<MtlMaterial>,
-    used: &[bool],
-    model: &mut Model,
-    warnings: &mut Vec<String>,
-    external: &External,
-) -> Result<(), LoadError> {
-    let mut known: HashMap<(String, bool), Option<u32>> = HashMap::new();
-    let mut texels = 0;
-    for (MtlMaterial { mut material, texture }, used) in materials.into_iter().zip(used) {
-        if let Some(TextureName { names, written, wrap }) = texture.filter(|_| *used) {
-            let key = (names[0].to_string_lossy().into_owned(), wrap == Wrap::Clamp);
-            material.texture = match known.get(&key) {
-                Some(&known) => known,
-                None => {
-                    let texture =
-                        external.find(&names).and_then(|file| read_texture(&file, wrap, &mut texels, external));
-                    let texture = match texture {
-                        Ok(texture) => {
-                            model.textures.push(texture);
-                            Some(model.textures.len() as u32 - 1)
-                        }
-                        Err(error @ LoadError::TooLarge { .. }) => return Err(error),
-                        Err(LoadError::ImageTooLarge { image, what, count, limit, .. }) => {
-                            let path = external.model.to_owned();
-                            return Err(LoadError::ImageTooLarge { path, image, what, count, limit });
-                        }
-                        Err(LoadError::Outside { .. }) => {
-                            warnings.push(format!("texture \"{written}\" leads out of the model's folder"));
-                            None
-                        }
-                        Err(error) => {
-                            warnings.push(format!("texture {error}"));
-                            None
-                        }
-                    };
-                    known.insert(key, texture);
-                    texture
-                }
-            };
+    #[test]
+    fn opacity_of_every_combination() {
+        for (dissolve, transparency, alpha, warned) in [
+            (None, None, 1.0, false),
+            (Some(0.25), None, 0.25, false),
+            (Some(0.0), None, 0.0, false),
+            (None, Some(0.25), 0.75, false),
+            (None, Some(1.0), 1.0, true),
+            (Some(1.0), Some(0.0), 1.0, false),
+            (Some(0.25), Some(0.75), 0.25, false),
+            (Some(1.0), Some(1.0), 1.0, true),
+            (Some(0.0), Some(0.0), 1.0, true),
+            (Some(0.0), Some(1.0), 0.0, false),
+            (Some(0.25), Some(0.25), 0.25, true),
+        ] {
+            let (found, warning) = Opacity { dissolve, transparency }.alpha();
+            assert_eq!((found, warning.is_some()), (alpha, warned), "{dissolve:?} {transparency:?}");
         }
-        model.materials.push(material);
     }
-    Ok(())
-}
-
-fn read_texture(file: &Path, wrap: Wrap, texels: &mut u64, external: &External) -> Result<Texture, LoadError> {
-    let name = file.file_name().unwrap_or(file.as_os_str()).to_string_lossy().into_owned();
-    let bytes = external.read(file)?;
-    let (width, height, rgba8) = image_file::decode(&bytes, &shortened(&name), file, external.limits, texels)?;
-    Ok(Texture { name, width, height, rgba8: rgba8.into(), wrap: [wrap; 2], smooth: true })
-}
-
-pub(super) fn linear_from_srgb(encoded: Vec3) -> Vec3 {
-    let channel = |c: f32| {
-        let c = f64::from(c.max(0.0));
-        (if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }) as f32
-    };
-    Vec3::new(channel(encoded.x), channel(encoded.y), channel(encoded.z))
 }

@@ -4,6 +4,7 @@ use super::lines::{
     Corners, count_words, first_words, line_length, number, plain_face, plain_vertex, trim_end, words_of,
 };
 use crate::edges::MOST_FACES;
+use crate::normals::UNSTATED;
 use crate::{Limits, LoadError};
 use std::borrow::Cow;
 use std::collections::BTreeSet;
@@ -30,6 +31,10 @@ pub(super) struct Prepared {
     pub material_files: Vec<String>,
     /// The corners at which an object or group begins, numbered likewise, in ascending order.
     pub objects: Vec<u64>,
+    /// The corners at which a smoothing group begins, numbered likewise, in ascending order, and the group: 0 for none.
+    pub smoothing: Vec<(u64, u32)>,
+    /// The segments of polylines as indices of `v` lines, from 0.
+    pub lines: Vec<[u32; 2]>,
     pub warnings: Vec<String>,
 }
 
@@ -66,8 +71,7 @@ pub(super) fn runs_within(runs: &Runs, range: &Range<u64>) -> impl Iterator<Item
 }
 
 /// Keywords of lines that do not affect faces or materials.
-const PASSED_OVER: [&[u8]; 28] = [
-    b"s",
+const PASSED_OVER: [&[u8]; 27] = [
     b"mg",
     b"vp",
     b"vw",
@@ -129,6 +133,10 @@ pub(super) fn prepare(mut bytes: Vec<u8>, path: &Path, limits: &Limits) -> Resul
     let mut material_files = Vec::new();
     let mut material_files_known = BTreeSet::new();
     let mut objects = Vec::new();
+    let mut smoothing: Vec<(u64, u32)> = Vec::new();
+    let mut lines: Vec<[u32; 2]> = Vec::new();
+    // The highest index of a polyline, and its line.
+    let mut highest_of_lines = (0u64, 0u64);
     // Per array the highest index of a face, and the line of that face.
     let mut highest = [(0u64, 0u64); 3];
     let mut edit = Edit { bytes: &bytes, out: Vec::new(), copied: 0 };
@@ -284,6 +292,7 @@ pub(super) fn prepare(mut bytes: Vec<u8>, path: &Path, limits: &Limits) -> Resul
             }
             b"mtllib" => {
                 let names = String::from_utf8_lossy(rest.trim_ascii());
+                repaired.nameless_files += u64::from(names.trim_matches(['"', ' ']).is_empty());
                 if !names.is_empty() && material_files_known.insert(names.to_string()) {
                     material_files.push(names.into_owned());
                 }
@@ -314,12 +323,54 @@ pub(super) fn prepare(mut bytes: Vec<u8>, path: &Path, limits: &Limits) -> Resul
                 edit.replace(begin, at, b"");
                 continue;
             }
-            // Lines that tobj would parse as faces, and lines that may not be UTF-8.
+            b"s" => {
+                match smoothing_group(rest) {
+                    Some(group) => match smoothing.last_mut() {
+                        Some(last) if last.0 == counts.corners => last.1 = group,
+                        _ => smoothing.push((counts.corners, group)),
+                    },
+                    None => repaired.smoothing += 1,
+                }
+                edit.replace(begin, at, b"");
+                continue;
+            }
+            // tobj would parse these as faces.
+            b"l" => {
+                let (mut vertices, mut before) = (0, None);
+                let mut polyline = Corners { rest };
+                while let Some([index, ..]) = polyline
+                    .next_corner()
+                    .map_err(|fault| bad(fault.replace("face corner", "line's end").replace("face", "line")))?
+                {
+                    let count = counts.arrays[0];
+                    let vertex = match index {
+                        1.. => index as u64 - 1,
+                        0 => return Err(bad("a line's end without a vertex (they count from 1)".to_owned())),
+                        _ if index.unsigned_abs() > count => {
+                            return Err(bad(format!("a line uses vertex {index}, and there are {count} before it")));
+                        }
+                        _ => count - index.unsigned_abs(),
+                    };
+                    if vertex >= highest_of_lines.0 {
+                        highest_of_lines = (vertex + 1, first_line_number);
+                    }
+                    match before.replace(vertex as u32) {
+                        Some(before) if u64::from(before) != vertex => lines.push([before, vertex as u32]),
+                        Some(_) => repaired.short_lines += 1,
+                        None => {}
+                    }
+                    vertices += 1;
+                }
+                repaired.short_lines += u64::from(vertices < 2);
+                edit.replace(begin, at, b"");
+                continue;
+            }
+            // Lines that may not be UTF-8.
             [] => continue,
             [b'#', ..] if line.is_ascii() => continue,
             _ => {
                 match keyword {
-                    b"l" | b"p" => repaired.points_and_lines += 1,
+                    b"p" => repaired.points += 1,
                     b"curv" | b"curv2" | b"surf" => repaired.free_forms += 1,
                     b"call" | b"csh" => repaired.calls += 1,
                     _ if keyword[0] == b'#' || PASSED_OVER.contains(&keyword) => {}
@@ -337,6 +388,7 @@ pub(super) fn prepare(mut bytes: Vec<u8>, path: &Path, limits: &Limits) -> Resul
     for (what, count, limit) in [
         ("vertices", counts.arrays.iter().copied().max().unwrap_or(0), limits.vertices),
         ("faces", counts.triangles, limits.faces.min(MOST_FACES as u64)),
+        ("line segments", lines.len() as u64, limits.faces),
     ] {
         if count > limit {
             return Err(LoadError::TooLarge { path: path.to_owned(), what, count, limit });
@@ -348,13 +400,28 @@ pub(super) fn prepare(mut bytes: Vec<u8>, path: &Path, limits: &Limits) -> Resul
             return Err(malformed(line, format!("a face uses {name} {index} of {count}")));
         }
     }
+    let (index, line) = highest_of_lines;
+    if index > counts.arrays[0] {
+        return Err(malformed(line, format!("a line uses vertex {index} of {}", counts.arrays[0])));
+    }
     let text = edit.finish();
     let mut text = text.unwrap_or(bytes);
     if counts.colored > 0 && counts.colored < counts.arrays[0] {
         text = color_all(&text);
         repaired.uncolored = counts.arrays[0] - counts.colored;
     }
-    Ok(Prepared { text, counts, absent, materials_used, material_files, objects, warnings: repaired.warnings() })
+    let warnings = repaired.warnings();
+    Ok(Prepared { text, counts, absent, materials_used, material_files, objects, smoothing, lines, warnings })
+}
+
+/// The number of a smoothing group, 0 for none; `None` if it is not understood.
+fn smoothing_group(rest: &[u8]) -> Option<u32> {
+    match words_of(rest).next()? {
+        b"off" | b"null" => Some(0),
+        b"on" => Some(1),
+        // Numbers beyond are one group.
+        word => Some(std::str::from_utf8(word).ok()?.parse::<u64>().ok()?.min(u64::from(UNSTATED) - 1) as u32),
+    }
 }
 
 #[derive(Default)]
@@ -366,7 +433,10 @@ struct Repaired {
     vertex_words: u64,
     uncolored: u64,
     nameless: u64,
-    points_and_lines: u64,
+    nameless_files: u64,
+    smoothing: u64,
+    short_lines: u64,
+    points: u64,
     free_forms: u64,
     calls: u64,
     unknown: u64,
@@ -382,7 +452,10 @@ impl Repaired {
             (self.vertex_words, "vertices have 5 numbers or more than 6: what is too much is passed over"),
             (self.uncolored, "vertices have no colour where others have one: they are white"),
             (self.nameless, "usemtl lines without a name are passed over"),
-            (self.points_and_lines, "points and lines are left out"),
+            (self.nameless_files, "mtllib lines without a name are passed over"),
+            (self.smoothing, "smoothing groups are not understood: the group before goes on"),
+            (self.short_lines, "lines from a vertex to itself are left out"),
+            (self.points, "points are left out"),
             (self.free_forms, "curves and surfaces are left out"),
             (self.calls, "calls of other files are not followed"),
             (self.unknown, "lines begin with none of the format's keywords: they are passed over"),
