@@ -22,6 +22,7 @@ use crate::plan::Plan;
 use crate::printed_fins::cpu::draw_printed;
 use crate::rays::Hit;
 use crate::scene::Scene;
+use crate::scene::opacity::HIDES_FROM;
 use crate::shadow::cpu::ShadowAt;
 use crate::view::{View, size_px};
 use glam::{DVec2, DVec3, DVec4};
@@ -252,13 +253,14 @@ impl FrameContext<'_> {
     ) {
         for x in 0..width {
             let solid = hits.map_or_else(|| self.first_solid(x, y), |hits| hits[x as usize]);
+            let hiding = if self.plan.blended_hide { self.first_hiding(solid, x, y) } else { solid };
             if let Some((color, depth)) = &mut picture {
                 color[x as usize] = self.trace_pixel(solid.as_ref(), x, y);
-                depth[x as usize] = solid.map_or(0.0, |hit| self.plan.view.camera.buffer_depth(hit.t));
+                depth[x as usize] = hiding.map_or(0.0, |hit| self.plan.view.camera.buffer_depth(hit.t));
             }
             match &mut texels {
-                Some(TexelRow::Packed(texels)) => texels[x as usize] = self.texel(solid.as_ref(), x, y),
-                Some(TexelRow::Unquantised(texels)) => texels[x as usize] = self.gbuffer_texel(solid.as_ref(), x, y),
+                Some(TexelRow::Packed(texels)) => texels[x as usize] = self.texel(hiding.as_ref(), x, y),
+                Some(TexelRow::Unquantised(texels)) => texels[x as usize] = self.gbuffer_texel(hiding.as_ref(), x, y),
                 None => {}
             }
         }
@@ -280,6 +282,21 @@ impl FrameContext<'_> {
                 && !self.is_inset(hit, x, y)
         };
         self.scene.closest(origin, direction, self.plan.view.camera.depth_range(), is_solid)
+    }
+
+    /// The nearest surface at a pixel that hides lines behind it: `solid`, the nearest unblended one, or a blended one in
+    /// front of it.
+    fn first_hiding(&self, solid: Option<Hit>, x: u32, y: u32) -> Option<Hit> {
+        let (origin, direction) = self.rays.through(self.sample_point(f64::from(x), f64::from(y)));
+        let range = self.plan.view.camera.depth_range();
+        let nearer = (range.0, solid.map_or(range.1, |hit| hit.t));
+        let hides = |hit: &Hit| {
+            self.is_blended(hit)
+                && self.is_shown(hit)
+                && self.scene.keeps(origin + direction * hit.t)
+                && self.opacity(hit, x, y) >= HIDES_FROM
+        };
+        self.scene.closest(origin, direction, nearer, hides).or(solid)
     }
 
     fn trace_pixel(&self, solid: Option<&Hit>, x: u32, y: u32) -> DVec4 {

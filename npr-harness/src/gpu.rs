@@ -29,7 +29,7 @@ use crate::image_lines::gpu::{InkFrame, InkPasses};
 use crate::picture::Image;
 use crate::plan::Plan;
 use crate::scene::{Object, ObjectLines, Scene};
-use crate::shadow::gpu::{ShadowFrame, ShadowOnDevice, ShadowPasses, StencilTarget};
+use crate::shadow::gpu::{ShadowDepth, ShadowFrame, ShadowOnDevice, ShadowPasses, StencilTarget};
 use crate::style::Style;
 use crate::view::{View, size_px};
 use glam::{DAffine3, DMat4};
@@ -44,7 +44,7 @@ use resolve::ResolvePass;
 use shader::LightOnDevice;
 use std::cell::{OnceCell, RefCell};
 use std::sync::Arc;
-use surface::{SurfaceFrame, SurfacePass, SurfaceTargets, clear};
+use surface::{Purpose, SurfaceFrame, SurfacePass, SurfaceTargets, clear};
 
 /// Panic message for passes that fail only for formats other than Unorm.
 const UNORM: &str = "the pictures' format is Unorm";
@@ -184,6 +184,7 @@ impl<'a> GpuRenderer<'a> {
                 depth: canvas.depth_view(device),
                 size_px: size_px(size),
                 samples: view.samples,
+                purpose: Purpose::Picture,
             };
             self.surface.record(&mut encoder, &frame, shadow.as_ref(), &drawn)?;
         } else {
@@ -215,7 +216,9 @@ impl<'a> GpuRenderer<'a> {
                 let in_lines = plan.shadow.as_ref().is_some_and(|shadow| shadow.in_lines);
                 let shadow = if in_lines { self.shadow(&mut encoder, &frame, ink.size, &ink.stencil)? } else { None };
                 let size_px = size_px(ink.size);
-                let drawn = SurfaceTargets { color: None, texels: Some(&ink.texels), depth, size_px, samples: 1 };
+                let texels = Some(&ink.texels);
+                let purpose = Purpose::Picture;
+                let drawn = SurfaceTargets { color: None, texels, depth, size_px, samples: 1, purpose };
                 self.surface.record(&mut encoder, &frame, shadow.as_ref(), &drawn)?;
             }
             let ink_frame = InkFrame {
@@ -254,8 +257,13 @@ impl<'a> GpuRenderer<'a> {
             instances: &frame.uploaded.instances.borrow(),
             solid: &frame.uploaded.solid,
         };
-        let mut draw_depth = |encoder: &mut wgpu::CommandEncoder, depth: &wgpu::TextureView| {
-            let drawn = SurfaceTargets { color: None, texels: None, depth, size_px: size_px(size), samples: 1 };
+        let mut draw_depth = |encoder: &mut wgpu::CommandEncoder, depth: &wgpu::TextureView, of: ShadowDepth| {
+            let (size, purpose) = match of {
+                ShadowDepth::Receivers => (size, Purpose::Receivers),
+                ShadowDepth::Casters { from, side } => ((side, side), Purpose::Casters(from)),
+            };
+            let size_px = size_px(size);
+            let drawn = SurfaceTargets { color: None, texels: None, depth, size_px, samples: 1, purpose };
             self.surface.record(encoder, frame, None, &drawn)
         };
         self.shadows.record(encoder, &shadow_frame, stencil, &mut draw_depth).map(Some)

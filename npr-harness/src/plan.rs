@@ -96,6 +96,9 @@ pub struct Plan {
     pub mesh_normals: bool,
     /// Whether any material is alpha-blended.
     pub blended: bool,
+    /// Whether blended surfaces, where their alpha is at least 0.5, are drawn into depth and G-buffer after all others, so
+    /// that they hide lines behind them and have lines of their own.
+    pub blended_hide: bool,
     /// Whether back faces are culled although their material is double-sided, because they cannot be visible.
     pub cull_back: bool,
     /// The inverted hulls.
@@ -157,9 +160,12 @@ impl Plan {
         let colored = || scene.meshes().iter().any(|mesh| !mesh.model().colors.is_empty());
         let shows_colors = paint.as_ref().is_some_and(PaintPlan::shows_surface_color);
         let blended = paint.is_some() && scene.has_blend();
-        let textured = (shows_colors || blended) && (used(&|m| m.texture.is_some()) || colored());
+        let has_lines = edge_lines.is_some() || printed_fins.is_some() || hulls.is_some() || image.is_some();
+        let blended_hide = has_lines && scene.has_hiding_blend();
+        let by_alpha = blended || blended_hide;
+        let textured = (shows_colors || by_alpha) && (used(&|m| m.texture.is_some()) || colored());
         let says_lines = |image: &ImagePlan| image.line_kinds.iter().any(|&kind| kind != InnerLines::Normals);
-        let textures = textures(scene, shows_colors, blended, image.as_ref());
+        let textures = textures(scene, shows_colors, by_alpha, image.as_ref());
         let beside_picture = image.as_ref().is_some_and(|image| !image.own_surfaces);
         let mut plan = Self {
             view,
@@ -174,7 +180,10 @@ impl Plan {
             cut_out,
             mesh_normals: style.mesh_normals,
             blended,
-            cull_back: scene.is_closed() && scene.clip.is_none() && !sees_the_inside(scene, &view.camera),
+            blended_hide,
+            cull_back: scene.is_closed()
+                && !scene.is_see_through()
+                && scene.clip.is_none() && !sees_the_inside(scene, &view.camera),
             shadow: None,
             half_float_maps: capabilities.half_float_maps().0,
             passes: Vec::new(),
@@ -206,8 +215,9 @@ impl Plan {
         let Some(shadow) = style.shadow.as_ref().filter(|_| in_picture || in_lines) else { return Ok(None) };
         let light = casting_light(&style.lights, scene, &self.view.camera);
         let of_device = || (capabilities.volumes(scene.objects().len()).0, capabilities.float_stencil);
-        let technique = ShadowTechnique::new(scene, shadow, light, capabilities.is_adapter().then(of_device))?;
-        Ok(Some(ShadowPlan { light, terminator: shadow.terminator, technique, in_picture, in_lines }))
+        let device = capabilities.is_adapter().then(of_device);
+        let (technique, because) = ShadowTechnique::new(scene, shadow, light, device, capabilities.texture_px)?;
+        Ok(Some(ShadowPlan { light, terminator: shadow.terminator, technique, in_picture, in_lines, because }))
     }
 
     /// Chooses the methods by which an adapter performs the passes, or fails if it cannot.
@@ -242,7 +252,7 @@ impl Plan {
                     },
                 );
             }
-            Some(&ShadowTechnique::Map { side }) => {
+            Some(&ShadowTechnique::Map { side, .. }) => {
                 capabilities.check_size("the shadow map", (side, side))?;
                 add("shadow map", "depths of 32-bit floats");
             }

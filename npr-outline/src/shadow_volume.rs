@@ -17,8 +17,9 @@
 //! where a face is within rounding of edge-on.
 //!
 //! Faces of zero area cast nothing, but are kept, so that the edges around them match. Redundant faces
-//! ([`npr_mesh::edges::EdgeOptions::skip_redundant`]) and blended materials cast nothing. A material that alpha cuts
-//! out casts the shadow of its whole faces, since volumes have no textures.
+//! ([`npr_mesh::edges::EdgeOptions::skip_redundant`]) cast nothing, nor do blended materials whose colour has an alpha
+//! below 0.5. A material whose alpha varies, by a cutoff or a texture, casts the shadow of its whole faces or none, since
+//! volumes have no textures.
 //!
 //! # Sources
 //!
@@ -33,7 +34,7 @@
 use crate::contour::outline_facing;
 use glam::{DVec3, DVec4, Vec3, Vec4};
 use npr_mesh::edges::{Edge, EdgeKind, Edges, NO_FACE};
-use npr_mesh::{AlphaMode, Model};
+use npr_mesh::{AlphaMode, Material, Model};
 
 /// In [`VolumeEdge::flags`]: there is a second face.
 pub const VOLUME_SECOND: u32 = 1;
@@ -115,10 +116,14 @@ struct CastingEdge {
 /// Above the bits of a face's number.
 const SAME_DIRECTION: u32 = 1 << 30;
 
+/// A blended material with a lower alpha casts no shadow.
+const LEAST_CASTING_ALPHA: f32 = 0.5;
+
 /// Whether a face can cast a shadow.
 fn casts(model: &Model, edges: &Edges, face: usize) -> bool {
-    let blended = model.material_of(face as u32).is_some_and(|material| material.alpha_mode == AlphaMode::Blend);
-    !blended && edges.skipped.get(face) != Some(&true)
+    let lets_through =
+        |material: &Material| material.alpha_mode == AlphaMode::Blend && material.base_color.w < LEAST_CASTING_ALPHA;
+    !model.material_of(face as u32).is_some_and(lets_through) && edges.skipped.get(face) != Some(&true)
 }
 
 /// Gathers the edges and faces of a model that can cast. An edge between two faces whose planes are the same numbers

@@ -16,9 +16,10 @@ use crate::image_lines::gbuffer::targets::TEXEL_FORMAT;
 use crate::image_lines::plan::ImagePlan;
 use crate::plan::{PaintPlan, Plan};
 use crate::scene::Scene;
+use crate::scene::opacity::Hides;
 use crate::shade::flag;
 use crate::shadow::ShadowLines;
-use crate::shadow::gpu::{BlankShadow, ShadowOnDevice};
+use crate::shadow::gpu::{BlankShadow, MAP_BIAS, ShadowOnDevice};
 use glam::{DVec2, DVec3, DVec4};
 use npr_imagespace::artist::{ArtistRotation, LineKind};
 use npr_imagespace::format::texel::{DepthCode, TexelLayout};
@@ -135,6 +136,29 @@ pub(super) struct SurfaceTargets<'a> {
     pub(super) size_px: DVec2,
     /// The number of these pixels per picture pixel, along each axis.
     pub(super) samples: u32,
+    pub(super) purpose: Purpose,
+}
+
+/// What surfaces are drawn for.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Purpose {
+    /// A picture, or its lines.
+    Picture,
+    /// The surfaces that shadows fall on: no blended ones.
+    Receivers,
+    /// The surfaces that cast shadows, from the light: none is culled or clipped away.
+    Casters(Camera),
+}
+
+/// Which faces a draw has, and how.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Layer {
+    /// Unblended faces.
+    Solid,
+    /// Blended faces, over what is drawn.
+    Blended,
+    /// Blended faces where they hide lines behind them or cast shadows, into depth and G-buffer.
+    Hiding,
 }
 
 /// The properties that distinguish one pipeline from another.
@@ -146,6 +170,9 @@ struct Variant {
     cull_back: bool,
     mirrored: bool,
     blended: bool,
+    hiding: bool,
+    /// Whether depth is biased away from the light, in a shadow map.
+    biased: bool,
     /// The index of the shader in [`SurfacePass::shaders`].
     shader: usize,
     shadow: ShadowVariant,
@@ -315,7 +342,11 @@ impl SurfacePass {
         targets: &SurfaceTargets<'_>,
     ) -> Result<(), HarnessError> {
         let SurfaceFrame { device, scene, uploaded, plan, light } = *frame;
-        let camera = &plan.view.camera;
+        let camera = match &targets.purpose {
+            Purpose::Casters(camera) => camera,
+            Purpose::Picture | Purpose::Receivers => &plan.view.camera,
+        };
+        let casts = matches!(targets.purpose, Purpose::Casters(_));
         let shader = self.shader(device, &light.key);
         let ink = plan.image.as_ref().map_or_else(bytemuck::Zeroable::zeroed, |image| InkUniform::new(image, camera));
         let view = uniform_buffer(device, bytemuck::bytes_of(&SurfaceUniform::new(scene, camera, targets.size_px)));
@@ -379,25 +410,41 @@ impl SurfacePass {
         let instances = uploaded.instances.borrow();
         let duplicates = &uploaded.materials.duplicates;
         let look = |&[object, face]: &[u32; 2]| (object, duplicates[scene.material_number(object, face)]);
+        let hiding = match targets.purpose {
+            Purpose::Picture if !plan.blended_hide => Vec::new(),
+            Purpose::Receivers => Vec::new(),
+            Purpose::Picture | Purpose::Casters(_) => {
+                let hides = |&[object, face]: &[u32; 2]| scene.hides(scene.material_number(object, face)) != Hides::Nothing;
+                let mut faces: Vec<[u32; 2]> = uploaded.blended_faces.iter().copied().filter(hides).collect();
+                faces.sort_by_key(look);
+                faces
+            }
+        };
         let blended_runs: Vec<&[[u32; 2]]> = blended.chunk_by(|a, b| look(a) == look(b)).collect();
+        let hiding_runs: Vec<&[[u32; 2]]> = hiding.chunk_by(|a, b| look(a) == look(b)).collect();
         let solid_draws: usize = instances.runs().iter().map(|run| uploaded.batches[run.mesh].len()).sum();
-        let (draws, limit) = (solid_draws + blended_runs.len(), uploaded.most_draws);
+        let (draws, limit) = (solid_draws + blended_runs.len() + hiding_runs.len(), uploaded.most_draws);
         if draws > limit {
             return Err(HarnessError::TooManyDraws { draws, limit });
         }
-        let blended_indices = (!blended.is_empty()).then(|| {
-            let faces: Vec<_> = blended.iter().map(|&face| uploaded.face_vertices(scene, face)).collect();
-            let indices = uploaded.index_format.bytes(faces.as_flattened());
-            filled_buffer(device, "blended faces", &indices, wgpu::BufferUsages::INDEX)
-        });
+        let index_buffer = |faces: &[[u32; 2]]| {
+            (!faces.is_empty()).then(|| {
+                let faces: Vec<_> = faces.iter().map(|&face| uploaded.face_vertices(scene, face)).collect();
+                let indices = uploaded.index_format.bytes(faces.as_flattened());
+                filled_buffer(device, "blended faces", &indices, wgpu::BufferUsages::INDEX)
+            })
+        };
+        let (blended_indices, hiding_indices) = (index_buffer(&blended), index_buffer(&hiding));
         let paper = paper(plan);
         let bound = (&view_group, uploaded, targets.depth);
         let paired = !plan.object_pairs().is_empty();
         let mut set = None;
-        let mut draw = |pass: &mut wgpu::RenderPass<'_>, drawn: Drawn<'_>, colored: bool, blended: bool| {
+        let mut draw = |pass: &mut wgpu::RenderPass<'_>, drawn: Drawn<'_>, colored: bool, layer: Layer| {
             let material = &scene.materials()[drawn.material];
             let double_sided = material.double_sided;
-            // Blended surfaces are ignored by lines in the image.
+            let (blended, hiding) = (layer == Layer::Blended, layer == Layer::Hiding);
+            let paint = if hiding { Paint::Nothing } else { paint };
+            // Blended surfaces write texels where they hide, apart from their colours.
             let inking = plan.image.as_ref().filter(|_| targets.texels.is_some() && !blended).map(|image| {
                 let line_kind = image.line_kinds[drawn.material];
                 Inking {
@@ -410,27 +457,37 @@ impl SurfacePass {
             });
             let wanted = paint != Paint::Nothing && (shows_colors || blended)
                 || plan.cut_out
+                || hiding && scene.hides(drawn.material) == Hides::Partly
                 || inking.is_some_and(|inking| inking.line_kind != LineKind::Normals);
             let variant = Variant {
                 paint,
                 looked_up: is_looked_up(scene, drawn.material) && wanted,
                 by_alpha: by_alpha && material.texture.is_some(),
-                cull_back: plan.cull_back || !double_sided,
+                cull_back: !casts && (plan.cull_back || !double_sided),
                 mirrored: drawn.mirrored,
                 blended,
+                hiding,
+                biased: casts,
                 shader,
                 // Blended surfaces receive no shadows: the stencil was counted against the surfaces behind them.
-                shadow: if blended { ShadowVariant::default() } else { ShadowVariant::new(plan, shadow) },
+                shadow: match layer {
+                    Layer::Solid => ShadowVariant::new(plan, shadow),
+                    Layer::Blended => ShadowVariant::default(),
+                    Layer::Hiding => ShadowVariant { source: 0, ..ShadowVariant::new(plan, shadow) },
+                },
                 depth: targets.depth.texture().format(),
                 streams: uploaded.streams.present,
                 colored,
-                clipped: scene.clip.is_some(),
+                clipped: !casts && scene.clip.is_some(),
                 mesh_normals: plan.mesh_normals,
                 inking,
             };
-            let Some(indices) = (if blended { blended_indices.as_ref() } else { uploaded.indices.as_ref() }) else {
-                return;
+            let indices = match layer {
+                Layer::Solid => &uploaded.indices,
+                Layer::Blended => &blended_indices,
+                Layer::Hiding => &hiding_indices,
             };
+            let Some(indices) = indices else { return };
             if set != Some(variant) {
                 let mut pipelines = self.pipelines.borrow_mut();
                 pass.set_pipeline(pipelines.entry(variant).or_insert_with(|| self.pipeline(device, variant)));
@@ -466,27 +523,38 @@ impl SurfacePass {
                     mirrored: run.mirrored,
                     lights: run.lights,
                 };
-                draw(&mut pass, drawn, colored, false);
+                draw(&mut pass, drawn, colored, Layer::Solid);
             }
         }
         if let (Some(view), Some(_), false) = (targets.color, targets.texels, blended_runs.is_empty()) {
             drop(pass);
             pass = begin(encoder, bound, [Some(attachment(view, wgpu::LoadOp::Load)), None], wgpu::LoadOp::Load);
         }
-        let mut start = 0;
-        for run in blended_runs {
-            let end = start + 3 * run.len() as u32;
+        let of_run = |run: &[[u32; 2]], start: u32| {
             let (object, material) = look(&run[0]);
-            let drawn = Drawn {
+            Drawn {
                 material,
-                indices: start..end,
+                indices: start..start + 3 * run.len() as u32,
                 instances: instances.slice_of(object),
                 count: 1,
                 mirrored: scene.objects()[object as usize].is_mirrored(),
                 lights: plan.object_pairs().get(object as usize).copied().unwrap_or(0),
-            };
-            draw(&mut pass, drawn, true, true);
-            start = end;
+            }
+        };
+        let mut start = 0;
+        for run in blended_runs {
+            draw(&mut pass, of_run(run, start), true, Layer::Blended);
+            start += 3 * run.len() as u32;
+        }
+        if !hiding_runs.is_empty() {
+            drop(pass);
+            let texels = targets.texels.map(|view| attachment(view, wgpu::LoadOp::Load));
+            pass = begin(encoder, bound, [None, texels], wgpu::LoadOp::Load);
+        }
+        let mut start = 0;
+        for run in hiding_runs {
+            draw(&mut pass, of_run(run, start), false, Layer::Hiding);
+            start += 3 * run.len() as u32;
         }
         Ok(())
     }
@@ -566,6 +634,7 @@ impl SurfacePass {
                 ("surface_by_alpha", flag(by_alpha)),
                 ("surface_looked_up", flag(looked_up)),
                 ("surface_blended", flag(blended)),
+                ("surface_hides", flag(variant.hiding)),
             ])
             .collect();
         let targets = [colored.then_some(target), texels];
@@ -590,7 +659,7 @@ impl SurfacePass {
                 depth_write_enabled: Some(!blended),
                 depth_compare: Some(wgpu::CompareFunction::Greater),
                 stencil: Default::default(),
-                bias: Default::default(),
+                bias: if variant.biased { MAP_BIAS } else { Default::default() },
             }),
             multisample: Default::default(),
             fragment: Some(wgpu::FragmentState {

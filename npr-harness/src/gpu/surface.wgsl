@@ -61,6 +61,8 @@ override surface_by_alpha: bool = false;
 override surface_looked_up: bool = false;
 // Whether the surface is alpha-blended.
 override surface_blended: bool = false;
+// Whether a blended surface is drawn where it hides what is behind it, instead of blended.
+override surface_hides: bool = false;
 
 @group(0) @binding(0) var<uniform> view: SurfaceView;
 @group(0) @binding(2) var<uniform> ink: SurfaceInk;
@@ -138,6 +140,11 @@ struct Texel {
 // The alpha written with a surface's colour. A write mask cannot be used: WebGL2 has one for all targets of a pass.
 fn surface_alpha(alpha: f32) -> f32 {
     return select(1.0, alpha, surface_blended);
+}
+
+// The least alpha of a fragment that is drawn.
+fn least_alpha() -> f32 {
+    return select(material.cutoff, 0.5, surface_hides);
 }
 
 fn to_eye(position_px: vec2<f32>) -> vec3<f32> {
@@ -358,7 +365,7 @@ fn fs_painted_textured(in: TexturedSurface, @builtin(front_facing) front: bool) 
 
 @fragment
 fn fs_cut_out(in: TexturedSurface) {
-    if base_color(texture_color(in.uv), in.color).a < material.cutoff {
+    if base_color(texture_color(in.uv), in.color).a < least_alpha() {
         discard;
     }
     clip_off(in.position);
@@ -565,7 +572,7 @@ fn fs_texels(in: InkedSurface, @builtin(front_facing) front: bool) -> Texel {
 fn fs_texels_textured(in: InkedTexturedSurface, @builtin(front_facing) front: bool) -> Texel {
     let texel = texture_color(in.uv);
     let at = shadow_at(in.position, facing(in.normal, front));
-    if base_color(texel, in.color).a < material.cutoff {
+    if base_color(texel, in.color).a < least_alpha() {
         discard;
     }
     clip_off(in.position);

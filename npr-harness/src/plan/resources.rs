@@ -216,7 +216,7 @@ impl Plan {
                     list.target("shadow mask", SHADOW_MASK, size, samples);
                 }
             }
-            ShadowTechnique::Map { side } => list.target("shadow map", SHADOW_MAP, (side, side), 1),
+            ShadowTechnique::Map { side, .. } => list.target("shadow map", SHADOW_MAP, (side, side), 1),
             ShadowTechnique::Rays => {}
         }
     }
@@ -279,7 +279,7 @@ impl Plan {
         let stride = capabilities.uniform_alignment as usize;
         let materials = material_table(scene, self, stride);
         list.buffer("faces", index_bytes * index_count(scene, &splits, &materials.duplicates));
-        if self.blended {
+        if self.blended || self.blended_hide {
             list.buffer("blended faces", 3 * index_bytes * blended_faces(scene).len() as u64);
         }
         list.buffer("objects", INSTANCE_BYTES * scene.objects().len().max(1) as u64);

@@ -25,6 +25,7 @@ impl Mesh {
     /// Finds a model's edges and prepares it. Faces without material get [`npr_mesh::Material::default`].
     pub fn new(mut model: Model) -> Self {
         model.fill_face_material();
+        super::opacity::settle(&mut model);
         let bounds = model.bounds();
         let (origin, scale) =
             bounds.map_or((DVec3::ZERO, 1.0), |(low, high)| normalization(low.as_dvec3(), high.as_dvec3()));
