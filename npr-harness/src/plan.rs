@@ -200,6 +200,9 @@ impl Plan {
             plan.methods = plan.methods(scene, capabilities)?;
         }
         plan.explain(style, textured);
+        if plan.edge_lines.is_some() {
+            plan.passes.extend(explain::cut_lines(scene));
+        }
         Ok(plan)
     }
 

@@ -3,11 +3,13 @@
 //! A mesh is prepared once and may be placed by any number of objects. Moving an object only rebuilds its matrices and,
 //! at the next ray cast, the hierarchy over the objects' boxes; no work is proportional to the mesh's size.
 
+mod cut;
 mod hierarchy;
 mod mesh;
 mod object;
 pub(crate) mod opacity;
 
+pub use cut::CutLines;
 pub use mesh::Mesh;
 pub use object::{MAX_LIGHTS, Object, ObjectLines};
 
@@ -712,7 +714,9 @@ impl Scene {
                 line_kinds.push(self.line_kinds[number]);
             }
             // Edges are found per object, so vertices of touching objects are not merged.
-            edges.append(&mesh::find_edges(&model), flat.positions.len() as u32, flat.faces.len() as u32);
+            let mut found = mesh::find_edges(&model);
+            found.edges.extend_from_slice(&mesh.cut_lines().edges);
+            edges.append(&found, flat.positions.len() as u32, flat.faces.len() as u32);
             model.textures.clear();
             flat.append(&model);
         }

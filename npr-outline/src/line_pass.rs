@@ -58,7 +58,7 @@ struct OutlineUniform {
     edge_count: u32,
     always_count: u32,
     row_stride: u32,
-    padding: u32,
+    single_sided: u32,
 }
 
 const _: () = assert!(size_of::<OutlineUniform>() == 144);
@@ -114,6 +114,7 @@ pub struct EdgesOnDevice {
     arguments: wgpu::Buffer,
     edge_count: u32,
     always_count: u32,
+    single_sided: bool,
     local_origin: Vec3,
 }
 
@@ -336,6 +337,7 @@ impl LinePass {
             arguments,
             edge_count: contours.edges.len() as u32,
             always_count: contours.always as u32,
+            single_sided: contours.single_sided,
             local_origin: contours.origin,
         }
     }
@@ -495,7 +497,7 @@ impl OutlineUniform {
             edge_count: 0,
             always_count: 0,
             row_stride: 0,
-            padding: 0,
+            single_sided: 0,
         };
         let LineSource::OnDevice(edges) = source else { return of_records };
         Self {
@@ -503,6 +505,7 @@ impl OutlineUniform {
             edge_count: edges.edge_count,
             always_count: edges.always_count,
             row_stride: 64 * edges.workgroups().0,
+            single_sided: u32::from(edges.single_sided),
             ..of_records
         }
     }

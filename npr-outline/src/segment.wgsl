@@ -16,7 +16,8 @@ struct OutlineView {
     edge_count: u32,
     always_count: u32,
     row_stride: u32,
-    padding: u32,
+    // Not 0 if an edge is a line only where one of its faces is shown.
+    single_sided: u32,
 }
 
 struct OutlineSegment {

@@ -35,7 +35,7 @@ pub enum EdgeLineMethod {
 
 /// The cache key of the contours: the crease angle, if creases are drawn, and per [`LineKind`] whether it is drawn.
 #[derive(PartialEq)]
-struct ContoursKey(Option<f32>, [bool; 4]);
+struct ContoursKey(Option<f32>, [bool; 4], Option<bool>);
 
 impl EdgeLinePlan {
     /// `method` selects a method from the size in bytes of the edges on the GPU.
@@ -58,6 +58,10 @@ impl EdgeLinePlan {
                 return Ok(Arc::default());
             }
             let (derived, world_from_normal) = object.derived(mesh);
+            let (material, is_own) = object.first_material();
+            let own = is_own.then(|| scene.materials()[material].double_sided);
+            let differs = |own: &bool| mesh.model().materials.iter().any(|of_mesh| of_mesh.double_sided != *own);
+            let double_sided = own.filter(differs);
             let options = ContourOptions {
                 crease_angle_rad,
                 material_borders,
@@ -65,9 +69,10 @@ impl EdgeLinePlan {
                 boundaries,
                 silhouettes,
                 world_from_normal,
+                double_sided,
             };
-            derived.get(ContoursKey(creases.then_some(crease_angle_rad), drawn), || {
-                contour_edges(mesh.model(), mesh.edges(), &options)
+            derived.get(ContoursKey(creases.then_some(crease_angle_rad), drawn, double_sided), || {
+                contour_edges(mesh.model(), &mesh.edges_and_cuts(), &options)
             })
         };
         let contours = scene.placed_objects().map(of_object).collect::<Result<Vec<_>, _>>()?;

@@ -3,6 +3,7 @@
 use super::{PaintPlan, Plan, Reason};
 use crate::hatch::HatchMapping;
 use crate::image_lines::{ImagePlan, InkScale};
+use crate::scene::Scene;
 use crate::shadow::{ShadowLines, ShadowTechnique};
 use crate::style::Style;
 use crate::variant::Part;
@@ -191,6 +192,19 @@ impl Plan {
     }
 }
 
+/// The lines along the cuts of a scene's meshes, if there are any.
+pub(super) fn cut_lines(scene: &Scene) -> Option<Reason> {
+    let cuts = || scene.meshes().iter().map(|mesh| mesh.cut_lines()).filter(|cuts| !cuts.edges.is_empty());
+    let segments: usize = cuts().map(|cuts| cuts.edges.len()).sum();
+    let step = cuts().map(|cuts| cuts.step).max()?;
+    let found = match step {
+        1 => String::new(),
+        _ => format!(", found between every {step} texels, since there are too many"),
+    };
+    let why = format!("alpha cuts faces: {segments} segments where it passes the cutoff{found}");
+    Some(Reason { pass: "lines along cuts", why })
+}
+
 /// The part of a picture that a pass makes, for its costs: a tonal art map and its field for strokes, and what surfaces
 /// need besides for their light, or for strokes.
 pub fn part_of_pass(pass: &str, is_hatched: bool) -> Part {
@@ -199,6 +213,8 @@ pub fn part_of_pass(pass: &str, is_hatched: bool) -> Part {
         "inverted hull: displaced back faces"
         | "printed fins, all edges"
         | "line coverage and ink"
+        | "lines along cuts"
+        | "blended surfaces from alpha 0.5 on, in depth"
         | "normal, region, depth beside colour"
         | "geometry: normal, region, depth"
         | "G-buffer in the style's formats"

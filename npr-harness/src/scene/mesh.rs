@@ -1,10 +1,12 @@
 //! A mesh prepared for both executors, shared by all objects that place it.
 
+use super::cut::CutLines;
 use crate::derived::Derived;
 use crate::rays::RayCaster;
 use glam::{DVec3, Vec3};
 use npr_mesh::edges::{self, EdgeKind, EdgeOptions, Edges};
 use npr_mesh::{AlphaMode, Model};
+use std::borrow::Cow;
 use std::sync::OnceLock;
 
 /// A model and the data derived from it. Its positions are relative to a local origin and scaled by a power of two
@@ -14,6 +16,7 @@ pub struct Mesh {
     origin: DVec3,
     scale: f64,
     edges: Edges,
+    cut: CutLines,
     closed: bool,
     bounds: Option<(Vec3, Vec3)>,
     rays: OnceLock<RayCaster>,
@@ -36,8 +39,10 @@ impl Mesh {
                 *position = if here.is_finite() { here } else { Vec3::ZERO };
             }
         }
-        let edges = find_edges(&model);
-        Self { origin, scale, ..Self::with_edges(model, edges) }
+        let mut edges = find_edges(&model);
+        let cut = super::cut::cut_lines(&mut model);
+        edges.representative.extend(edges.representative.len() as u32..model.positions.len() as u32);
+        Self { origin, scale, cut, ..Self::with_edges(model, edges) }
     }
 
     /// Builds a mesh from a model that needs no normalization, and its edges.
@@ -52,6 +57,7 @@ impl Mesh {
             origin: DVec3::ZERO,
             scale: 1.0,
             edges,
+            cut: CutLines::default(),
             closed,
             rays: OnceLock::new(),
             boundary_sides: OnceLock::new(),
@@ -80,6 +86,22 @@ impl Mesh {
     /// The edges to draw, without those of redundant faces.
     pub fn edges(&self) -> &Edges {
         &self.edges
+    }
+
+    /// The lines along which alpha cuts faces. Their ends are vertices that no face has.
+    pub fn cut_lines(&self) -> &CutLines {
+        &self.cut
+    }
+
+    /// The edges to draw, with the cut lines.
+    pub(crate) fn edges_and_cuts(&self) -> Cow<'_, Edges> {
+        if self.cut.edges.is_empty() {
+            return Cow::Borrowed(&self.edges);
+        }
+        // Further faces refer to edges by number, so the cut lines follow.
+        let mut edges = self.edges.clone();
+        edges.edges.extend_from_slice(&self.cut.edges);
+        Cow::Owned(edges)
     }
 
     /// Whether every edge has two consistently wound faces, so that no back face is visible from outside.

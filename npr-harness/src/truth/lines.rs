@@ -10,7 +10,7 @@
 //! classified by its Newell normal at the mean of its corners, an oppositely wound face is flipped, a face of zero area
 //! takes the plane of the neighbour at its longest edge, and a face seen exactly edge-on is front-facing. The triangles
 //! of a folded polygon are classified by their own normals, so the folds between them can be silhouettes, but not
-//! creases.
+//! creases. An edge of one or two faces is a line only where one of them is shown: single-sided faces are not, from behind.
 //!
 //! # Definition of visibility
 //!
@@ -19,8 +19,9 @@
 //! the point itself, and if one is edge-on, rounding decides whether it is in front. Surfaces nearer to the point than
 //! [`BEHIND`] of its distance are ignored too. The other faces at the edge's ends count: at a cusp they hide the line.
 //!
-//! Solid surfaces are those that occlude in a picture: not blended faces, and not the backs of single-sided ones.
-//! Alpha-tested faces count as whole. The materials of an edge's own faces do not affect its visibility.
+//! Solid surfaces are those that occlude in a picture, not the backs of single-sided faces: by their alpha, what is left of
+//! cut-outs, and blended ones from alpha 0.5 on. The materials of an edge's own faces do not affect its visibility. Blended
+//! surfaces of a lower alpha dim the lines behind them, which are visible here.
 
 mod intersections;
 
@@ -31,9 +32,9 @@ use crate::picture::Image;
 use crate::rays::Hit;
 use crate::scene::Scene;
 use glam::{DVec2, DVec3, DVec4};
-use npr_mesh::AlphaMode;
 use npr_mesh::edges::{Edge, EdgeKind, Edges, NO_FACE};
 use npr_outline::LineKind;
+use npr_outline::contour::single_sided_faces;
 use std::collections::HashMap;
 
 /// The edge number of a line that is not an edge.
@@ -167,6 +168,18 @@ struct FacePlanes {
     of_polygons: Vec<Plane>,
     /// The same, except that triangles of folded polygons have their own planes; they determine silhouettes.
     of_sides: Vec<Plane>,
+    /// Per face whether it is shown from one side only; empty if none is.
+    single_sided: Vec<bool>,
+}
+
+impl FacePlanes {
+    /// Whether an eye sees one of the faces of an edge, if nothing is in front.
+    fn shows(&self, edge: &Edge, eye: DVec4) -> bool {
+        let is_shown = |face: u32| {
+            self.single_sided.get(face as usize) != Some(&true) || self.of_sides[face as usize].faces(eye)
+        };
+        edge.kind() == EdgeKind::NonManifold || edge.faces().into_iter().any(|face| face != NO_FACE && is_shown(face))
+    }
 }
 
 fn face_planes(scene: &Scene) -> FacePlanes {
@@ -200,7 +213,8 @@ fn face_planes(scene: &Scene) -> FacePlanes {
             of_sides[face] = own[face];
         }
     }
-    FacePlanes { of_polygons: planes, of_sides }
+    let single_sided = single_sided_faces(model, scene.single().edges(), None);
+    FacePlanes { of_polygons: planes, of_sides, single_sided }
 }
 
 /// Assigns faces of zero area the plane of the neighbour at their longest edge, flipped to match the winding.
@@ -243,6 +257,9 @@ fn borrow_planes(scene: &Scene, planes: &mut [Plane]) {
 fn line_kind(scene: &Scene, number: u32, planes: &FacePlanes, eye: DVec4, crease_angle_rad: f64) -> Option<LineKind> {
     let edge = scene_edge(scene, number);
     let [first, second] = edge.faces();
+    if !planes.shows(edge, eye) {
+        return None;
+    }
     if second == NO_FACE {
         return Some(LineKind::Boundary);
     }
@@ -394,8 +411,8 @@ impl<'a> Visibility<'a> {
     }
 
     fn is_solid(&self, hit: &Hit) -> bool {
-        let material = self.scene.material(hit.object, hit.face);
-        (hit.front || material.double_sided) && material.alpha_mode != AlphaMode::Blend
+        let is_shown = hit.front || self.scene.material(hit.object, hit.face).double_sided;
+        is_shown && self.scene.hides_at(hit)
     }
 
     /// The depth from a point of the faces `own` to the next surface behind it, world units; infinite if there is none.

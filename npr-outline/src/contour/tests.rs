@@ -26,6 +26,7 @@ const NO_CREASES: ContourOptions = ContourOptions {
     boundaries: true,
     silhouettes: true,
     world_from_normal: DMat3::IDENTITY,
+    double_sided: None,
 };
 
 fn point(eye: DVec3) -> DVec4 {

@@ -22,7 +22,7 @@ fn uniforms_are_laid_out_as_in_the_shaders() {
     assert_eq!(
         layout(WGSL, "OutlineView"),
         fields!(OutlineUniform: clip_from_world, viewport_px, depth_per_px, width_px, ink, local_eye, edge_count,
-            always_count, row_stride, padding)
+            always_count, row_stride, single_sided)
     );
     assert_eq!(
         layout(&crate::fin_pass::wgsl(), "FinPrintedView"),
