@@ -8,6 +8,7 @@ pub mod frame;
 pub mod primary_hits;
 mod shade;
 mod surface;
+pub(crate) mod veils;
 
 pub use frame::{CpuFrame, CpuOptions};
 pub use primary_hits::PrimaryHits;
@@ -86,7 +87,8 @@ pub(crate) fn without_ink(
         draw_printed(printed, scene, view, context.shift_px, &mut fine);
     }
     if let Some(edges) = &plan.edge_lines {
-        draw_lines(edges, scene, view, context.shift_px, &mut fine);
+        let veils = if plan.veiled { context.veils(options.threads) } else { Vec::new() };
+        draw_lines(edges, scene, view, context.shift_px, &veils, &mut fine);
     }
     let mut frame = if view.samples == 1 { fine } else { fine.resolved(view.samples) };
     if let Some(image) = &plan.image {

@@ -99,6 +99,9 @@ pub struct Plan {
     /// Whether blended surfaces, where their alpha is at least 0.5, are drawn into depth and G-buffer after all others, so
     /// that they hide lines behind them and have lines of their own.
     pub blended_hide: bool,
+    /// Whether the nearest layers of blended surfaces with an alpha below 0.5 are drawn by themselves, since they dim the
+    /// edge lines behind them.
+    pub veiled: bool,
     /// Whether back faces are culled although their material is double-sided, because they cannot be visible.
     pub cull_back: bool,
     /// The inverted hulls.
@@ -162,7 +165,8 @@ impl Plan {
         let blended = paint.is_some() && scene.has_blend();
         let has_lines = edge_lines.is_some() || printed_fins.is_some() || hulls.is_some() || image.is_some();
         let blended_hide = has_lines && scene.has_hiding_blend();
-        let by_alpha = blended || blended_hide;
+        let veiled = edge_lines.is_some() && scene.has_veils();
+        let by_alpha = blended || blended_hide || veiled;
         let textured = (shows_colors || by_alpha) && (used(&|m| m.texture.is_some()) || colored());
         let says_lines = |image: &ImagePlan| image.line_kinds.iter().any(|&kind| kind != InnerLines::Normals);
         let textures = textures(scene, shows_colors, by_alpha, image.as_ref());
@@ -181,9 +185,11 @@ impl Plan {
             mesh_normals: style.mesh_normals,
             blended,
             blended_hide,
+            veiled,
             cull_back: scene.is_closed()
                 && !scene.is_see_through()
-                && scene.clip.is_none() && !sees_the_inside(scene, &view.camera),
+                && scene.clip.is_none()
+                && !sees_the_inside(scene, &view.camera),
             shadow: None,
             half_float_maps: capabilities.half_float_maps().0,
             passes: Vec::new(),

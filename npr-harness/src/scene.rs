@@ -604,7 +604,9 @@ impl Scene {
         match self.hides[number] {
             Hides::Everything => true,
             Hides::Nothing => false,
-            Hides::Partly => opacity::threshold(&self.materials[number]).is_none_or(|least| self.alpha_at(hit) >= least),
+            Hides::Partly => {
+                opacity::threshold(&self.materials[number]).is_none_or(|least| self.alpha_at(hit) >= least)
+            }
         }
     }
 
@@ -633,19 +635,36 @@ impl Scene {
         self.materials.iter().zip(&self.hides).any(hides)
     }
 
+    /// Whether any blended material lets through what is behind it, at least in part.
+    pub(crate) fn has_veils(&self) -> bool {
+        self.materials.iter().zip(&self.hides).any(|(material, &hides)| is_veil(material, hides))
+    }
+
+    /// Whether a blended material lets through what is behind it, at least in part.
+    pub(crate) fn veils(&self, material: usize) -> bool {
+        is_veil(&self.materials[material], self.hides[material])
+    }
+
     /// Whether any material is cut out or blended.
     pub(crate) fn is_see_through(&self) -> bool {
         self.materials.iter().any(|material| material.alpha_mode != AlphaMode::Opaque)
     }
 
-    /// Whether shadows depend on alpha in a way that whole faces of meshes do not have: where a part of a material casts, or
-    /// where an object's own material casts and those of its mesh do not.
+    /// Whether shadows depend on alpha in a way that whole faces of meshes do not have: where a part of a material casts,
+    /// where its texture or vertex colours decide whether it does, or where an object's own material decides otherwise than
+    /// those of its mesh.
     pub(crate) fn casts_by_alpha(&self) -> bool {
+        let by_lookup = |(material, &hides): (&Material, &Hides)| {
+            material.alpha_mode == AlphaMode::Blend
+                && (hides == Hides::Everything) != (f64::from(material.base_color.w) >= opacity::HIDES_FROM)
+        };
         let differs = |object: &Object| {
             object.one_material
                 && self.materials_of(object.mesh).any(|number| self.hides[number] != self.hides[object.first_material])
         };
-        self.hides.contains(&Hides::Partly) || self.objects.iter().any(differs)
+        self.hides.contains(&Hides::Partly)
+            || self.materials.iter().zip(&self.hides).any(by_lookup)
+            || self.objects.iter().any(differs)
     }
 
     /// Whether any face is blended over what is behind it.
@@ -733,6 +752,10 @@ impl Scene {
         scene.reference_radius = self.reference_radius;
         Cow::Owned(scene)
     }
+}
+
+fn is_veil(material: &Material, hides: Hides) -> bool {
+    material.alpha_mode == AlphaMode::Blend && hides != Hides::Everything
 }
 
 /// The largest distance of a clipping plane from the scene's origin, in scene units. Its square is well within f32.

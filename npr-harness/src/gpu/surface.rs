@@ -103,6 +103,8 @@ enum Paint {
     Lit,
     /// Hatched with strokes.
     Hatched,
+    /// The alpha of see-through surfaces.
+    Veil,
 }
 
 /// The G-buffer output of a fragment, for lines in the image.
@@ -136,18 +138,21 @@ pub(super) struct SurfaceTargets<'a> {
     pub(super) size_px: DVec2,
     /// The number of these pixels per picture pixel, along each axis.
     pub(super) samples: u32,
-    pub(super) purpose: Purpose,
+    pub(super) purpose: Purpose<'a>,
 }
 
 /// What surfaces are drawn for.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Purpose {
+pub(super) enum Purpose<'a> {
     /// A picture, or its lines.
     Picture,
     /// The surfaces that shadows fall on: no blended ones.
     Receivers,
     /// The surfaces that cast shadows, from the light: none is culled or clipped away.
     Casters(Camera),
+    /// A layer of blended surfaces with an alpha below 0.5: their nearest, or the nearest behind a layer, of which this is
+    /// the depth. Their alpha is written as a colour.
+    Veils(Option<&'a wgpu::TextureView>),
 }
 
 /// Which faces a draw has, and how.
@@ -171,6 +176,8 @@ struct Variant {
     mirrored: bool,
     blended: bool,
     hiding: bool,
+    /// Whether only what is behind a layer of see-through surfaces is drawn.
+    behind_layer: bool,
     /// Whether depth is biased away from the light, in a shadow map.
     biased: bool,
     /// The index of the shader in [`SurfacePass::shaders`].
@@ -344,9 +351,14 @@ impl SurfacePass {
         let SurfaceFrame { device, scene, uploaded, plan, light } = *frame;
         let camera = match &targets.purpose {
             Purpose::Casters(camera) => camera,
-            Purpose::Picture | Purpose::Receivers => &plan.view.camera,
+            Purpose::Picture | Purpose::Receivers | Purpose::Veils(_) => &plan.view.camera,
         };
         let casts = matches!(targets.purpose, Purpose::Casters(_));
+        // The depth of the layer before is bound in place of a shadow map, which no such pass reads.
+        let (is_veil, layer_before) = match targets.purpose {
+            Purpose::Veils(before) => (true, before),
+            _ => (false, None),
+        };
         let shader = self.shader(device, &light.key);
         let ink = plan.image.as_ref().map_or_else(bytemuck::Zeroable::zeroed, |image| InkUniform::new(image, camera));
         let view = uniform_buffer(device, bytemuck::bytes_of(&SurfaceUniform::new(scene, camera, targets.size_px)));
@@ -380,7 +392,7 @@ impl SurfacePass {
                 shadow.and_then(|shadow| shadow.mask.as_ref()).unwrap_or(&self.no_shadow.mask),
             ),
             wgpu::BindingResource::TextureView(
-                shadow.and_then(|shadow| shadow.map.as_ref()).unwrap_or(&self.no_shadow.map),
+                shadow.and_then(|shadow| shadow.map.as_ref()).or(layer_before).unwrap_or(&self.no_shadow.map),
             ),
             wgpu::BindingResource::Sampler(&self.no_shadow.nearest),
             wgpu::BindingResource::TextureView(uploaded.facets.as_ref().unwrap_or(&self.blank.image)),
@@ -393,6 +405,7 @@ impl SurfacePass {
             entries: &entries,
         });
         let paint = match &plan.paint {
+            _ if is_veil => Paint::Veil,
             Some(paint) if targets.color.is_some() => match (&paint.hatch, paint.interpolates_light) {
                 (Some(_), _) => Paint::Hatched,
                 (None, true) => Paint::Lit,
@@ -402,7 +415,7 @@ impl SurfacePass {
         };
         let shows_colors = plan.paint.as_ref().is_some_and(PaintPlan::shows_surface_color);
         let by_alpha = plan.paint.as_ref().is_some_and(|paint| paint.shade.model().material_by_alpha());
-        let blended = if plan.blended && paint != Paint::Nothing {
+        let blended = if plan.blended && !matches!(paint, Paint::Nothing | Paint::Veil) {
             back_to_front(scene, &uploaded.blended_faces, camera)
         } else {
             Vec::new()
@@ -413,9 +426,12 @@ impl SurfacePass {
         let hiding = match targets.purpose {
             Purpose::Picture if !plan.blended_hide => Vec::new(),
             Purpose::Receivers => Vec::new(),
-            Purpose::Picture | Purpose::Casters(_) => {
-                let hides = |&[object, face]: &[u32; 2]| scene.hides(scene.material_number(object, face)) != Hides::Nothing;
-                let mut faces: Vec<[u32; 2]> = uploaded.blended_faces.iter().copied().filter(hides).collect();
+            _ => {
+                let is_drawn = |&[object, face]: &[u32; 2]| {
+                    let material = scene.material_number(object, face);
+                    if is_veil { scene.veils(material) } else { scene.hides(material) != Hides::Nothing }
+                };
+                let mut faces: Vec<[u32; 2]> = uploaded.blended_faces.iter().copied().filter(is_drawn).collect();
                 faces.sort_by_key(look);
                 faces
             }
@@ -443,7 +459,7 @@ impl SurfacePass {
             let material = &scene.materials()[drawn.material];
             let double_sided = material.double_sided;
             let (blended, hiding) = (layer == Layer::Blended, layer == Layer::Hiding);
-            let paint = if hiding { Paint::Nothing } else { paint };
+            let paint = if hiding && !is_veil { Paint::Nothing } else { paint };
             // Blended surfaces write texels where they hide, apart from their colours.
             let inking = plan.image.as_ref().filter(|_| targets.texels.is_some() && !blended).map(|image| {
                 let line_kind = image.line_kinds[drawn.material];
@@ -457,7 +473,7 @@ impl SurfacePass {
             });
             let wanted = paint != Paint::Nothing && (shows_colors || blended)
                 || plan.cut_out
-                || hiding && scene.hides(drawn.material) == Hides::Partly
+                || hiding && (is_veil || scene.hides(drawn.material) == Hides::Partly)
                 || inking.is_some_and(|inking| inking.line_kind != LineKind::Normals);
             let variant = Variant {
                 paint,
@@ -467,6 +483,7 @@ impl SurfacePass {
                 mirrored: drawn.mirrored,
                 blended,
                 hiding,
+                behind_layer: layer_before.is_some(),
                 biased: casts,
                 shader,
                 // Blended surfaces receive no shadows: the stencil was counted against the surfaces behind them.
@@ -505,6 +522,7 @@ impl SurfacePass {
         // cleared in a separate pass if texels are drawn, and blended surfaces, which write no texels, have a separate
         // pass.
         let colored = targets.color.is_some() && (paint != Paint::Nothing || targets.texels.is_none());
+        let paper = if is_veil { wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) } else { paper };
         let color = targets.color.map(|view| attachment(view, paper));
         // Zero texels denote background.
         let texels = targets.texels.map(|view| attachment(view, wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT)));
@@ -512,7 +530,7 @@ impl SurfacePass {
             clear(encoder, plan, view);
         }
         let mut pass = begin(encoder, bound, [color.filter(|_| colored), texels], wgpu::LoadOp::Clear(0.0));
-        for run in instances.runs() {
+        for run in instances.runs().iter().filter(|_| !is_veil) {
             let (first, is_one) = run.material;
             for batch in &uploaded.batches[run.mesh] {
                 let drawn = Drawn {
@@ -546,14 +564,14 @@ impl SurfacePass {
             draw(&mut pass, of_run(run, start), true, Layer::Blended);
             start += 3 * run.len() as u32;
         }
-        if !hiding_runs.is_empty() {
+        if !hiding_runs.is_empty() && !is_veil {
             drop(pass);
             let texels = targets.texels.map(|view| attachment(view, wgpu::LoadOp::Load));
             pass = begin(encoder, bound, [None, texels], wgpu::LoadOp::Load);
         }
         let mut start = 0;
         for run in hiding_runs {
-            draw(&mut pass, of_run(run, start), false, Layer::Hiding);
+            draw(&mut pass, of_run(run, start), is_veil, Layer::Hiding);
             start += 3 * run.len() as u32;
         }
         Ok(())
@@ -585,6 +603,8 @@ impl SurfacePass {
             (Paint::Painted, false, true) => ("vs_plain_inked", "fs_painted_inked"),
             (Paint::Painted, true, true) => ("vs_textured_inked", "fs_painted_textured_inked"),
             (Paint::Lit, _, true) => ("vs_lit", "fs_lit_inked"),
+            (Paint::Veil, false, _) => ("vs_depth", "fs_veil"),
+            (Paint::Veil, true, _) => ("vs_textured", "fs_veil_textured"),
             (Paint::Hatched, _, false) => ("vs_hatched", "fs_hatched"),
             (Paint::Hatched, _, true) => ("vs_hatched", "fs_hatched_inked"),
         };
@@ -635,6 +655,7 @@ impl SurfacePass {
                 ("surface_looked_up", flag(looked_up)),
                 ("surface_blended", flag(blended)),
                 ("surface_hides", flag(variant.hiding)),
+                ("surface_behind_layer", flag(variant.behind_layer)),
             ])
             .collect();
         let targets = [colored.then_some(target), texels];

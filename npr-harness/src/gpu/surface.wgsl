@@ -63,6 +63,8 @@ override surface_looked_up: bool = false;
 override surface_blended: bool = false;
 // Whether a blended surface is drawn where it hides what is behind it, instead of blended.
 override surface_hides: bool = false;
+// Whether only what is behind a layer of see-through surfaces is drawn, whose depth is bound as the shadow map.
+override surface_behind_layer: bool = false;
 
 @group(0) @binding(0) var<uniform> view: SurfaceView;
 @group(0) @binding(2) var<uniform> ink: SurfaceInk;
@@ -373,6 +375,27 @@ fn fs_cut_out(in: TexturedSurface) {
 
 @fragment
 fn fs_nothing() {
+}
+
+// The alpha of a see-through surface, unless it hides what is behind it or belongs to the layer before.
+fn veil(position: vec4<f32>, alpha: f32) -> vec4<f32> {
+    let at = position.xy / vec2<f32>(textureDimensions(shadow_map));
+    let before = textureSampleLevel(shadow_map, shadow_nearest, at, 0.0).x;
+    if alpha >= 0.5 || surface_behind_layer && position.z >= before {
+        discard;
+    }
+    clip_off(position);
+    return vec4<f32>(alpha);
+}
+
+@fragment
+fn fs_veil(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    return veil(position, material.base_color.a);
+}
+
+@fragment
+fn fs_veil_textured(in: TexturedSurface) -> @location(0) vec4<f32> {
+    return veil(in.position, base_color(texture_color(in.uv), in.color).a);
 }
 
 fn wrapped(texel: i32, size: i32, wrap: u32) -> i32 {

@@ -55,6 +55,9 @@ impl Plan {
         if self.blended_hide {
             add(true, "blended surfaces from alpha 0.5 on, in depth", "they hide lines behind them", "");
         }
+        if self.veiled {
+            add(true, "layers of see-through surfaces", "they dim the lines behind them", "");
+        }
         add(
             !self.cull_back,
             "back faces",
@@ -215,6 +218,7 @@ pub fn part_of_pass(pass: &str, is_hatched: bool) -> Part {
         | "line coverage and ink"
         | "lines along cuts"
         | "blended surfaces from alpha 0.5 on, in depth"
+        | "layers of see-through surfaces"
         | "normal, region, depth beside colour"
         | "geometry: normal, region, depth"
         | "G-buffer in the style's formats"

@@ -95,7 +95,8 @@ impl<'a> CutFace<'a> {
     /// `None` if the face has no extent in the texture.
     fn new(model: &'a Model, number: usize, cutoff: f64) -> Option<Self> {
         let material = &model.materials[model.face_material[number] as usize];
-        let texture = material.texture.map(|texture| &model.textures[texture as usize]).filter(|_| !model.uvs.is_empty());
+        let texture =
+            material.texture.map(|texture| &model.textures[texture as usize]).filter(|_| !model.uvs.is_empty());
         let vertices = model.faces[number].map(|vertex| vertex as usize);
         let corners = match texture {
             Some(texture) => {

@@ -62,7 +62,8 @@ fn alpha_range(material: &Material, textures: &[Texture], of_vertices: (f32, f32
     let of_texture = match material.texture {
         Some(texture) => {
             let alphas = textures[texture as usize].rgba8.chunks_exact(4).map(|texel| texel[3]);
-            let (least, greatest) = alphas.fold((255, 0), |(low, high): (u8, u8), alpha| (low.min(alpha), high.max(alpha)));
+            let (least, greatest) =
+                alphas.fold((255, 0), |(low, high): (u8, u8), alpha| (low.min(alpha), high.max(alpha)));
             (f32::from(least) / 255.0, f32::from(greatest) / 255.0)
         }
         None => (1.0, 1.0),

@@ -175,9 +175,8 @@ struct FacePlanes {
 impl FacePlanes {
     /// Whether an eye sees one of the faces of an edge, if nothing is in front.
     fn shows(&self, edge: &Edge, eye: DVec4) -> bool {
-        let is_shown = |face: u32| {
-            self.single_sided.get(face as usize) != Some(&true) || self.of_sides[face as usize].faces(eye)
-        };
+        let is_shown =
+            |face: u32| self.single_sided.get(face as usize) != Some(&true) || self.of_sides[face as usize].faces(eye);
         edge.kind() == EdgeKind::NonManifold || edge.faces().into_iter().any(|face| face != NO_FACE && is_shown(face))
     }
 }

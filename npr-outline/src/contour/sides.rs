@@ -15,7 +15,8 @@ pub fn single_sided_faces(model: &Model, edges: &Edges, double_sided: Option<boo
         double_sided.unwrap_or_else(|| model.material_of(face).is_none_or(|material| material.double_sided))
     };
     // Most models have materials of one kind, which need no look at their faces.
-    if double_sided.unwrap_or_else(|| model.face_material.is_empty() || model.materials.iter().all(|m| m.double_sided)) {
+    if double_sided.unwrap_or_else(|| model.face_material.is_empty() || model.materials.iter().all(|m| m.double_sided))
+    {
         return Vec::new();
     }
     let mut single: Vec<bool> = (0..model.faces.len() as u32).map(|face| !is_double(face)).collect();

@@ -37,7 +37,7 @@ fn records_are_laid_out_as_the_vertex_attributes() {
     let of_layout: Vec<usize> = RECORD_LAYOUT.attributes.iter().map(|a| a.offset as usize).collect();
     assert_eq!(of_layout, offsets.iter().map(|(_, offset)| *offset).collect::<Vec<_>>());
     // The entry point's arguments, in the order of their locations, have the fields' names and types.
-    let module = naga::front::wgsl::parse_str(&record_wgsl()).unwrap();
+    let module = naga::front::wgsl::parse_str(&record_wgsl(false)).unwrap();
     let entry = module.entry_points.iter().find(|entry| entry.name == "vs_record").unwrap();
     let located: Vec<_> = entry
         .function
