@@ -150,10 +150,11 @@ impl Plan {
             Some(ink) => Some(ImagePlan::new(scene, ink, style.crease_angle_rad, &view)?),
             None => None,
         };
+        let is_outside = scene.clip.is_none() && !sees_the_inside(scene, &view.camera);
         let edge_lines = match &lines.edges {
             Some(edges) => {
                 let method = |bytes| capabilities.edge_lines(bytes, scene.objects().len()).0;
-                Some(EdgeLinePlan::new(scene, edges, style.crease_angle_rad, method)?)
+                Some(EdgeLinePlan::new(scene, edges, style.crease_angle_rad, is_outside, method)?)
             }
             None => None,
         };
@@ -186,10 +187,7 @@ impl Plan {
             blended,
             blended_hide,
             veiled,
-            cull_back: scene.is_closed()
-                && !scene.is_see_through()
-                && scene.clip.is_none()
-                && !sees_the_inside(scene, &view.camera),
+            cull_back: scene.is_closed() && !scene.is_see_through() && is_outside,
             shadow: None,
             half_float_maps: capabilities.half_float_maps().0,
             passes: Vec::new(),

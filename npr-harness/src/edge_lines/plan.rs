@@ -1,6 +1,7 @@
 //! The part of a plan for edge lines.
 
 use crate::error::HarnessError;
+use crate::scene::opacity::Hides;
 use crate::scene::{Mesh, Object, ObjectLines, Scene};
 use crate::schema::{within, within_colors};
 use glam::DVec4;
@@ -38,11 +39,13 @@ pub enum EdgeLineMethod {
 struct ContoursKey(Option<f32>, [bool; 4], Option<bool>);
 
 impl EdgeLinePlan {
-    /// `method` selects a method from the size in bytes of the edges on the GPU.
+    /// `is_outside`: whether the eye is outside of all objects, so that it sees no back face of a closed one. `method`
+    /// selects a method from the size in bytes of the edges on the GPU.
     pub(crate) fn new(
         scene: &Scene,
         style: &LineStyle,
         crease_angle_rad: f32,
+        is_outside: bool,
         method: impl FnOnce(u64) -> EdgeLineMethod,
     ) -> Result<Self, HarnessError> {
         style.validate()?;
@@ -58,10 +61,7 @@ impl EdgeLinePlan {
                 return Ok(Arc::default());
             }
             let (derived, world_from_normal) = object.derived(mesh);
-            let (material, is_own) = object.first_material();
-            let own = is_own.then(|| scene.materials()[material].double_sided);
-            let differs = |own: &bool| mesh.model().materials.iter().any(|of_mesh| of_mesh.double_sided != *own);
-            let double_sided = own.filter(differs);
+            let double_sided = double_sided(scene, object, mesh, is_outside);
             let options = ContourOptions {
                 crease_angle_rad,
                 material_borders,
@@ -114,6 +114,22 @@ impl EdgeLinePlan {
         }
         (lines, counts)
     }
+}
+
+/// Whether all faces of an object are double-sided, or none is; `None` for what the materials of its mesh say.
+///
+/// The back faces of a closed object that hides what is behind it are hidden, and so is an edge between two of them. It is left out like one
+/// between culled faces, since depths at pixels do not say that it is hidden where its distance from the contour is less
+/// than a pixel.
+fn double_sided(scene: &Scene, object: &Object, mesh: &Mesh, is_outside: bool) -> Option<bool> {
+    let (first, is_own) = object.first_material();
+    let mut materials = if is_own { first..first + 1 } else { scene.materials_of(object.mesh()) };
+    if is_outside && mesh.is_closed() && materials.all(|material| scene.hides(material) == Hides::Everything) {
+        return Some(false);
+    }
+    let own = is_own.then(|| scene.materials()[first].double_sided);
+    let differs = |own: &bool| mesh.model().materials.iter().any(|of_mesh| of_mesh.double_sided != *own);
+    own.filter(differs)
 }
 
 /// Per [`LineKind`]: whether any object has such lines, of the picture's style or of its own.
