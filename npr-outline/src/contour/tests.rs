@@ -707,6 +707,8 @@ fn edges_without_a_face_that_is_shown_are_no_lines() {
             |double_sided| contours_of(&model, &ContourOptions { double_sided, ..ContourOptions::default() });
         let (single, double) = (of_sides(Some(false)), of_sides(Some(true)));
         assert!(single.single_sided && !double.single_sided && double == of_sides(None));
+        // An eye that faces one side of the inward cube has all of its edges beside a face that is shown.
+        let mut fewer = 0;
         for eye in crate::normal_format::fibonacci_sphere(40).map(|direction| point(direction * 6.0)) {
             let is_shown =
                 |face: u32| facing_exact(model.faces[face as usize].map(|v| model.positions[v as usize]), eye) >= 0.0;
@@ -719,12 +721,13 @@ fn edges_without_a_face_that_is_shown_are_no_lines() {
                 .filter(|&line| double.edges[line as usize].faces().into_iter().any(is_shown))
                 .collect();
             assert_eq!(found, expected, "{name}");
-            assert!(found.len() < all.len(), "{name}");
+            fewer += usize::from(found.len() < all.len());
             let local = single.local_eye(eye);
             for line in all {
                 assert_eq!(single.kind(line as usize, local).is_some(), expected.contains(&line), "{name}");
             }
         }
+        assert!(fewer >= 20, "{name}: {fewer}");
     }
 }
 
