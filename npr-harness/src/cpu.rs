@@ -9,6 +9,7 @@ mod ground;
 pub mod primary_hits;
 mod shade;
 mod surface;
+pub(crate) mod veils;
 
 pub use frame::{CpuFrame, CpuOptions};
 pub use primary_hits::PrimaryHits;
@@ -23,6 +24,7 @@ use crate::plan::Plan;
 use crate::printed_fins::cpu::draw_printed;
 use crate::rays::Hit;
 use crate::scene::Scene;
+use crate::scene::opacity::HIDES_FROM;
 use crate::shadow::cpu::ShadowAt;
 use crate::view::{View, size_px};
 use glam::{DVec2, DVec3, DVec4};
@@ -87,7 +89,8 @@ pub(crate) fn without_ink(
         draw_printed(printed, scene, view, context.shift_px, &mut fine);
     }
     if let Some(edges) = &plan.edge_lines {
-        draw_lines(edges, scene, view, context.shift_px, &mut fine);
+        let veils = if plan.veiled { context.veils(options.threads) } else { Vec::new() };
+        draw_lines(edges, scene, view, context.shift_px, &veils, &mut fine);
     }
     let mut frame = if view.samples == 1 { fine } else { fine.resolved(view.samples) };
     if let Some(image) = &plan.image {
@@ -255,16 +258,19 @@ impl FrameContext<'_> {
         for x in 0..width {
             let solid = hits.map_or_else(|| self.first_solid(x, y), |hits| hits[x as usize]);
             let ground = self.ground_at(solid.as_ref(), x, y);
+            let hiding = if self.plan.blended_hide { self.first_hiding(solid, x, y) } else { solid };
             if let Some((color, depth)) = &mut picture {
                 color[x as usize] = self.trace_pixel(solid.as_ref(), ground.as_ref(), x, y);
-                depth[x as usize] = solid.map_or(0.0, |hit| self.plan.view.camera.buffer_depth(hit.t));
+                depth[x as usize] = hiding.map_or(0.0, |hit| self.plan.view.camera.buffer_depth(hit.t));
             }
+            // A blended surface that hides lines is in front of the ground.
+            let ground = ground.filter(|_| hiding == solid);
             match (&mut texels, &ground) {
                 (Some(TexelRow::Packed(texels)), Some(ground)) => texels[x as usize] = self.ground_texel(ground),
                 (Some(TexelRow::Unquantised(texels)), Some(_)) => texels[x as usize] = self.ground_gbuffer_texel(),
-                (Some(TexelRow::Packed(texels)), None) => texels[x as usize] = self.texel(solid.as_ref(), x, y),
+                (Some(TexelRow::Packed(texels)), None) => texels[x as usize] = self.texel(hiding.as_ref(), x, y),
                 (Some(TexelRow::Unquantised(texels)), None) => {
-                    texels[x as usize] = self.gbuffer_texel(solid.as_ref(), x, y)
+                    texels[x as usize] = self.gbuffer_texel(hiding.as_ref(), x, y)
                 }
                 (None, _) => {}
             }
@@ -294,6 +300,21 @@ impl FrameContext<'_> {
         let slack = 1e-12 * nearest.t.abs();
         let at_place = self.scene.all(origin, direction, (nearest.t - slack, nearest.t + slack), is_solid);
         at_place.into_iter().filter(|hit| hit.object == nearest.object).max_by_key(|hit| hit.face)
+    }
+
+    /// The nearest surface at a pixel that hides lines behind it: `solid`, the nearest unblended one, or a blended one in
+    /// front of it.
+    fn first_hiding(&self, solid: Option<Hit>, x: u32, y: u32) -> Option<Hit> {
+        let (origin, direction) = self.rays.through(self.sample_point(f64::from(x), f64::from(y)));
+        let range = self.plan.view.camera.depth_range();
+        let nearer = (range.0, solid.map_or(range.1, |hit| hit.t));
+        let hides = |hit: &Hit| {
+            self.is_blended(hit)
+                && self.is_shown(hit)
+                && self.scene.keeps(origin + direction * hit.t)
+                && self.opacity(hit, x, y) >= HIDES_FROM
+        };
+        self.scene.closest(origin, direction, nearer, hides).or(solid)
     }
 
     fn trace_pixel(&self, solid: Option<&Hit>, ground: Option<&GroundHit>, x: u32, y: u32) -> DVec4 {

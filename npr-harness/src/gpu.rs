@@ -31,14 +31,16 @@ use crate::image_lines::gpu::{InkFrame, InkPasses};
 use crate::picture::Image;
 use crate::plan::Plan;
 use crate::scene::{Object, ObjectLines, Scene};
-use crate::shadow::gpu::{ShadowFrame, ShadowOnDevice, ShadowPasses, StencilTarget};
+use crate::shadow::gpu::{ShadowDepth, ShadowFrame, ShadowOnDevice, ShadowPasses, StencilTarget};
 use crate::style::Style;
 use crate::view::{View, size_px};
 use glam::{DAffine3, DMat4};
 use npr_outline::ContourEdges;
 use npr_outline::fin_pass::FinPass;
 use npr_outline::fin_printed::PrintedFins;
-use npr_outline::line_pass::{LineGroup, LinePass, LineRecord, LineSource, LineTargets, line_records};
+use npr_outline::line_pass::{
+    LineGroup, LinePass, LineRecord, LineSource, LineTargets, VeilLayer, VeilLayers, line_records,
+};
 use npr_outline::line_style::LineStyle;
 use npr_outline::normal_format::NormalFormat;
 use npr_outline::segment::LineView;
@@ -46,7 +48,7 @@ use resolve::ResolvePass;
 use shader::LightOnDevice;
 use std::cell::{OnceCell, RefCell};
 use std::sync::Arc;
-use surface::{SurfaceFrame, SurfacePass, SurfaceTargets, clear};
+use surface::{Purpose, SurfaceFrame, SurfacePass, SurfaceTargets, clear};
 
 /// Panic message for passes that fail only for formats other than Unorm.
 const UNORM: &str = "the pictures' format is Unorm";
@@ -55,8 +57,8 @@ const UNORM: &str = "the pictures' format is Unorm";
 pub struct GpuRenderer<'a> {
     context: &'a GpuContext,
     surface: SurfacePass,
-    /// Index 0: edges are classified on the CPU; index 1: on the GPU.
-    lines: [OnceCell<LinePass>; 2],
+    /// Index 0: edges are classified on the CPU; index 1: on the GPU. Then the same for lines that see-through surfaces dim.
+    lines: [OnceCell<LinePass>; 4],
     hulls: HullLinePass,
     printed: OnceCell<FinPass>,
     ink: InkPasses,
@@ -98,7 +100,7 @@ impl<'a> GpuRenderer<'a> {
         let device = &self.context.device;
         let mut uploaded = GpuScene::new(self.context, self.surface.material_layout(), scene, plan)?;
         if let Some(EdgeLinePlan { contours, method: EdgeLineMethod::OnDevice, .. }) = &plan.edge_lines {
-            let pass = self.lines(EdgeLineMethod::OnDevice);
+            let pass = self.lines(EdgeLineMethod::OnDevice, plan.veiled);
             let mut edges = contours.iter().map(|_| None).collect::<Vec<_>>();
             upload_edges(pass, device, scene, contours, &mut edges)?;
             uploaded.edges = Some(RefCell::new(edges));
@@ -116,10 +118,11 @@ impl<'a> GpuRenderer<'a> {
         Ok(uploaded)
     }
 
-    fn lines(&self, method: EdgeLineMethod) -> &LinePass {
+    fn lines(&self, method: EdgeLineMethod, veiled: bool) -> &LinePass {
         let on_device = method == EdgeLineMethod::OnDevice;
-        self.lines[usize::from(on_device)]
-            .get_or_init(|| LinePass::new(&self.context.device, targets::COLOR_FORMAT, on_device).expect(UNORM))
+        let new = if veiled { LinePass::veiled } else { LinePass::new };
+        self.lines[usize::from(on_device) + 2 * usize::from(veiled)]
+            .get_or_init(|| new(&self.context.device, targets::COLOR_FORMAT, on_device).expect(UNORM))
     }
 
     fn printed(&self) -> &FinPass {
@@ -186,6 +189,7 @@ impl<'a> GpuRenderer<'a> {
                 depth: canvas.depth_view(device),
                 size_px: size_px(size),
                 samples: view.samples,
+                purpose: Purpose::Picture,
             };
             self.surface.record(&mut encoder, &frame, shadow.as_ref(), &drawn)?;
         } else {
@@ -217,7 +221,9 @@ impl<'a> GpuRenderer<'a> {
                 let in_lines = plan.shadow.as_ref().is_some_and(|shadow| shadow.in_lines);
                 let shadow = if in_lines { self.shadow(&mut encoder, &frame, ink.size, &ink.stencil)? } else { None };
                 let size_px = size_px(ink.size);
-                let drawn = SurfaceTargets { color: None, texels: Some(&ink.texels), depth, size_px, samples: 1 };
+                let texels = Some(&ink.texels);
+                let purpose = Purpose::Picture;
+                let drawn = SurfaceTargets { color: None, texels, depth, size_px, samples: 1, purpose };
                 self.surface.record(&mut encoder, &frame, shadow.as_ref(), &drawn)?;
             }
             let ink_frame = InkFrame {
@@ -256,11 +262,40 @@ impl<'a> GpuRenderer<'a> {
             instances: &frame.uploaded.instances.borrow(),
             solid: &frame.uploaded.solid,
         };
-        let mut draw_depth = |encoder: &mut wgpu::CommandEncoder, depth: &wgpu::TextureView| {
-            let drawn = SurfaceTargets { color: None, texels: None, depth, size_px: size_px(size), samples: 1 };
+        let mut draw_depth = |encoder: &mut wgpu::CommandEncoder, depth: &wgpu::TextureView, of: ShadowDepth| {
+            let (size, purpose) = match of {
+                ShadowDepth::Receivers => (size, Purpose::Receivers),
+                ShadowDepth::Casters { from, side } => ((side, side), Purpose::Casters(from)),
+            };
+            let size_px = size_px(size);
+            let drawn = SurfaceTargets { color: None, texels: None, depth, size_px, samples: 1, purpose };
             self.surface.record(encoder, frame, None, &drawn)
         };
         self.shadows.record(encoder, &shadow_frame, stencil, &mut draw_depth).map(Some)
+    }
+
+    /// Draws the nearest layers of see-through surfaces, each behind the one before.
+    fn veils<'t>(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        frame: &SurfaceFrame<'_>,
+        canvas: &'t Targets,
+    ) -> Result<VeilLayers<'t>, HarnessError> {
+        let veils = canvas.veils(frame.device);
+        let mut before = None;
+        for [depth, alpha] in veils {
+            let drawn = SurfaceTargets {
+                color: Some(alpha),
+                texels: None,
+                depth,
+                size_px: size_px((canvas.width, canvas.height)),
+                samples: frame.plan.view.samples,
+                purpose: Purpose::Veils(before),
+            };
+            self.surface.record(encoder, frame, None, &drawn)?;
+            before = Some(depth);
+        }
+        Ok(std::array::from_fn(|layer| VeilLayer { depth: &veils[layer][0], alpha: &veils[layer][1] }))
     }
 
     /// Draws edge lines over the canvas.
@@ -279,6 +314,7 @@ impl<'a> GpuRenderer<'a> {
         if groups.is_empty() {
             return Ok(());
         }
+        let layers = if frame.plan.veiled { Some(self.veils(encoder, frame, canvas)?) } else { None };
         let targets = canvas.begin_ink(frame.device, encoder);
         let line_targets = LineTargets {
             painted: &canvas.color_view,
@@ -289,7 +325,7 @@ impl<'a> GpuRenderer<'a> {
         // The uploaded data decide the method; they belong to the same plan.
         let uploaded = match &frame.uploaded.edges {
             Some(uploaded) => {
-                let pass = self.lines(EdgeLineMethod::OnDevice);
+                let pass = self.lines(EdgeLineMethod::OnDevice, frame.plan.veiled);
                 upload_edges(pass, frame.device, scene, &edges.contours, &mut uploaded.borrow_mut())?;
                 Some(uploaded.borrow())
             }
@@ -330,7 +366,13 @@ impl<'a> GpuRenderer<'a> {
                 }
             };
             let style = &LineStyle { width_px: style.width_px.map(|width_px| width_px * scale), ..style };
-            self.lines(method).record(frame.device, encoder, &groups, style, &line_targets)?;
+            let pass = self.lines(method, frame.plan.veiled);
+            match &layers {
+                Some(layers) => {
+                    pass.record_veiled(frame.device, encoder, &groups, style, &line_targets, layers)?;
+                }
+                None => pass.record(frame.device, encoder, &groups, style, &line_targets)?,
+            }
         }
         Ok(())
     }

@@ -123,6 +123,12 @@ pub struct Plan {
     pub mesh_normals: bool,
     /// Whether any material is alpha-blended.
     pub blended: bool,
+    /// Whether blended surfaces, where their alpha is at least 0.5, are drawn into depth and G-buffer after all others, so
+    /// that they hide lines behind them and have lines of their own.
+    pub blended_hide: bool,
+    /// Whether the nearest layers of blended surfaces with an alpha below 0.5 are drawn by themselves, since they dim the
+    /// edge lines behind them.
+    pub veiled: bool,
     /// Whether back faces are culled although their material is double-sided, because they cannot be visible.
     pub cull_back: bool,
     /// The inverted hulls.
@@ -171,10 +177,12 @@ impl Plan {
             Some(ink) => Some(ImagePlan::new(scene, ink, style.crease_angle_rad, &view)?),
             None => None,
         };
+        let is_outside = scene.clip.is_none() && !sees_the_inside(scene, &view.camera);
         let edge_lines = match &lines.edges.or_else(|| authored_alone(scene, lines)) {
             Some(edges) => {
                 let method = |bytes| capabilities.edge_lines(bytes, scene.objects().len()).0;
-                Some(EdgeLinePlan::new(scene, edges, (style.crease_angle_rad, style.file_edges), method)?)
+                let angles = (style.crease_angle_rad, style.file_edges);
+                Some(EdgeLinePlan::new(scene, edges, angles, is_outside, method)?)
             }
             None => None,
         };
@@ -185,10 +193,14 @@ impl Plan {
         let shows_colors = paint.as_ref().is_some_and(PaintPlan::shows_surface_color);
         let blended = paint.is_some() && scene.has_blend();
         let emits = shows_colors && used(&|m| m.emissive != Vec3::ZERO);
-        let textured = (shows_colors || blended) && (used(&|m| m.texture.is_some()) || colored())
+        let has_lines = edge_lines.is_some() || printed_fins.is_some() || hulls.is_some() || image.is_some();
+        let blended_hide = has_lines && scene.has_hiding_blend();
+        let veiled = edge_lines.is_some() && scene.has_veils();
+        let by_alpha = blended || blended_hide || veiled;
+        let textured = (shows_colors || by_alpha) && (used(&|m| m.texture.is_some()) || colored())
             || emits && used(&|m| Emission::of(m) == Emission::Textured);
         let says_lines = |image: &ImagePlan| image.line_kinds.iter().any(|&kind| kind != InnerLines::Normals);
-        let textures = textures(scene, shows_colors, emits, blended, image.as_ref());
+        let textures = textures(scene, shows_colors, emits, by_alpha, image.as_ref());
         let beside_picture = image.as_ref().is_some_and(|image| !image.own_surfaces);
         let mut plan = Self {
             view,
@@ -204,7 +216,9 @@ impl Plan {
             cut_out,
             mesh_normals: style.mesh_normals,
             blended,
-            cull_back: scene.is_closed() && scene.clip.is_none() && !sees_the_inside(scene, &view.camera),
+            blended_hide,
+            veiled,
+            cull_back: scene.is_closed() && !scene.is_see_through() && is_outside,
             shadow: None,
             half_float_maps: capabilities.half_float_maps().0,
             passes: Vec::new(),
@@ -223,6 +237,9 @@ impl Plan {
         plan.explain(style, textured);
         plan.explain_ground(scene);
         plan.left_out.extend(authored_left_out(scene, style, plan.edge_lines.as_ref()));
+        if plan.edge_lines.is_some() {
+            plan.passes.extend(explain::cut_lines(scene));
+        }
         Ok(plan)
     }
 
@@ -238,9 +255,10 @@ impl Plan {
         let Some(shadow) = style.shadow.as_ref().filter(|_| in_picture || in_lines) else { return Ok(None) };
         let light = casting_light(&style.lights, scene, &self.view.camera);
         let of_device = || (capabilities.volumes(scene.objects().len()).0, capabilities.float_stencil);
-        let technique = ShadowTechnique::new(scene, shadow, light, capabilities.is_adapter().then(of_device))?;
+        let device = capabilities.is_adapter().then(of_device);
+        let (technique, because) = ShadowTechnique::new(scene, shadow, light, device, capabilities.texture_px)?;
         let ground = if scene.ground { GroundPlan::new(scene, light) } else { None };
-        Ok(Some(ShadowPlan { light, terminator: shadow.terminator, technique, in_picture, in_lines, ground }))
+        Ok(Some(ShadowPlan { light, terminator: shadow.terminator, technique, in_picture, in_lines, ground, because }))
     }
 
     /// Chooses the methods by which an adapter performs the passes, or fails if it cannot.
@@ -275,7 +293,7 @@ impl Plan {
                     },
                 );
             }
-            Some(&ShadowTechnique::Map { side }) => {
+            Some(&ShadowTechnique::Map { side, .. }) => {
                 capabilities.check_size("the shadow map", (side, side))?;
                 add("shadow map", "depths of 32-bit floats");
             }

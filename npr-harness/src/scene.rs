@@ -4,10 +4,13 @@
 //! at the next ray cast, the hierarchy over the objects' boxes; no work is proportional to the mesh's size.
 
 mod coincident;
+mod cut;
 mod hierarchy;
 mod mesh;
 mod object;
+pub(crate) mod opacity;
 
+pub use cut::CutLines;
 pub use mesh::Mesh;
 pub use object::{MAX_LIGHTS, Object, ObjectLines};
 
@@ -17,11 +20,12 @@ use crate::error::HarnessError;
 use crate::rays::Hit;
 use crate::suggest::nearest;
 use crate::texture::MipMapped;
-use glam::{DAffine3, DVec3, DVec4, Vec3};
+use glam::{DAffine3, DVec2, DVec3, DVec4, Vec3};
 use hierarchy::BoxHierarchy;
 use npr_imagespace::artist::LineKind;
 use npr_mesh::edges::Edges;
-use npr_mesh::{LoadOptions, Loaded, Material, Model, Texture, normals};
+use npr_mesh::{AlphaMode, LoadOptions, Loaded, Material, Model, Texture, normals};
+use opacity::Hides;
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::ops::Range;
@@ -45,6 +49,8 @@ pub struct Scene {
     first_materials: Vec<usize>,
     /// Per material: its display-referred colour without texture and vertex colour.
     pub(crate) material_colors: Vec<DVec3>,
+    /// Per material: which part of its faces hides what is behind them and casts shadows.
+    hides: Vec<Hides>,
     /// The textures that the materials refer to, without duplicates.
     textures: Vec<Texture>,
     /// The clipping plane (n, d): only points with n · p + d >= 0, in scene space (see [`Scene::plane_here`]), are
@@ -134,6 +140,7 @@ impl Scene {
             materials: Vec::new(),
             first_materials: Vec::new(),
             material_colors: Vec::new(),
+            hides: Vec::new(),
             textures: Vec::new(),
             clip: None,
             ground: false,
@@ -181,12 +188,16 @@ impl Scene {
     fn add_materials(&mut self, mesh: &Mesh) {
         self.first_materials.push(self.materials.len());
         let textures: Vec<u32> = mesh.model().textures.iter().map(|texture| self.texture_number(texture)).collect();
-        for material in &mesh.model().materials {
-            self.add_material(material.with_textures(|texture| textures[texture as usize]));
+        for (number, material) in (0u32..).zip(&mesh.model().materials) {
+            let material = material.with_textures(|texture| textures[texture as usize]);
+            let of_faces = || opacity::vertex_alphas(mesh.model(), number);
+            let hides = Hides::of_material(&material, &self.textures, std::iter::once_with(of_faces));
+            self.add_material(material, hides);
         }
     }
 
-    fn add_material(&mut self, material: Material) {
+    fn add_material(&mut self, material: Material, hides: Hides) {
+        self.hides.push(hides);
         self.material_colors.push(encode_rgb(material.base_color.truncate().as_dvec3()));
         self.line_kinds.push(LineKind::Normals);
         self.materials.push(material);
@@ -253,17 +264,28 @@ impl Scene {
 
     /// Overrides the material of all faces of an object. Its textures, if any, must be some of [`Scene::textures`].
     ///
+    /// A blended material whose alpha is 1 everywhere, and a cut-out of which nothing is cut, count as opaque, here as in
+    /// meshes.
+    ///
     /// # Errors
     /// [`HarnessError::ObjectMaterial`] if the alpha mode differs from that of the mesh's materials, or if there is no
     /// such texture. An upload to a device is out of date after this.
     ///
     /// # Panics
     /// If there is no such object.
-    pub fn set_material(&mut self, object: usize, material: Material) -> Result<(), HarnessError> {
-        let of_mesh = &self.meshes[self.objects[object].mesh].model().materials;
+    pub fn set_material(&mut self, object: usize, mut material: Material) -> Result<(), HarnessError> {
+        let mesh = Arc::clone(&self.meshes[self.objects[object].mesh]);
+        let of_mesh = &mesh.model().materials;
         let kind = |material: &Material| std::mem::discriminant(&material.alpha_mode);
         let is_there = |texture: u32| (texture as usize) < self.textures.len();
         let has_textures = [material.texture, material.emissive_texture].into_iter().flatten().all(is_there);
+        let vertex_alphas = || (0..of_mesh.len() as u32).map(|number| opacity::vertex_alphas(mesh.model(), number));
+        let mut hides = Hides::Everything;
+        if has_textures && material.alpha_mode != AlphaMode::Opaque {
+            let least = vertex_alphas().fold((1.0, 1.0), |a: (f32, f32), b| (a.0.min(b.0), a.1));
+            material.alpha_mode = opacity::settled(&material, &self.textures, least);
+            hides = Hides::of_material(&material, &self.textures, vertex_alphas());
+        }
         if !has_textures || of_mesh.iter().any(|other| kind(other) != kind(&material)) {
             return Err(HarnessError::ObjectMaterial { object, material: material.name });
         }
@@ -272,10 +294,11 @@ impl Scene {
         if object.one_material {
             self.material_colors[object.first_material] = encode_rgb(material.base_color.truncate().as_dvec3());
             self.materials[object.first_material] = material;
+            self.hides[object.first_material] = hides;
             return Ok(());
         }
         (object.first_material, object.one_material) = (self.materials.len(), true);
-        self.add_material(material);
+        self.add_material(material, hides);
         self.sort_objects();
         Ok(())
     }
@@ -598,6 +621,81 @@ impl Scene {
         made[texture as usize].get_or_init(|| MipMapped::new(&self.textures[texture as usize]))
     }
 
+    /// Which part of a material's faces hides what is behind them and casts shadows.
+    pub(crate) fn hides(&self, material: usize) -> Hides {
+        self.hides[material]
+    }
+
+    /// Whether the surface at a hit hides what is behind it and casts a shadow: where its alpha is at least the cutoff of a
+    /// cut-out, or at least 0.5 if it is blended.
+    pub(crate) fn hides_at(&self, hit: &Hit) -> bool {
+        let number = self.material_number(hit.object, hit.face);
+        match self.hides[number] {
+            Hides::Everything => true,
+            Hides::Nothing => false,
+            Hides::Partly => {
+                opacity::threshold(&self.materials[number]).is_none_or(|least| self.alpha_at(hit) >= least)
+            }
+        }
+    }
+
+    /// The alpha of the surface at a hit: factor × vertex colour × the texture's largest level.
+    pub(crate) fn alpha_at(&self, hit: &Hit) -> f64 {
+        let model = self.placed(hit.object).1.model();
+        let material = self.material(hit.object, hit.face);
+        let corners = model.faces[hit.face as usize].map(|vertex| vertex as usize);
+        let mut alpha = f64::from(material.base_color.w);
+        if !model.colors.is_empty() {
+            alpha *= (0..3).map(|i| f64::from(model.colors[corners[i]].w) * hit.barycentric[i]).sum::<f64>();
+        }
+        if let Some(texture) = material.texture {
+            let uv = |i: usize| model.uvs.get(corners[i]).map_or(DVec2::ZERO, |uv| uv.as_dvec2());
+            let uv = (0..3).map(|i| uv(i) * hit.barycentric[i]).sum();
+            alpha *= self.mip_mapped(texture).sample(uv, 0.0).w;
+        }
+        alpha
+    }
+
+    /// Whether any blended material hides what is behind it, at least in part.
+    pub(crate) fn has_hiding_blend(&self) -> bool {
+        let hides = |(material, &hides): (&Material, &Hides)| {
+            material.alpha_mode == AlphaMode::Blend && hides != Hides::Nothing
+        };
+        self.materials.iter().zip(&self.hides).any(hides)
+    }
+
+    /// Whether any blended material lets through what is behind it, at least in part.
+    pub(crate) fn has_veils(&self) -> bool {
+        self.materials.iter().zip(&self.hides).any(|(material, &hides)| is_veil(material, hides))
+    }
+
+    /// Whether a blended material lets through what is behind it, at least in part.
+    pub(crate) fn veils(&self, material: usize) -> bool {
+        is_veil(&self.materials[material], self.hides[material])
+    }
+
+    /// Whether any material is cut out or blended.
+    pub(crate) fn is_see_through(&self) -> bool {
+        self.materials.iter().any(|material| material.alpha_mode != AlphaMode::Opaque)
+    }
+
+    /// Whether shadows depend on alpha in a way that whole faces of meshes do not have: where a part of a material casts,
+    /// where its texture or vertex colours decide whether it does, or where an object's own material decides otherwise than
+    /// those of its mesh.
+    pub(crate) fn casts_by_alpha(&self) -> bool {
+        let by_lookup = |(material, &hides): (&Material, &Hides)| {
+            material.alpha_mode == AlphaMode::Blend
+                && (hides == Hides::Everything) != (f64::from(material.base_color.w) >= opacity::HIDES_FROM)
+        };
+        let differs = |object: &Object| {
+            object.one_material
+                && self.materials_of(object.mesh).any(|number| self.hides[number] != self.hides[object.first_material])
+        };
+        self.hides.contains(&Hides::Partly)
+            || self.materials.iter().zip(&self.hides).any(by_lookup)
+            || self.objects.iter().any(differs)
+    }
+
     /// Whether any face is blended over what is behind it.
     pub(crate) fn has_blend(&self) -> bool {
         self.meshes.iter().any(|mesh| mesh.has_blend())
@@ -676,18 +774,21 @@ impl Scene {
             return Cow::Borrowed(self);
         }
         let (mut flat, mut edges) = (Model::default(), Edges::default());
-        let (mut line_kinds, mut materials) = (Vec::new(), Vec::new());
+        let (mut line_kinds, mut materials, mut hides) = (Vec::new(), Vec::new(), Vec::new());
         for (object, mesh) in self.placed_objects() {
             let mut model = mesh.model().clone().transformed(object.scene_from_mesh());
             for (number, material) in model.materials.iter_mut().enumerate() {
                 let number = object.first_material + if object.one_material { 0 } else { number };
                 // The flattened model has no images: those of the scene stay.
-                *material = Material { texture: None, ..self.materials[number].clone() };
+                *material = Material { texture: None, emissive_texture: None, ..self.materials[number].clone() };
                 materials.push(self.materials[number].clone());
+                hides.push(self.hides[number]);
                 line_kinds.push(self.line_kinds[number]);
             }
             // Edges are found per object, so vertices of touching objects are not merged.
-            edges.append(&mesh::find_edges(&model), flat.positions.len() as u32, flat.faces.len() as u32);
+            let mut found = mesh::find_edges(&model);
+            found.edges.extend_from_slice(&mesh.cut_lines().edges);
+            edges.append(&found, flat.positions.len() as u32, flat.faces.len() as u32);
             model.textures.clear();
             flat.append(&model);
         }
@@ -696,12 +797,17 @@ impl Scene {
         let mut scene = Self::new(flat);
         scene.meshes = vec![mesh];
         scene.file_meshes.clone_from(&scene.meshes);
+        scene.hides = hides;
         (scene.origin, scene.scale, scene.clip) = (self.origin, self.scale, self.clip);
         (scene.subject, scene.ground) = (self.subject, self.ground);
         (scene.materials, scene.textures, scene.line_kinds) = (materials, self.textures.clone(), line_kinds);
         scene.reference_radius = self.reference_radius;
         Cow::Owned(scene)
     }
+}
+
+fn is_veil(material: &Material, hides: Hides) -> bool {
+    material.alpha_mode == AlphaMode::Blend && hides != Hides::Everything
 }
 
 /// The largest distance of a clipping plane from the scene's origin, in scene units. Its square is well within f32.

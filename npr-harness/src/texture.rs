@@ -131,7 +131,8 @@ fn covered(larger: u32, smaller: u32) -> Vec<Vec<(u32, f64)>> {
         .collect()
 }
 
-fn wrapped(texel: f64, size: u32, wrap: Wrap) -> u32 {
+/// The index of a texel within 0..size, from one anywhere.
+pub(crate) fn wrapped(texel: f64, size: u32, wrap: Wrap) -> u32 {
     let size_f = f64::from(size);
     // A coordinate that is not finite reads the first texel.
     let texel = if texel.is_finite() { texel } else { 0.0 };

@@ -142,7 +142,7 @@ fn lines_on_slanted_faces_and_along_edges_are_visible_from_everywhere() {
     }
     let scene = Scene::new(model);
     for (yaw_rad, pitch_rad) in [(0.5, 0.4), (0.05, 0.02), (2.2, -0.9), (0.8, 1.5), (3.9, 0.1)] {
-        let framing = Framing { yaw_rad, pitch_rad, fov_y_rad: Some(0.6), distance: 1.0 };
+        let framing = Framing { yaw_rad, pitch_rad, fov_y_rad: Some(0.6), ..Framing::default() };
         let size = (160, 160);
         let camera = Camera::framed(scene.corners(), 1.0, &framing);
         let truth = true_lines(&scene, &camera, size, 45f64.to_radians());

@@ -61,7 +61,7 @@ fn city(origin: DVec3) -> Scene {
 }
 
 fn picture(executor: &Executor, scene: &Scene, name: &str) -> Image {
-    let framing = Framing { yaw_rad: 0.5, pitch_rad: 0.5, fov_y_rad: Some(0.6), distance: 1.0 };
+    let framing = Framing { yaw_rad: 0.5, pitch_rad: 0.5, fov_y_rad: Some(0.6), ..Framing::default() };
     let camera = Camera::framed(scene.corners(), f64::from(SIZE.0) / f64::from(SIZE.1), &framing);
     rendered(executor, scene, &style(name).expect("a style of this crate"), &camera, SIZE)
 }

@@ -249,7 +249,9 @@ fn objects_without_lines_and_translucent_ones_have_no_hull() {
     scene.object_mut(0).lines = ObjectLines::None;
     assert_eq!(ink(&scene), 0);
     for alpha_mode in [AlphaMode::Blend, AlphaMode::Mask { cutoff: 0.5 }] {
-        let glass = Material { alpha_mode, ..Material::default() };
+        // With alpha 1 either is opaque.
+        let base_color = glam::Vec4::new(0.8, 0.8, 0.8, 0.4);
+        let glass = Material { alpha_mode, base_color, ..Material::default() };
         assert_eq!(ink(&Scene::new(embedded::placed(embedded::sphere(32), glam::Mat4::IDENTITY, glass))), 0);
     }
 }
@@ -284,7 +286,8 @@ fn the_plan_has_the_pass_its_reason_and_its_limits() {
 #[test]
 fn without_faces_in_it_and_with_a_width_of_0_nothing_is_drawn() {
     let camera = camera_at(DVec3::new(0.0, 0.0, 5.0), DVec3::ZERO);
-    let glass = Material { alpha_mode: AlphaMode::Blend, ..Material::default() };
+    let base_color = glam::Vec4::new(0.8, 0.8, 0.8, 0.4);
+    let glass = Material { alpha_mode: AlphaMode::Blend, base_color, ..Material::default() };
     let glass = embedded::placed(embedded::sphere(32), glam::Mat4::IDENTITY, glass);
     for executor in executors() {
         for (model, width_px) in [(glass.clone(), 3.0), (embedded::sphere(32), 0.0)] {

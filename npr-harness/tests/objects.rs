@@ -288,7 +288,15 @@ fn a_material_of_an_objects_own() {
     assert!(drawn.rgba8.chunks(4).filter(|pixel| is_green(pixel)).count() > 100);
     let of_mesh = scene.materials()[scene.material_number(0, 0)].base_color;
     assert_eq!(of_mesh, Vec4::new(0.7, 0.3, 0.2, 1.0), "the other objects of the mesh keep theirs");
-    let fault = scene.set_material(0, Material { alpha_mode: AlphaMode::Blend, name: "glass".into(), ..green.clone() });
+    let fault = scene.set_material(
+        0,
+        Material {
+            alpha_mode: AlphaMode::Blend,
+            name: "glass".into(),
+            base_color: green.base_color.with_w(0.5),
+            ..green.clone()
+        },
+    );
     assert!(matches!(fault, Err(HarnessError::ObjectMaterial { object: 0, .. })));
     let fault = scene.set_material(0, Material { texture: Some(7), ..green });
     assert!(matches!(fault, Err(HarnessError::ObjectMaterial { object: 0, .. })));

@@ -26,6 +26,11 @@ fn compact(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocati
         let plane1 = edge_second_plane(planes[record.w & EDGE_FACE], record.w);
         is_line = outline_is_silhouette(planes[record.z & EDGE_FACE], plane1, view.local_eye);
     }
+    if is_line && view.single_sided != 0u {
+        let record = edges[edge];
+        is_line = edge_is_shown(record.z, outline_facing(planes[record.z & EDGE_FACE], view.local_eye))
+            || edge_is_shown(record.w, outline_facing(planes[record.w & EDGE_FACE], view.local_eye));
+    }
     // One atomic addition to the global counter for each workgroup instead of one for each line.
     var slot = 0u;
     if is_line {

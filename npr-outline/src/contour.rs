@@ -13,10 +13,17 @@
 //! closed loops even where a face is within rounding of edge-on. With the eye as a homogeneous point, a perspective and
 //! a parallel view are one formula.
 //!
+//! A face of a single-sided material that is seen from behind is not drawn, so an edge is a line only where one of its
+//! faces is shown.
+//!
 //! # The records
 //!
 //! A plane is 16 bytes a face, and an edge with its ends, its two faces and its kind 16 bytes more. Edges that are lines
 //! for every eye (boundaries, non-manifold edges, creases) come first, so that a scan tests only the others.
+
+mod sides;
+
+pub use sides::single_sided_faces;
 
 use crate::OutlineError;
 use glam::{DMat3, DVec3, DVec4, Vec3, Vec4};
@@ -63,19 +70,26 @@ pub struct EdgePlanes {
 pub struct ContourEdge {
     /// The two vertices in the winding order of the first face, reversed where its plane is negated.
     pub ends: [u32; 2],
-    /// The two faces, at a boundary twice the first, and above their 30 bits: of the first the [`LineKind`] that the
-    /// edge has when it is not a silhouette, of the second [`SECOND_NEGATED`] and [`CUT_OUT`].
+    /// The two faces, at a boundary twice the first, and above their 28 bits [`SINGLE_SIDED`] and [`TURNED`] of each; then
+    /// of the first the [`LineKind`] that the edge has when it is not a silhouette, of the second [`SECOND_NEGATED`] and
+    /// [`CUT_OUT`].
     ///
     /// The kind has two bits. A boundary's second plane is always negated, so that the kind of a boundary without that
     /// is [`LineKind::Authored`]. Such a line has the faces of the edge that it runs along, and where there are none the
-    /// index after the last face, whose plane is zero.
+    /// index after the last face, whose plane is zero. It is shown from both sides of them.
     packed: [u32; 2],
 }
 
 const _: () = assert!(size_of::<ContourEdge>() == 16);
 
 /// The bits of a face's number.
-const FACE: u32 = (1 << 30) - 1;
+const FACE: u32 = (1 << 28) - 1;
+/// The most faces that a model's edges can be made for.
+pub const MOST_FACES: usize = FACE as usize + 1;
+/// The face is not shown to an eye behind it.
+const SINGLE_SIDED: u32 = 1 << 28;
+/// The plane of the face is opposite to its winding.
+const TURNED: u32 = 1 << 29;
 /// The plane of the second face is negated for this edge.
 const SECOND_NEGATED: u32 = 1 << 30;
 /// All faces of the edge are cut out by alpha, so that the line is visible only where they are.
@@ -131,11 +145,13 @@ pub struct ContourOptions {
     /// The inverse transpose of the matrix that places the model, where angles between faces are those of the placed
     /// model: shear and non-uniform scale change them. Any factor; the identity for the model's own angles.
     pub world_from_normal: DMat3,
+    /// Whether all faces are double-sided, or none is; `None` for what their materials say.
+    pub double_sided: Option<bool>,
 }
 
 impl Default for ContourOptions {
     /// Silhouettes, boundaries, creases over 45°, lines and edges of the file, no material borders, the model's own
-    /// angles.
+    /// angles, sides by material.
     fn default() -> Self {
         Self {
             crease_angle_rad: 45f32.to_radians(),
@@ -146,6 +162,7 @@ impl Default for ContourOptions {
             authored: true,
             file_edges: true,
             world_from_normal: DMat3::IDENTITY,
+            double_sided: None,
         }
     }
 }
@@ -160,8 +177,10 @@ pub struct ContourEdges {
     pub planes: Vec<[f32; 4]>,
     /// The edges.
     pub edges: Vec<ContourEdge>,
-    /// The number of edges that are lines for every eye; they come first.
+    /// The number of edges that are lines for every eye that sees one of their faces; they come first.
     pub always: usize,
+    /// Whether some face is not shown to an eye behind it. An edge is then a line only where one of its faces is shown.
+    pub single_sided: bool,
 }
 
 /// Makes the records of a model's edges, those that are lines for every eye first.
@@ -181,12 +200,21 @@ pub struct ContourEdges {
 /// A folded polygon's triangles ([`Edges::folds`]) each have their own plane, so that the contour is closed where some
 /// of them are back-facing; for creases the polygon's Newell normal is used.
 ///
+/// # Sides
+///
+/// A face of a single-sided material is not shown to an eye behind it. An edge is a line only for an eye to which one of
+/// its faces is shown; between a shown and a culled face it is a contour. A face whose duplicate has the opposite winding,
+/// or is double-sided, is shown from both sides. Edges of more than two faces are lines for every eye.
+///
 /// # Errors
-/// [`OutlineError::CreaseAngle`].
+/// [`OutlineError::CreaseAngle`], [`OutlineError::TooManyFaces`].
 pub fn contour_edges(model: &Model, edges: &Edges, options: &ContourOptions) -> Result<ContourEdges, OutlineError> {
     let angle_rad = options.crease_angle_rad;
     if !(0.0..=std::f32::consts::PI).contains(&angle_rad) {
         return Err(OutlineError::CreaseAngle { angle_rad });
+    }
+    if model.faces.len() > MOST_FACES {
+        return Err(OutlineError::TooManyFaces { faces: model.faces.len() });
     }
     let origin = model.bounds().map_or(Vec3::ZERO, |(low, high)| low.midpoint(high));
     let cos_crease = angle_rad.cos();
@@ -284,7 +312,8 @@ pub fn contour_edges(model: &Model, edges: &Edges, options: &ContourOptions) -> 
     let of_edges = of_edges.map(|((edge, line), _)| (edge, line, fits(edge)));
     // A polygon's triangles are wound consistently, and a fold is a line only where it is a silhouette.
     let of_folds = folds.iter().map(|fold| (fold, LineKind::Silhouette as u8, true));
-    let (mut next_always, mut next) = (0, always);
+    let single_sided = single_sided_faces(model, edges, options.double_sided);
+    let (mut next_always, mut next, mut any_single_sided) = (0, always, false);
     for (edge, line, fits) in of_edges.chain(of_folds) {
         let position = if is_always(line) { &mut next_always } else { &mut next };
         let [first, second] = edge.faces();
@@ -292,10 +321,18 @@ pub fn contour_edges(model: &Model, edges: &Edges, options: &ContourOptions) -> 
         let negated = if is_single || !fits { SECOND_NEGATED } else { 0 };
         let cut_out = if any_cut_out && is_cut_out(first) && is_cut_out(second) { CUT_OUT } else { 0 };
         let second = if is_single { first } else { second };
+        let side = |face: u32| match single_sided.get(face as usize) {
+            Some(true) if edge.kind() != EdgeKind::NonManifold => {
+                SINGLE_SIDED | if is_flipped(face) { TURNED } else { 0 }
+            }
+            _ => 0,
+        };
+        let sides = [first, second].map(side);
+        any_single_sided |= sides[0] != 0 && sides[1] != 0;
         let [from, to] = edge.ends;
         contour_edges[*position] = ContourEdge {
             ends: if is_flipped(first) { [to, from] } else { [from, to] },
-            packed: [first | u32::from(line) << 30, second | negated | cut_out],
+            packed: [first | sides[0] | u32::from(line) << 30, second | sides[1] | negated | cut_out],
         };
         *position += 1;
     }
@@ -315,7 +352,7 @@ pub fn contour_edges(model: &Model, edges: &Edges, options: &ContourOptions) -> 
             ContourEdge { ends, packed: [faces[0] | (LineKind::Boundary as u32) << 30, faces[1]] };
         next_always += 1;
     }
-    Ok(ContourEdges { origin, planes, edges: contour_edges, always })
+    Ok(ContourEdges { origin, planes, edges: contour_edges, always, single_sided: any_single_sided })
 }
 
 /// The lines of the file that have a length, each with the edge that it runs along.
@@ -462,6 +499,12 @@ pub fn outline_is_silhouette(planes: &EdgePlanes, eye: Vec4) -> bool {
     (outline_facing(planes.plane0, eye) >= 0.0) != (outline_facing(planes.plane1, eye) >= 0.0)
 }
 
+/// Whether a face is shown to an eye that is on this side of its plane. `packed`: the face with its flags.
+#[inline]
+fn outline_is_shown(packed: u32, facing: f32) -> bool {
+    packed & SINGLE_SIDED == 0 || if packed & TURNED != 0 { facing <= 0.0 } else { facing >= 0.0 }
+}
+
 /// The kind of line that an edge is for an eye, if it is a line. `eye` as for [`outline_facing`].
 fn outline_kind(own: LineKind, planes: &EdgePlanes, eye: Vec4) -> LineKind {
     // A boundary's planes make it a silhouette for every eye, but its kind is that of a boundary. A line of the file may
@@ -489,9 +532,16 @@ impl ContourEdges {
         let eye = self.local_eye(eye);
         lines.clear();
         lines.extend(0..self.always as u32);
-        if self.always == self.edges.len() {
-            return;
+        if self.always < self.edges.len() {
+            self.scan_contours(eye, lines);
         }
+        if self.single_sided {
+            lines.retain(|&line| self.is_shown(line as usize, eye));
+        }
+    }
+
+    /// Adds the numbers of the edges that are lines for this eye only. `eye`: relative to [`Self::origin`].
+    fn scan_contours(&self, eye: Vec4, lines: &mut Vec<u32>) {
         // The side of each face once, without branches, which the compiler vectorises: a byte for each.
         let is_front = |plane: &[f32; 4]| u8::from(outline_facing(*plane, eye) >= 0.0);
         let front: Vec<u8> = self.planes.iter().map(is_front).collect();
@@ -518,6 +568,13 @@ impl ContourEdges {
         }
     }
 
+    /// Whether one of an edge's faces is shown to an eye, relative to [`Self::origin`].
+    fn is_shown(&self, edge: usize, eye: Vec4) -> bool {
+        let edge = &self.edges[edge];
+        let facing = |face: u32| outline_facing(self.planes[face as usize], eye);
+        edge.packed.iter().zip(edge.faces()).any(|(&packed, face)| outline_is_shown(packed, facing(face)))
+    }
+
     /// The planes of an edge's faces.
     #[inline]
     pub fn edge_planes(&self, edge: usize) -> EdgePlanes {
@@ -540,6 +597,7 @@ impl ContourEdges {
     pub fn kind(&self, edge: usize, eye: Vec4) -> Option<LineKind> {
         let (record, planes) = (&self.edges[edge], &self.edge_planes(edge));
         let is_line = record.is_always() || outline_is_silhouette(planes, eye);
+        let is_line = is_line && (!self.single_sided || self.is_shown(edge, eye));
         is_line.then(|| outline_kind(record.own_kind(), planes, eye))
     }
 }

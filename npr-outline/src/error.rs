@@ -16,6 +16,12 @@ pub enum OutlineError {
         /// The angle, radians.
         angle_rad: f32,
     },
+    /// A model of more faces than an edge can number.
+    #[error("{faces} faces: lines along edges can be found in up to {} of them", crate::contour::MOST_FACES)]
+    TooManyFaces {
+        /// The number of faces.
+        faces: usize,
+    },
     /// More edges than fit into one buffer of the device.
     #[error("{bytes} bytes of edge records exceed the device's limit of {limit} for one buffer")]
     TooManyEdges {

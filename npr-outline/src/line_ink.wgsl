@@ -58,15 +58,25 @@ fn ink_coverage(
     );
     let slopes = depths_slopes.zw;
     let offset = outline_cross(direction, corner + 0.5 - on_line);
+    let offsets = vec4<f32>(offset, offset - direction.y, offset + direction.x, offset + direction.x - direction.y);
+    let upper_left = outline_vote(quad.x, depth, offsets.x, slopes, per_px);
+    let upper_right = outline_vote(quad.y, depth, offsets.y, slopes, per_px);
+    let lower_left = outline_vote(quad.z, depth, offsets.z, slopes, per_px);
+    let lower_right = outline_vote(quad.w, depth, offsets.w, slopes, per_px);
     let votes = vec2<bool>(false, (traits & OUTLINE_TRAIT_CUT_OUT) == 0u)
-        | outline_vote(quad.x, depth, offset, slopes, per_px)
-        | outline_vote(quad.y, depth, offset - direction.y, slopes, per_px)
-        | outline_vote(quad.z, depth, offset + direction.x, slopes, per_px)
-        | outline_vote(quad.w, depth, offset + direction.x - direction.y, slopes, per_px);
+        | upper_left | upper_right | lower_left | lower_right;
     if !all(votes) || outline_plane_hides(quad, corner, on_line, depth, per_px) {
         return 0.0;
     }
-    return coverage;
+    let sees = vec4<bool>(upper_left.x, upper_right.x, lower_left.x, lower_right.x);
+    let through = vec4<f32>(
+        ink_through(at, depth, offsets.x, slopes, per_px),
+        ink_through(at + vec2<i32>(1, 0), depth, offsets.y, slopes, per_px),
+        ink_through(at + vec2<i32>(0, 1), depth, offsets.z, slopes, per_px),
+        ink_through(at + vec2<i32>(1, 1), depth, offsets.w, slopes, per_px),
+    );
+    let seen = select(vec4<f32>(0.0), through, sees);
+    return coverage * max(max(seen.x, seen.y), max(seen.z, seen.w));
 }
 
 fn ink_over(below: vec4<f32>, coverage: f32) -> vec4<f32> {

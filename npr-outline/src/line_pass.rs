@@ -12,7 +12,7 @@ use crate::OutlineError;
 use crate::contour::ContourEdges;
 use crate::filled_buffer::filled_buffer;
 use crate::line_style::LineStyle;
-use crate::segment::LineView;
+use crate::segment::{LineView, VEIL_LAYERS};
 use crate::shader::assemble;
 use crate::target::{check_color_format, check_reversed, check_view, is_same};
 use glam::{DVec4, Vec3};
@@ -27,14 +27,23 @@ const PULLED: (&str, &str) = ("line_pulled.wgsl", include_str!("line_pulled.wgsl
 const EDGE_RECORD: (&str, &str) = ("edge_record.wgsl", include_str!("edge_record.wgsl"));
 const COMPACTION: (&str, &str) = ("compaction.wgsl", include_str!("compaction.wgsl"));
 
+/// What see-through surfaces let through.
+const fn through(veiled: bool) -> (&'static str, &'static str) {
+    if veiled {
+        ("line_veiled.wgsl", include_str!("line_veiled.wgsl"))
+    } else {
+        ("line_unveiled.wgsl", include_str!("line_unveiled.wgsl"))
+    }
+}
+
 /// The shader that draws records.
-pub(crate) fn record_wgsl() -> String {
-    assemble(&[CONTOUR, LINE, INK, PASS])
+pub(crate) fn record_wgsl(veiled: bool) -> String {
+    assemble(&[CONTOUR, LINE, INK, through(veiled), PASS])
 }
 
 /// The shader that draws edges by their numbers.
-pub(crate) fn pulled_wgsl() -> String {
-    assemble(&[CONTOUR, LINE, INK, PASS, EDGE_RECORD, PULLED])
+pub(crate) fn pulled_wgsl(veiled: bool) -> String {
+    assemble(&[CONTOUR, LINE, INK, through(veiled), PASS, EDGE_RECORD, PULLED])
 }
 
 /// The shader that finds the edges that are lines.
@@ -60,9 +69,11 @@ struct OutlineUniform {
     row_stride: u32,
     /// The width of the fifth kind.
     authored_px: f32,
+    single_sided: u32,
+    padding: [u32; 3],
 }
 
-const _: () = assert!(size_of::<OutlineUniform>() == 144);
+const _: () = assert!(size_of::<OutlineUniform>() == 160);
 
 /// A line found by a scan on the CPU, as it is uploaded: 52 bytes.
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -115,6 +126,7 @@ pub struct EdgesOnDevice {
     arguments: wgpu::Buffer,
     edge_count: u32,
     always_count: u32,
+    single_sided: bool,
     local_origin: Vec3,
 }
 
@@ -155,9 +167,22 @@ pub struct LineTargets<'a> {
     pub coverage: &'a wgpu::TextureView,
 }
 
+/// A layer of see-through surfaces: views of textures of the picture's size.
+#[derive(Clone, Copy, Debug)]
+pub struct VeilLayer<'a> {
+    /// Its depth, reversed, 0 where there is no surface: as [`LineTargets::depth`].
+    pub depth: &'a wgpu::TextureView,
+    /// Its alpha, in the first component of a colour format of floats, `TEXTURE_BINDING`.
+    pub alpha: &'a wgpu::TextureView,
+}
+
+/// The nearest layers of see-through surfaces, in any order.
+pub type VeilLayers<'a> = [VeilLayer<'a>; VEIL_LAYERS];
+
 /// The pipelines that draw lines.
 #[derive(Debug)]
 pub struct LinePass {
+    veiled: bool,
     view_layout: wgpu::BindGroupLayout,
     picture_layout: wgpu::BindGroupLayout,
     nearest: wgpu::Sampler,
@@ -203,6 +228,27 @@ impl LinePass {
         color_format: wgpu::TextureFormat,
         on_device: bool,
     ) -> Result<Self, OutlineError> {
+        Self::make(device, color_format, on_device, false)
+    }
+
+    /// As [`Self::new`], for lines that see-through surfaces dim ([`Self::record_veiled`]).
+    ///
+    /// # Errors
+    /// As of [`Self::new`].
+    pub fn veiled(
+        device: &wgpu::Device,
+        color_format: wgpu::TextureFormat,
+        on_device: bool,
+    ) -> Result<Self, OutlineError> {
+        Self::make(device, color_format, on_device, true)
+    }
+
+    fn make(
+        device: &wgpu::Device,
+        color_format: wgpu::TextureFormat,
+        on_device: bool,
+        veiled: bool,
+    ) -> Result<Self, OutlineError> {
         check_color_format(device, color_format)?;
         let layout = |label, entries: &[wgpu::BindGroupLayoutEntry]| {
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
@@ -210,13 +256,13 @@ impl LinePass {
         let mut stages = wgpu::ShaderStages::VERTEX_FRAGMENT;
         stages.set(wgpu::ShaderStages::COMPUTE, on_device);
         let view_layout = layout("outline view", &[buffer_entry(0, stages, wgpu::BufferBindingType::Uniform)]);
-        let picture_layout = picture_layout(device, wgpu::ShaderStages::FRAGMENT);
+        let picture_layout = picture_layout(device, wgpu::ShaderStages::FRAGMENT, veiled);
         let pipeline =
             |module: &wgpu::ShaderModule, vertex: (&str, &wgpu::VertexBufferLayout<'_>), pulled: Option<&_>| {
                 let groups = [Some(&view_layout), Some(&picture_layout), pulled];
                 line_pipeline(device, module, vertex, &groups[..2 + usize::from(pulled.is_some())], color_format)
             };
-        let module = shader(device, "outline lines", record_wgsl());
+        let module = shader(device, "outline lines", record_wgsl(veiled));
         let record_pipeline = pipeline(&module, ("vs_record", &RECORD_LAYOUT), None);
         let on_device = on_device.then(|| {
             let read = wgpu::BufferBindingType::Storage { read_only: true };
@@ -236,7 +282,7 @@ impl LinePass {
                     buffer_entry(3, compute, write),
                 ],
             );
-            let module = shader(device, "outline pulled lines", pulled_wgsl());
+            let module = shader(device, "outline pulled lines", pulled_wgsl(veiled));
             let pulled_pipeline = pipeline(&module, ("vs_pulled", &EDGE_NUMBER_LAYOUT), Some(&pulled_layout));
             let compaction = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
                 label: Some("outline compaction"),
@@ -253,6 +299,7 @@ impl LinePass {
             OnDevicePipelines { pulled_layout, compaction_layout, compaction, pulled_pipeline }
         });
         Ok(Self {
+            veiled,
             view_layout,
             picture_layout,
             nearest: nearest_sampler(device),
@@ -337,6 +384,7 @@ impl LinePass {
             arguments,
             edge_count: contours.edges.len() as u32,
             always_count: contours.always as u32,
+            single_sided: contours.single_sided,
             local_origin: contours.origin,
         }
     }
@@ -347,6 +395,9 @@ impl LinePass {
     /// [`OutlineError::Width`]; [`OutlineError::TooManyEdges`] where the records do not fit a buffer; if a texture is
     /// not as [`LineTargets`] says; [`OutlineError::StandardDepth`], where a matrix can be judged. Nothing is recorded
     /// then.
+    ///
+    /// # Panics
+    /// If the pass was made for lines that see-through surfaces dim.
     pub fn record(
         &self,
         device: &wgpu::Device,
@@ -355,6 +406,38 @@ impl LinePass {
         style: &LineStyle,
         targets: &LineTargets<'_>,
     ) -> Result<(), OutlineError> {
+        self.record_through(device, encoder, groups, style, targets, None)
+    }
+
+    /// As [`Self::record`], with lines dimmed by the see-through surfaces in front of them.
+    ///
+    /// # Errors
+    /// As of [`Self::record`].
+    ///
+    /// # Panics
+    /// If the pass was not made by [`Self::veiled`].
+    pub fn record_veiled(
+        &self,
+        device: &wgpu::Device,
+        encoder: &mut wgpu::CommandEncoder,
+        groups: &[LineGroup<'_>],
+        style: &LineStyle,
+        targets: &LineTargets<'_>,
+        layers: &VeilLayers<'_>,
+    ) -> Result<(), OutlineError> {
+        self.record_through(device, encoder, groups, style, targets, Some(layers))
+    }
+
+    fn record_through(
+        &self,
+        device: &wgpu::Device,
+        encoder: &mut wgpu::CommandEncoder,
+        groups: &[LineGroup<'_>],
+        style: &LineStyle,
+        targets: &LineTargets<'_>,
+        layers: Option<&VeilLayers<'_>>,
+    ) -> Result<(), OutlineError> {
+        assert_eq!(self.veiled, layers.is_some(), "layers of see-through surfaces, and whether the pass reads them");
         style.validate()?;
         let limit = device.limits().max_buffer_size;
         for LineGroup { source, view, eye } in groups {
@@ -365,7 +448,18 @@ impl LinePass {
                 return Err(OutlineError::TooManyEdges { bytes: size_of_val(*records) as u64, limit });
             }
         }
-        let picture_group = picture_group(device, &self.picture_layout, targets.depth, targets.painted, &self.nearest);
+        for VeilLayer { depth, alpha } in layers.into_iter().flatten() {
+            let (size_px, needed) = (groups.first().map(|group| picture_px(&group.view)), "a depth format or R32Float");
+            check_view("the depth of a see-through layer", depth, needed, is_depth, size_px)?;
+            check_view(
+                "the alpha of a see-through layer",
+                alpha,
+                "a colour format of floats",
+                is_float_color,
+                size_px,
+            )?;
+        }
+        let picture_group = picture_group(device, &self.picture_layout, targets, layers, &self.nearest);
         for (number, group) in groups.iter().enumerate() {
             // Of all groups, a pixel's ink is that of the line with the greatest coverage.
             let load = if number == 0 { wgpu::LoadOp::Clear(0.0) } else { wgpu::LoadOp::Load };
@@ -438,14 +532,8 @@ impl LinePass {
     fn check(&self, view: &LineView, eye: DVec4, targets: &LineTargets<'_>) -> Result<(), OutlineError> {
         let towards_viewer = (eye.w == 0.0).then(|| eye.truncate());
         check_reversed(&view.clip_from_world, towards_viewer)?;
-        let size_px = Some([view.viewport_px.x as u32, view.viewport_px.y as u32]);
-        let is_float = |format: wgpu::TextureFormat| {
-            !format.has_depth_aspect()
-                && matches!(format.sample_type(None, None), Some(wgpu::TextureSampleType::Float { .. }))
-        };
-        let is_depth =
-            |format: wgpu::TextureFormat| format.has_depth_aspect() || format == wgpu::TextureFormat::R32Float;
-        check_view("a picture without lines", targets.painted, "a colour format of floats", is_float, size_px)?;
+        let size_px = Some(picture_px(view));
+        check_view("a picture without lines", targets.painted, "a colour format of floats", is_float_color, size_px)?;
         check_view("the scene's depth", targets.depth, "a depth format or R32Float", is_depth, size_px)?;
         let needed = "the format that the pass was made for";
         check_view("a target", targets.inked, needed, |format| is_same(format, self.color_format), size_px)?;
@@ -498,6 +586,8 @@ impl OutlineUniform {
             always_count: 0,
             row_stride: 0,
             authored_px,
+            single_sided: 0,
+            padding: [0; 3],
         };
         let LineSource::OnDevice(edges) = source else { return of_records };
         Self {
@@ -505,6 +595,7 @@ impl OutlineUniform {
             edge_count: edges.edge_count,
             always_count: edges.always_count,
             row_stride: 64 * edges.workgroups().0,
+            single_sided: u32::from(edges.single_sided),
             ..of_records
         }
     }
@@ -552,8 +643,22 @@ pub(crate) fn buffer_entry(
     wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None }
 }
 
-/// The layout of group 1 of `line_ink.wgsl`: depth, the picture without lines, and the sampler for depth.
-fn picture_layout(device: &wgpu::Device, visibility: wgpu::ShaderStages) -> wgpu::BindGroupLayout {
+fn is_float_color(format: wgpu::TextureFormat) -> bool {
+    !format.has_depth_aspect() && matches!(format.sample_type(None, None), Some(wgpu::TextureSampleType::Float { .. }))
+}
+
+fn is_depth(format: wgpu::TextureFormat) -> bool {
+    format.has_depth_aspect() || format == wgpu::TextureFormat::R32Float
+}
+
+/// Width and height of a view's picture, px.
+fn picture_px(view: &LineView) -> [u32; 2] {
+    [view.viewport_px.x as u32, view.viewport_px.y as u32]
+}
+
+/// The layout of group 1 of `line_ink.wgsl`: depth, the picture without lines, and the sampler for depth; and that of
+/// `line_veiled.wgsl`.
+fn picture_layout(device: &wgpu::Device, visibility: wgpu::ShaderStages, veiled: bool) -> wgpu::BindGroupLayout {
     let texture = wgpu::BindingType::Texture {
         sample_type: wgpu::TextureSampleType::Float { filterable: false },
         view_dimension: wgpu::TextureViewDimension::D2,
@@ -561,9 +666,13 @@ fn picture_layout(device: &wgpu::Device, visibility: wgpu::ShaderStages) -> wgpu
     };
     let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::NonFiltering);
     let entry = |binding, ty| wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None };
+    let mut entries = vec![entry(0, texture), entry(1, texture), entry(2, sampler)];
+    if veiled {
+        entries.extend((3..3 + 2 * VEIL_LAYERS as u32).map(|binding| entry(binding, texture)));
+    }
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("outline picture"),
-        entries: &[entry(0, texture), entry(1, texture), entry(2, sampler)],
+        entries: &entries,
     })
 }
 
@@ -571,15 +680,18 @@ fn picture_layout(device: &wgpu::Device, visibility: wgpu::ShaderStages) -> wgpu
 fn picture_group(
     device: &wgpu::Device,
     layout: &wgpu::BindGroupLayout,
-    depth: &wgpu::TextureView,
-    picture: &wgpu::TextureView,
+    targets: &LineTargets<'_>,
+    layers: Option<&VeilLayers<'_>>,
     nearest: &wgpu::Sampler,
 ) -> wgpu::BindGroup {
-    let resources = [
-        wgpu::BindingResource::TextureView(depth),
-        wgpu::BindingResource::TextureView(picture),
+    let mut resources = vec![
+        wgpu::BindingResource::TextureView(targets.depth),
+        wgpu::BindingResource::TextureView(targets.painted),
         wgpu::BindingResource::Sampler(nearest),
     ];
+    for VeilLayer { depth, alpha } in layers.into_iter().flatten() {
+        resources.extend([depth, alpha].map(|view| wgpu::BindingResource::TextureView(view)));
+    }
     bind_group(device, "outline picture", layout, &resources)
 }
 

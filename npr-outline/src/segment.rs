@@ -27,6 +27,9 @@
 //! second differences of depth there. At silhouettes, creases and contacts these differences are larger than any such
 //! distance, and a plane that contains the line is not in front of it.
 //!
+//! See-through surfaces do not hide a line but dim it, by the share that they let through. Whether one is in front of the
+//! line is decided at the same four pixels, of which the one that lets most through counts.
+//!
 //! Depth is the depth buffer's own, reversed: 1 at the near plane, falling with distance. It is linear on the screen,
 //! in perspective too, so that interpolating and extrapolating it are exact.
 
@@ -45,6 +48,9 @@ const PLANE_SLACK_PX: f64 = 0.01;
 /// The same for each px of depth a px of the surface's slope: rasterisers round corners to 1/256 px, which
 /// moves a face's depths by its slope times that.
 const PLANE_SLACK_PER_SLOPE: f64 = 1.0 / 128.0;
+
+/// The number of layers of see-through surfaces that dim a line behind them: the nearest.
+pub const VEIL_LAYERS: usize = 4;
 
 /// The view that lines are drawn for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -226,6 +232,21 @@ fn outline_coverage_at(on_line: DVec2, direction: DVec2, point_px: DVec2, width_
     beside.min((0.5 * width_px + 0.5 - distance).clamp(0.0, 1.0))
 }
 
+/// How far in front of a line its own faces may be at a pixel, in depth-buffer units. Parameters as of [`outline_vote`].
+fn outline_allowed(offset: f64, slopes: [f64; 2], per_px: f64) -> f64 {
+    let slope = slopes[usize::from(offset < 0.0)].min(MAX_SLOPE * per_px);
+    DEPTH_SLACK_PX * per_px + slope * offset.abs()
+}
+
+/// The share of a line that see-through surfaces in front of it let through at a pixel.
+///
+/// `depths`, `alphas`: of the layers of surfaces there; the depth is 0 where there is none.
+fn outline_through(depths: DVec4, alphas: DVec4, depth: f64, offset: f64, slopes: [f64; 2], per_px: f64) -> f64 {
+    let limit = depth + outline_allowed(offset, slopes, per_px);
+    let through = DVec4::select(depths.cmpgt(DVec4::splat(limit)), 1.0 - alphas, DVec4::ONE);
+    through.x * through.y * through.z * through.w
+}
+
 /// What one of the four pixels around a point of the centreline says: whether its surface is not in front of the line,
 /// and whether it may be one of the edge's own faces.
 ///
@@ -233,11 +254,9 @@ fn outline_coverage_at(on_line: DVec2, direction: DVec2, point_px: DVec2, width_
 /// - `slopes`: as in [`ScreenSegment::slopes`].
 /// - `per_px`: depth-buffer units of one px along the view.
 fn outline_vote(scene_depth: f64, depth: f64, offset: f64, slopes: [f64; 2], per_px: f64) -> (bool, bool) {
-    let slope = slopes[usize::from(offset < 0.0)].min(MAX_SLOPE * per_px);
-    let allowed = DEPTH_SLACK_PX * per_px + slope * offset.abs();
     let behind = scene_depth - depth;
     // A face of the edge may lie as far behind the line as it may lie in front.
-    (behind <= allowed, behind.abs() <= (DEPTH_SLACK_PX + MAX_SLOPE) * per_px)
+    (behind <= outline_allowed(offset, slopes, per_px), behind.abs() <= (DEPTH_SLACK_PX + MAX_SLOPE) * per_px)
 }
 
 /// How far in front of a point of a line the plane through four pixels is, less the tolerance for rounding and for the
@@ -320,6 +339,34 @@ pub fn outline_is_visible(
         (seen, surface) = (seen || votes.0, surface || votes.1);
     }
     seen && (surface || !cut_out) && !outline_plane_hides(quad.into(), corner, on_line, depth, view, depth_at)
+}
+
+/// The share of the centreline that see-through surfaces in front of it let through, at a fraction of its length: the
+/// greatest of what the four pixels around it say whose opaque surfaces do not hide it; 1 if all of them do.
+///
+/// - `depth_at`: as of [`outline_is_visible`].
+/// - `layers_at`: the depths and alphas of see-through surfaces at a pixel, [`VEIL_LAYERS`] of them; the depth is 0 where
+///   there is none.
+pub fn outline_share_through(
+    segment: &ScreenSegment,
+    fraction: f64,
+    view: &LineView,
+    depth_at: impl Fn(i64, i64) -> f64,
+    layers_at: impl Fn(i64, i64) -> [DVec4; 2],
+) -> f64 {
+    let (on_line, depth) = segment.at(fraction);
+    let corner = (on_line - 0.5).floor();
+    let per_px = depth * view.depth_per_px.x + view.depth_per_px.y;
+    let direction = segment.direction().0;
+    let at_pixel = |tap: u8| {
+        let pixel = corner + DVec2::new(f64::from(tap & 1), f64::from(tap >> 1));
+        let offset = direction.perp_dot(pixel + 0.5 - on_line);
+        let (x, y) = (pixel.x as i64, pixel.y as i64);
+        let sees = outline_vote(depth_at(x, y), depth, offset, segment.slopes, per_px).0;
+        let [depths, alphas] = layers_at(x, y);
+        sees.then(|| outline_through(depths, alphas, depth, offset, segment.slopes, per_px))
+    };
+    (0..4).filter_map(at_pixel).reduce(f64::max).unwrap_or(1.0)
 }
 
 #[cfg(test)]

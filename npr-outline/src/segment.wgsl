@@ -18,6 +18,8 @@ struct OutlineView {
     row_stride: u32,
     // Width in px of the lines that the file draws.
     authored_px: f32,
+    // Not 0 if an edge is a line only where one of its faces is shown.
+    single_sided: u32,
 }
 
 struct OutlineSegment {
@@ -179,13 +181,26 @@ fn outline_coverage_at(on_line: vec2<f32>, direction: vec2<f32>, point_px: vec2<
     return min(beside, clamp(0.5 * width_px + 0.5 - distance, 0.0, 1.0));
 }
 
+// How far in front of a line, in depth-buffer units, its own faces may be at a pixel.
+fn outline_allowed(offset: f32, slopes: vec2<f32>, per_px: f32) -> f32 {
+    let slope = min(select(slopes.x, slopes.y, offset < 0.0), OUTLINE_MAX_SLOPE * per_px);
+    return OUTLINE_DEPTH_SLACK_PX * per_px + slope * abs(offset);
+}
+
+// The share of a line that see-through surfaces in front of it let through at a pixel.
+fn outline_through(
+    depths: vec4<f32>, alphas: vec4<f32>, depth: f32, offset: f32, slopes: vec2<f32>, per_px: f32,
+) -> f32 {
+    let limit = depth + outline_allowed(offset, slopes, per_px);
+    let through = select(vec4<f32>(1.0), 1.0 - alphas, depths > vec4<f32>(limit));
+    return through.x * through.y * through.z * through.w;
+}
+
 // For one of the four pixels around a point of the centreline: whether its surface is not in front of the line, and
 // whether it may be one of the edge's own faces.
 fn outline_vote(scene_depth: f32, depth: f32, offset: f32, slopes: vec2<f32>, per_px: f32) -> vec2<bool> {
-    let slope = min(select(slopes.x, slopes.y, offset < 0.0), OUTLINE_MAX_SLOPE * per_px);
-    let allowed = OUTLINE_DEPTH_SLACK_PX * per_px + slope * abs(offset);
     let behind = scene_depth - depth;
-    return vec2<bool>(behind <= allowed, abs(behind) <= (OUTLINE_DEPTH_SLACK_PX + OUTLINE_MAX_SLOPE) * per_px);
+    return vec2<bool>(behind <= outline_allowed(offset, slopes, per_px), abs(behind) <= (OUTLINE_DEPTH_SLACK_PX + OUTLINE_MAX_SLOPE) * per_px);
 }
 
 // How far in front of a point of a line, `within` px from the first pixel's centre, the plane through four pixels is,

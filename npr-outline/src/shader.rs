@@ -17,13 +17,17 @@ mod tests {
     #[test]
     fn modules_name_their_files_and_validate() {
         for (source, files) in [
-            (crate::line_pass::record_wgsl(), &["contour.wgsl", "segment.wgsl", "line_ink.wgsl", "line_pass.wgsl"][..]),
             (
-                crate::line_pass::pulled_wgsl(),
+                crate::line_pass::record_wgsl(false),
+                &["contour.wgsl", "segment.wgsl", "line_ink.wgsl", "line_unveiled.wgsl", "line_pass.wgsl"][..],
+            ),
+            (
+                crate::line_pass::pulled_wgsl(true),
                 &[
                     "contour.wgsl",
                     "segment.wgsl",
                     "line_ink.wgsl",
+                    "line_veiled.wgsl",
                     "line_pass.wgsl",
                     "edge_record.wgsl",
                     "line_pulled.wgsl",

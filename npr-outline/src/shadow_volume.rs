@@ -6,8 +6,8 @@
 //! away from the light, and by the faces swept to infinity (its far caps). The number of volumes around a point is the
 //! number of casting faces between it and the light, so that for any topology a count above zero is shadow.
 //!
-//! - Of a *closed* surface, every edge with two faces that are wound consistently, only the faces towards the light
-//!   cast. Then an edge sweeps where one of its faces faces the light and the other does not: the contour seen from the
+//! - Of a *closed* surface, every edge with two faces that are wound consistently and outwards, only the faces towards
+//!   the light cast. Then an edge sweeps where one of its faces faces the light and the other does not: the contour seen from the
 //!   light, by the same test that finds contours for the eye ([`outline_facing`], once for each face).
 //! - Elsewhere every face casts by itself, oriented so that it faces the light, and the number of sweeps of an edge is
 //!   the sum of the directions in which its faces run over it: 1 at a boundary, 0 where a surface continues, 2 where it
@@ -17,8 +17,9 @@
 //! where a face is within rounding of edge-on.
 //!
 //! Faces of zero area cast nothing, but are kept, so that the edges around them match. Redundant faces
-//! ([`npr_mesh::edges::EdgeOptions::skip_redundant`]) and blended materials cast nothing. A material that alpha cuts
-//! out casts the shadow of its whole faces, since volumes have no textures.
+//! ([`npr_mesh::edges::EdgeOptions::skip_redundant`]) cast nothing, nor do blended materials whose colour has an alpha
+//! below 0.5. A material whose alpha varies, by a cutoff or a texture, casts the shadow of its whole faces or none, since
+//! volumes have no textures.
 //!
 //! # Sources
 //!
@@ -33,7 +34,7 @@
 use crate::contour::outline_facing;
 use glam::{DVec3, DVec4, Vec3, Vec4};
 use npr_mesh::edges::{Edge, EdgeKind, Edges, NO_FACE};
-use npr_mesh::{AlphaMode, Model};
+use npr_mesh::{AlphaMode, Material, Model};
 
 /// In [`VolumeEdge::flags`]: there is a second face.
 pub const VOLUME_SECOND: u32 = 1;
@@ -115,10 +116,14 @@ struct CastingEdge {
 /// Above the bits of a face's number.
 const SAME_DIRECTION: u32 = 1 << 30;
 
+/// A blended material with a lower alpha casts no shadow.
+const LEAST_CASTING_ALPHA: f32 = 0.5;
+
 /// Whether a face can cast a shadow.
 fn casts(model: &Model, edges: &Edges, face: usize) -> bool {
-    let blended = model.material_of(face as u32).is_some_and(|material| material.alpha_mode == AlphaMode::Blend);
-    !blended && edges.skipped.get(face) != Some(&true)
+    let lets_through =
+        |material: &Material| material.alpha_mode == AlphaMode::Blend && material.base_color.w < LEAST_CASTING_ALPHA;
+    !model.material_of(face as u32).is_some_and(lets_through) && edges.skipped.get(face) != Some(&true)
 }
 
 /// Gathers the edges and faces of a model that can cast. An edge between two faces whose planes are the same numbers
@@ -130,7 +135,7 @@ fn casts(model: &Model, edges: &Edges, face: usize) -> bool {
 pub fn shadow_casters(model: &Model, edges: &Edges) -> ShadowCasters {
     let origin = model.bounds().map_or(Vec3::ZERO, |(low, high)| low.midpoint(high));
     let casting: Vec<bool> = (0..model.faces.len()).map(|face| casts(model, edges, face)).collect();
-    let open = open_faces(edges, &casting);
+    let open = open_faces(model, edges, &casting);
     let count = casting.iter().filter(|casting| **casting).count();
     let mut casters = ShadowCasters { origin, positions: model.positions.clone(), ..Default::default() };
     casters.faces.reserve_exact(count);
@@ -192,8 +197,8 @@ fn plane(corners: [Vec3; 3], origin: Vec3) -> [f32; 4] {
     normal.as_vec3().extend(-normal.dot(a) as f32).to_array()
 }
 
-/// For each face whether its connected component is open or inconsistently wound.
-fn open_faces(edges: &Edges, casting: &[bool]) -> Vec<bool> {
+/// For each face whether its connected component is open, inconsistently wound or wound inwards.
+fn open_faces(model: &Model, edges: &Edges, casting: &[bool]) -> Vec<bool> {
     let mut above: Vec<u32> = (0..casting.len() as u32).collect();
     fn root(above: &mut [u32], mut face: u32) -> u32 {
         while above[face as usize] != face {
@@ -221,6 +226,13 @@ fn open_faces(edges: &Edges, casting: &[bool]) -> Vec<bool> {
         edge.faces().into_iter().for_each(|face| open_up(&mut above, face));
     }
     edges.further_faces.iter().for_each(|&(_, face)| open_up(&mut above, face));
+    let mut volumes = vec![0.0; casting.len()];
+    let origin = model.faces.first().map_or(DVec3::ZERO, |face| model.positions[face[0] as usize].as_dvec3());
+    for (number, face) in (0u32..).zip(&model.faces).filter(|&(number, _)| casting[number as usize]) {
+        let [a, b, c] = face.map(|vertex| model.positions[vertex as usize].as_dvec3() - origin);
+        volumes[root(&mut above, number) as usize] += a.dot(b.cross(c));
+    }
+    open.iter_mut().zip(volumes).for_each(|(open, volume)| *open |= volume < 0.0);
     (0..casting.len() as u32).map(|face| open[root(&mut above, face) as usize]).collect()
 }
 

@@ -84,8 +84,21 @@ fn lines_found_on_the_device_are_those_of_the_scan() {
     let pass = LinePass::new(&gpu.device, COLOR_FORMAT, true).unwrap();
     let size = [160, 120];
     let (mut borderline, mut lines_in_all) = (0, 0);
-    for model in [embedded::cube(), embedded::torus(1.0, 0.4, 48, 24), embedded::teapot(6)] {
-        let contours = contour_edges(&model, &edges_of(&model), &ContourOptions::default()).unwrap();
+    let mut turned = embedded::torus(1.0, 0.4, 48, 24);
+    turned.faces.iter_mut().step_by(3).for_each(|face| face.swap(0, 1));
+    turned.face_polygon.clear();
+    let models = [
+        (embedded::cube(), None),
+        (embedded::torus(1.0, 0.4, 48, 24), None),
+        (embedded::teapot(6), None),
+        (embedded::cube(), Some(false)),
+        (embedded::teapot(6), Some(false)),
+        (turned, Some(false)),
+    ];
+    for (model, double_sided) in models {
+        let options = ContourOptions { double_sided, ..ContourOptions::default() };
+        let contours = contour_edges(&model, &edges_of(&model), &options).unwrap();
+        assert_eq!(contours.single_sided, double_sided.is_some());
         let edges = pass.upload_edges(&gpu.device, &contours, &model.positions).unwrap();
         for direction in fibonacci_sphere(20) {
             let eye = contours.origin.as_dvec3() + 5.0 * direction;

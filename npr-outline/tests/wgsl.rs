@@ -9,6 +9,8 @@ use twins::{Except, Twins};
 const CONTOUR: &str = include_str!("../src/contour.wgsl");
 const LINE: &str = include_str!("../src/segment.wgsl");
 const LINE_INK: &str = include_str!("../src/line_ink.wgsl");
+const LINE_UNVEILED: &str = include_str!("../src/line_unveiled.wgsl");
+const LINE_VEILED: &str = include_str!("../src/line_veiled.wgsl");
 const LINE_PASS: &str = include_str!("../src/line_pass.wgsl");
 const LINE_PULLED: &str = include_str!("../src/line_pulled.wgsl");
 const EDGE_RECORD: &str = include_str!("../src/edge_record.wgsl");
@@ -38,11 +40,13 @@ fn entry_points(parts: &[&str]) -> Vec<String> {
 
 #[test]
 fn modules_validate_as_the_passes_use_them() {
-    assert_eq!(entry_points(&[CONTOUR, LINE, LINE_INK, LINE_PASS]), ["vs_record", "fs_ink"]);
-    assert_eq!(
-        entry_points(&[CONTOUR, LINE, LINE_INK, LINE_PASS, EDGE_RECORD, LINE_PULLED]),
-        ["vs_record", "fs_ink", "vs_pulled"]
-    );
+    for through in [LINE_UNVEILED, LINE_VEILED] {
+        assert_eq!(entry_points(&[CONTOUR, LINE, LINE_INK, through, LINE_PASS]), ["vs_record", "fs_ink"]);
+        assert_eq!(
+            entry_points(&[CONTOUR, LINE, LINE_INK, through, LINE_PASS, EDGE_RECORD, LINE_PULLED]),
+            ["vs_record", "fs_ink", "vs_pulled"]
+        );
+    }
     assert_eq!(entry_points(&[CONTOUR, LINE, EDGE_RECORD, COMPACTION]), ["compact"]);
     assert_eq!(entry_points(&[NORMAL_FORMAT, FIN_PRINTED, FIN_PASS]), ["vs_fin", "vs_fin_oct", "fs_fin"]);
     assert_eq!(entry_points(&[HULL, HULL_PASS]), ["vs_hull", "fs_hull"]);

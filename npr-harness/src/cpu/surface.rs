@@ -136,6 +136,11 @@ impl FrameContext<'_> {
         }
     }
 
+    /// The alpha of a blended hit.
+    pub(super) fn opacity(&self, hit: &Hit, x: u32, y: u32) -> f64 {
+        self.base_color(hit, x, y).w
+    }
+
     /// The linear vertex colour; white if there is none.
     pub(super) fn vertex_color(&self, hit: &Hit) -> DVec4 {
         if self.scene.placed(hit.object).1.model().colors.is_empty() {

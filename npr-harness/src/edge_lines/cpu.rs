@@ -2,22 +2,33 @@
 
 use super::plan::EdgeLinePlan;
 use crate::cpu::frame::CpuFrame;
+use crate::cpu::veils::Veils;
 use crate::scene::{Mesh, Object, Scene};
 use crate::view::View;
 use glam::{DVec2, DVec3};
 use npr_outline::contour::ContourEdges;
 use npr_outline::line_style::LineStyle;
-use npr_outline::segment::{ScreenSegment, outline_coverage, outline_is_visible, outline_project};
+use npr_outline::segment::{
+    ScreenSegment, outline_coverage, outline_is_visible, outline_project, outline_share_through,
+};
 
 /// Draws lines over `frame`, which has all samples of the view. `shift_px` is the offset of its surface samples from
-/// the sample centres, in px of the frame.
-pub(crate) fn draw_lines(plan: &EdgeLinePlan, scene: &Scene, view: &View, shift_px: DVec2, frame: &mut CpuFrame) {
+/// the sample centres, in px of the frame. `veils`: of each pixel, the see-through surfaces that dim lines behind them;
+/// empty without any.
+pub(crate) fn draw_lines(
+    plan: &EdgeLinePlan,
+    scene: &Scene,
+    view: &View,
+    shift_px: DVec2,
+    veils: &[Veils],
+    frame: &mut CpuFrame,
+) {
     for (style, objects) in plan.groups(scene) {
         let mut coverage = vec![0.0f64; frame.color.len()];
         for number in objects {
             let (object, mesh) = scene.placed(number);
             let lines = ObjectEdges { object, mesh, contours: &plan.contours[number as usize], style: &style };
-            add_coverage(&lines, view, shift_px, frame, &mut coverage);
+            add_coverage(&lines, view, shift_px, veils, frame, &mut coverage);
         }
         let [r, g, b, opacity] = style.ink;
         let ink = DVec3::new(r.into(), g.into(), b.into());
@@ -39,7 +50,14 @@ struct ObjectEdges<'a> {
 }
 
 /// Adds the coverage of each pixel by the visible lines of an object; the largest coverage of any line counts.
-fn add_coverage(edges: &ObjectEdges<'_>, view: &View, shift_px: DVec2, frame: &CpuFrame, coverage: &mut [f64]) {
+fn add_coverage(
+    edges: &ObjectEdges<'_>,
+    view: &View,
+    shift_px: DVec2,
+    veils: &[Veils],
+    frame: &CpuFrame,
+    coverage: &mut [f64],
+) {
     let &ObjectEdges { object, mesh, contours, style } = edges;
     let scale = f64::from(view.samples.max(1));
     let eye = object.homogeneous(view.camera.homogeneous_eye());
@@ -48,7 +66,8 @@ fn add_coverage(edges: &ObjectEdges<'_>, view: &View, shift_px: DVec2, frame: &C
     let view = view.camera.line_view(view.sampled_size_px());
     let local_eye = contours.local_eye(eye);
     let last = (i64::from(frame.width) - 1, i64::from(frame.height) - 1);
-    let depth_at = |x: i64, y: i64| frame.depth[(y.clamp(0, last.1) * (last.0 + 1) + x.clamp(0, last.0)) as usize];
+    let pixel = |x: i64, y: i64| (y.clamp(0, last.1) * (last.0 + 1) + x.clamp(0, last.0)) as usize;
+    let depth_at = |x: i64, y: i64| frame.depth[pixel(x, y)];
     for line in lines {
         let edge = line as usize;
         let Some(kind) = contours.kind(edge, local_eye) else { continue };
@@ -68,17 +87,22 @@ fn add_coverage(edges: &ObjectEdges<'_>, view: &View, shift_px: DVec2, frame: &C
             // Only the part of the row near the line, since the bounding box of a long slanted line is mostly empty.
             let (from, to) = row_reach(segment.ends_px, y as f64 + 0.5, reach);
             for x in (low.x.max(from).max(0.0) as i64)..=(high.x.min(to).min(last.0 as f64) as i64) {
-                let pixel = &mut coverage[(y * (last.0 + 1) + x) as usize];
+                let covered_before = &mut coverage[(y * (last.0 + 1) + x) as usize];
                 // The pixel is already fully covered.
-                if *pixel >= 1.0 {
+                if *covered_before >= 1.0 {
                     continue;
                 }
                 let point = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
                 let covered = outline_coverage(&segment, point, width_px);
-                if covered > *pixel
-                    && outline_is_visible(&among_samples, segment.nearest(point), &view, cut_out, depth_at)
-                {
-                    *pixel = covered;
+                let fraction = segment.nearest(point);
+                if covered > *covered_before && outline_is_visible(&among_samples, fraction, &view, cut_out, depth_at) {
+                    let through = match veils {
+                        [] => 1.0,
+                        _ => {
+                            outline_share_through(&among_samples, fraction, &view, depth_at, |x, y| veils[pixel(x, y)])
+                        }
+                    };
+                    *covered_before = covered_before.max(covered * through);
                 }
             }
         }

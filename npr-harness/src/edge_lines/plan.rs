@@ -1,6 +1,7 @@
 //! The part of a plan for edge lines.
 
 use crate::error::HarnessError;
+use crate::scene::opacity::Hides;
 use crate::scene::{Mesh, Object, ObjectLines, Scene};
 use crate::schema::{within, within_colors};
 use glam::DVec4;
@@ -36,14 +37,17 @@ pub enum EdgeLineMethod {
 /// The cache key of the contours: the crease angle, if creases are drawn, per [`LineKind`] whether it is drawn, and
 /// whether the file's edges decide.
 #[derive(PartialEq)]
-struct ContoursKey(Option<f32>, [bool; LineKind::ALL.len()], bool);
+struct ContoursKey(Option<f32>, [bool; LineKind::ALL.len()], bool, Option<bool>);
 
 impl EdgeLinePlan {
-    /// `file_edges` is [`Style::file_edges`](crate::style::Style::file_edges). `method` selects a method from the size in bytes of the edges on the GPU.
+    /// `file_edges` is [`Style::file_edges`](crate::style::Style::file_edges). `is_outside`: whether the eye is outside of
+    /// all objects, so that it sees no back face of a closed one. `method` selects a method from the size in bytes of the
+    /// edges on the GPU.
     pub(crate) fn new(
         scene: &Scene,
         style: &LineStyle,
         (crease_angle_rad, file_edges): (f32, bool),
+        is_outside: bool,
         method: impl FnOnce(u64) -> EdgeLineMethod,
     ) -> Result<Self, HarnessError> {
         style.validate()?;
@@ -59,6 +63,7 @@ impl EdgeLinePlan {
                 return Ok(Arc::default());
             }
             let (derived, world_from_normal) = object.derived(mesh);
+            let double_sided = double_sided(scene, object, mesh, is_outside);
             let options = ContourOptions {
                 crease_angle_rad,
                 material_borders,
@@ -68,9 +73,10 @@ impl EdgeLinePlan {
                 authored,
                 file_edges,
                 world_from_normal,
+                double_sided,
             };
-            derived.get(ContoursKey(creases.then_some(crease_angle_rad), drawn, file_edges), || {
-                contour_edges(mesh.model(), mesh.edges(), &options)
+            derived.get(ContoursKey(creases.then_some(crease_angle_rad), drawn, file_edges, double_sided), || {
+                contour_edges(mesh.model(), &mesh.edges_and_cuts(), &options)
             })
         };
         let contours = scene.placed_objects().map(of_object).collect::<Result<Vec<_>, _>>()?;
@@ -112,6 +118,22 @@ impl EdgeLinePlan {
         }
         (lines, counts)
     }
+}
+
+/// Whether all faces of an object are double-sided, or none is; `None` for what the materials of its mesh say.
+///
+/// The back faces of a closed object that hides what is behind it are hidden, and so is an edge between two of them. It is left out like one
+/// between culled faces, since depths at pixels do not say that it is hidden where its distance from the contour is less
+/// than a pixel.
+fn double_sided(scene: &Scene, object: &Object, mesh: &Mesh, is_outside: bool) -> Option<bool> {
+    let (first, is_own) = object.first_material();
+    let mut materials = if is_own { first..first + 1 } else { scene.materials_of(object.mesh()) };
+    if is_outside && mesh.is_closed() && materials.all(|material| scene.hides(material) == Hides::Everything) {
+        return Some(false);
+    }
+    let own = is_own.then(|| scene.materials()[first].double_sided);
+    let differs = |own: &bool| mesh.model().materials.iter().any(|of_mesh| of_mesh.double_sided != *own);
+    own.filter(differs)
 }
 
 /// Per [`LineKind`]: whether any object has such lines, of the picture's style or of its own.

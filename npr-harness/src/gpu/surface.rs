@@ -17,9 +17,10 @@ use crate::image_lines::gbuffer::targets::TEXEL_FORMAT;
 use crate::image_lines::plan::ImagePlan;
 use crate::plan::{Emission, PaintPlan, Plan};
 use crate::scene::Scene;
+use crate::scene::opacity::Hides;
 use crate::shade::flag;
 use crate::shadow::ShadowLines;
-use crate::shadow::gpu::{BlankShadow, ShadowOnDevice};
+use crate::shadow::gpu::{BlankShadow, MAP_BIAS, ShadowOnDevice};
 use glam::{DVec2, DVec3, DVec4};
 use npr_imagespace::artist::{ArtistRotation, LineKind};
 use npr_imagespace::format::texel::{DepthCode, TexelLayout};
@@ -103,6 +104,8 @@ enum Paint {
     Lit,
     /// Hatched with strokes.
     Hatched,
+    /// The alpha of see-through surfaces.
+    Veil,
 }
 
 /// The G-buffer output of a fragment, for lines in the image.
@@ -138,6 +141,32 @@ pub(super) struct SurfaceTargets<'a> {
     pub(super) size_px: DVec2,
     /// The number of these pixels per picture pixel, along each axis.
     pub(super) samples: u32,
+    pub(super) purpose: Purpose<'a>,
+}
+
+/// What surfaces are drawn for.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Purpose<'a> {
+    /// A picture, or its lines.
+    Picture,
+    /// The surfaces that shadows fall on: no blended ones.
+    Receivers,
+    /// The surfaces that cast shadows, from the light: none is culled or clipped away.
+    Casters(Camera),
+    /// A layer of blended surfaces with an alpha below 0.5: their nearest, or the nearest behind a layer, of which this is
+    /// the depth. Their alpha is written as a colour.
+    Veils(Option<&'a wgpu::TextureView>),
+}
+
+/// Which faces a draw has, and how.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Layer {
+    /// Unblended faces.
+    Solid,
+    /// Blended faces, over what is drawn.
+    Blended,
+    /// Blended faces where they hide lines behind them or cast shadows, into depth and G-buffer.
+    Hiding,
 }
 
 /// The properties that distinguish one pipeline from another.
@@ -150,6 +179,11 @@ struct Variant {
     cull_back: bool,
     mirrored: bool,
     blended: bool,
+    hiding: bool,
+    /// Whether only what is behind a layer of see-through surfaces is drawn.
+    behind_layer: bool,
+    /// Whether depth is biased away from the light, in a shadow map.
+    biased: bool,
     /// The index of the shader in [`SurfacePass::shaders`].
     shader: usize,
     shadow: ShadowVariant,
@@ -323,7 +357,16 @@ impl SurfacePass {
         targets: &SurfaceTargets<'_>,
     ) -> Result<(), HarnessError> {
         let SurfaceFrame { device, scene, uploaded, plan, light } = *frame;
-        let camera = &plan.view.camera;
+        let camera = match &targets.purpose {
+            Purpose::Casters(camera) => camera,
+            Purpose::Picture | Purpose::Receivers | Purpose::Veils(_) => &plan.view.camera,
+        };
+        let casts = matches!(targets.purpose, Purpose::Casters(_));
+        // The depth of the layer before is bound in place of a shadow map, which no such pass reads.
+        let (is_veil, layer_before) = match targets.purpose {
+            Purpose::Veils(before) => (true, before),
+            _ => (false, None),
+        };
         let shader = self.shader(device, &light.key);
         let ink = plan.image.as_ref().map_or_else(bytemuck::Zeroable::zeroed, |image| InkUniform::new(image, camera));
         let view = uniform_buffer(device, bytemuck::bytes_of(&SurfaceUniform::new(scene, camera, targets.size_px)));
@@ -357,7 +400,7 @@ impl SurfacePass {
                 shadow.and_then(|shadow| shadow.mask.as_ref()).unwrap_or(&self.no_shadow.mask),
             ),
             wgpu::BindingResource::TextureView(
-                shadow.and_then(|shadow| shadow.map.as_ref()).unwrap_or(&self.no_shadow.map),
+                shadow.and_then(|shadow| shadow.map.as_ref()).or(layer_before).unwrap_or(&self.no_shadow.map),
             ),
             wgpu::BindingResource::Sampler(&self.no_shadow.nearest),
             wgpu::BindingResource::TextureView(uploaded.facets.as_ref().unwrap_or(&self.blank.image)),
@@ -370,6 +413,7 @@ impl SurfacePass {
             entries: &entries,
         });
         let paint = match &plan.paint {
+            _ if is_veil => Paint::Veil,
             Some(paint) if targets.color.is_some() => match (&paint.hatch, paint.interpolates_light) {
                 (Some(_), _) => Paint::Hatched,
                 (None, true) => Paint::Lit,
@@ -379,7 +423,7 @@ impl SurfacePass {
         };
         let shows_colors = plan.paint.as_ref().is_some_and(PaintPlan::shows_surface_color);
         let by_alpha = plan.paint.as_ref().is_some_and(|paint| paint.shade.model().material_by_alpha());
-        let blended = if plan.blended && paint != Paint::Nothing {
+        let blended = if plan.blended && !matches!(paint, Paint::Nothing | Paint::Veil) {
             back_to_front(scene, &uploaded.blended_faces, camera)
         } else {
             Vec::new()
@@ -390,25 +434,44 @@ impl SurfacePass {
             let one_sided = scene.placed(object).1.model().one_sided.get(face as usize) == Some(&true);
             (object, duplicates[scene.material_number(object, face)], one_sided)
         };
+        let hiding = match targets.purpose {
+            Purpose::Picture if !plan.blended_hide => Vec::new(),
+            Purpose::Receivers => Vec::new(),
+            _ => {
+                let is_drawn = |&[object, face]: &[u32; 2]| {
+                    let material = scene.material_number(object, face);
+                    if is_veil { scene.veils(material) } else { scene.hides(material) != Hides::Nothing }
+                };
+                let mut faces: Vec<[u32; 2]> = uploaded.blended_faces.iter().copied().filter(is_drawn).collect();
+                faces.sort_by_key(look);
+                faces
+            }
+        };
         let blended_runs: Vec<&[[u32; 2]]> = blended.chunk_by(|a, b| look(a) == look(b)).collect();
+        let hiding_runs: Vec<&[[u32; 2]]> = hiding.chunk_by(|a, b| look(a) == look(b)).collect();
         let solid_draws: usize = instances.runs().iter().map(|run| uploaded.batches[run.mesh].len()).sum();
-        let (draws, limit) = (solid_draws + blended_runs.len(), uploaded.most_draws);
+        let (draws, limit) = (solid_draws + blended_runs.len() + hiding_runs.len(), uploaded.most_draws);
         if draws > limit {
             return Err(HarnessError::TooManyDraws { draws, limit });
         }
-        let blended_indices = (!blended.is_empty()).then(|| {
-            let faces: Vec<_> = blended.iter().map(|&face| uploaded.face_vertices(scene, face)).collect();
-            let indices = uploaded.index_format.bytes(faces.as_flattened());
-            filled_buffer(device, "blended faces", &indices, wgpu::BufferUsages::INDEX)
-        });
+        let index_buffer = |faces: &[[u32; 2]]| {
+            (!faces.is_empty()).then(|| {
+                let faces: Vec<_> = faces.iter().map(|&face| uploaded.face_vertices(scene, face)).collect();
+                let indices = uploaded.index_format.bytes(faces.as_flattened());
+                filled_buffer(device, "blended faces", &indices, wgpu::BufferUsages::INDEX)
+            })
+        };
+        let (blended_indices, hiding_indices) = (index_buffer(&blended), index_buffer(&hiding));
         let paper = paper(plan);
         let bound = (&view_group, uploaded, targets.depth);
         let paired = !plan.object_pairs().is_empty();
         // The pipeline that is set.
         let set = Cell::new(None);
-        let draw = |pass: &mut wgpu::RenderPass<'_>, drawn: Drawn<'_>, colored: bool, blended: bool| {
+        let draw = |pass: &mut wgpu::RenderPass<'_>, drawn: Drawn<'_>, colored: bool, layer: Layer| {
             let material = &scene.materials()[drawn.material];
-            // Blended surfaces are ignored by lines in the image.
+            let (blended, hiding) = (layer == Layer::Blended, layer == Layer::Hiding);
+            let paint = if hiding && !is_veil { Paint::Nothing } else { paint };
+            // Blended surfaces write texels where they hide, apart from their colours.
             let inking = plan.image.as_ref().filter(|_| targets.texels.is_some() && !blended).map(|image| {
                 let line_kind = image.line_kinds[drawn.material];
                 Inking {
@@ -421,29 +484,43 @@ impl SurfacePass {
             });
             let wanted = paint != Paint::Nothing && (shows_colors || blended)
                 || plan.cut_out
+                || hiding && (is_veil || scene.hides(drawn.material) == Hides::Partly)
                 || inking.is_some_and(|inking| inking.line_kind != LineKind::Normals);
             let variant = Variant {
                 paint,
                 looked_up: is_looked_up(scene, plan, drawn.material) && wanted,
                 by_alpha: by_alpha && material.texture.is_some(),
-                emission: if paint == Paint::Nothing { Emission::None } else { plan.emission(material) },
-                cull_back: plan.cull_back || drawn.one_sided || !material.double_sided,
+                emission: match paint {
+                    Paint::Nothing | Paint::Veil => Emission::None,
+                    _ => plan.emission(material),
+                },
+                cull_back: !casts && (plan.cull_back || drawn.one_sided || !material.double_sided),
                 mirrored: drawn.mirrored,
                 blended,
+                hiding,
+                behind_layer: layer_before.is_some(),
+                biased: casts,
                 shader,
                 // Blended surfaces receive no shadows: the stencil was counted against the surfaces behind them.
-                shadow: if blended { ShadowVariant::default() } else { ShadowVariant::new(plan, shadow) },
+                shadow: match layer {
+                    Layer::Solid => ShadowVariant::new(plan, shadow),
+                    Layer::Blended => ShadowVariant::default(),
+                    Layer::Hiding => ShadowVariant { source: 0, ..ShadowVariant::new(plan, shadow) },
+                },
                 depth: targets.depth.texture().format(),
                 streams: uploaded.streams.present,
                 colored,
-                clipped: scene.clip.is_some(),
+                clipped: !casts && scene.clip.is_some(),
                 mesh_normals: plan.mesh_normals,
                 inking,
                 ground: false,
             };
-            let Some(indices) = (if blended { blended_indices.as_ref() } else { uploaded.indices.as_ref() }) else {
-                return;
+            let indices = match layer {
+                Layer::Solid => &uploaded.indices,
+                Layer::Blended => &blended_indices,
+                Layer::Hiding => &hiding_indices,
             };
+            let Some(indices) = indices else { return };
             if set.get() != Some(variant) {
                 let mut pipelines = self.pipelines.borrow_mut();
                 pass.set_pipeline(pipelines.entry(variant).or_insert_with(|| self.pipeline(device, variant)));
@@ -461,6 +538,7 @@ impl SurfacePass {
         // cleared in a separate pass if texels are drawn, and blended surfaces, which write no texels, have a separate
         // pass.
         let colored = targets.color.is_some() && (paint != Paint::Nothing || targets.texels.is_none());
+        let paper = if is_veil { wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) } else { paper };
         let color = targets.color.map(|view| attachment(view, paper));
         // Zero texels denote background.
         let texels = targets.texels.map(|view| attachment(view, wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT)));
@@ -468,7 +546,7 @@ impl SurfacePass {
             clear(encoder, plan, view);
         }
         let mut pass = begin(encoder, bound, [color.filter(|_| colored), texels], wgpu::LoadOp::Clear(0.0));
-        for run in instances.runs() {
+        for run in instances.runs().iter().filter(|_| !is_veil) {
             let (first, is_one) = run.material;
             for batch in &uploaded.batches[run.mesh] {
                 let drawn = Drawn {
@@ -480,11 +558,15 @@ impl SurfacePass {
                     mirrored: run.mirrored,
                     lights: run.lights,
                 };
-                draw(&mut pass, drawn, colored, false);
+                draw(&mut pass, drawn, colored, Layer::Solid);
             }
         }
-        let depth_alone = targets.color.is_none() && targets.texels.is_none();
-        if let Some(ground) = plan.ground().filter(|_| shadow.is_some() || depth_alone) {
+        let shows_ground = match targets.purpose {
+            Purpose::Picture => shadow.is_some(),
+            Purpose::Receivers => true,
+            Purpose::Casters(_) | Purpose::Veils(_) => false,
+        };
+        if let Some(ground) = plan.ground().filter(|_| shows_ground) {
             let variant = Variant {
                 paint: if paint == Paint::Painted { Paint::Lit } else { paint },
                 looked_up: false,
@@ -493,6 +575,9 @@ impl SurfacePass {
                 cull_back: true,
                 mirrored: false,
                 blended: false,
+                hiding: false,
+                behind_layer: false,
+                biased: false,
                 shader,
                 shadow: ShadowVariant::new(plan, shadow),
                 depth: targets.depth.texture().format(),
@@ -522,21 +607,32 @@ impl SurfacePass {
             drop(pass);
             pass = begin(encoder, bound, [Some(attachment(view, wgpu::LoadOp::Load)), None], wgpu::LoadOp::Load);
         }
-        let mut start = 0;
-        for run in blended_runs {
-            let end = start + 3 * run.len() as u32;
+        let of_run = |run: &[[u32; 2]], start: u32| {
             let (object, material, one_sided) = look(&run[0]);
-            let drawn = Drawn {
+            Drawn {
                 material,
                 one_sided,
-                indices: start..end,
+                indices: start..start + 3 * run.len() as u32,
                 instances: instances.slice_of(object),
                 count: 1,
                 mirrored: scene.objects()[object as usize].is_mirrored(),
                 lights: plan.object_pairs().get(object as usize).copied().unwrap_or(0),
-            };
-            draw(&mut pass, drawn, true, true);
-            start = end;
+            }
+        };
+        let mut start = 0;
+        for run in blended_runs {
+            draw(&mut pass, of_run(run, start), true, Layer::Blended);
+            start += 3 * run.len() as u32;
+        }
+        if !hiding_runs.is_empty() && !is_veil {
+            drop(pass);
+            let texels = targets.texels.map(|view| attachment(view, wgpu::LoadOp::Load));
+            pass = begin(encoder, bound, [None, texels], wgpu::LoadOp::Load);
+        }
+        let mut start = 0;
+        for run in hiding_runs {
+            draw(&mut pass, of_run(run, start), is_veil, Layer::Hiding);
+            start += 3 * run.len() as u32;
         }
         Ok(())
     }
@@ -581,6 +677,8 @@ impl SurfacePass {
             (Paint::Painted, false, true) => ("vs_plain_inked", "fs_painted_inked"),
             (Paint::Painted, true, true) => ("vs_textured_inked", "fs_painted_textured_inked"),
             (Paint::Lit, _, true) => ("vs_lit", "fs_lit_inked"),
+            (Paint::Veil, false, _) => ("vs_depth", "fs_veil"),
+            (Paint::Veil, true, _) => ("vs_textured", "fs_veil_textured"),
             (Paint::Hatched, _, false) => ("vs_hatched", "fs_hatched"),
             (Paint::Hatched, _, true) => ("vs_hatched", "fs_hatched_inked"),
         };
@@ -633,6 +731,8 @@ impl SurfacePass {
                 ("surface_blended", flag(blended)),
                 ("surface_ground", flag(ground)),
                 ("surface_emission", f64::from(emission as u32)),
+                ("surface_hides", flag(variant.hiding)),
+                ("surface_behind_layer", flag(variant.behind_layer)),
             ])
             .collect();
         let targets = [colored.then_some(target), texels];
@@ -663,7 +763,7 @@ impl SurfacePass {
                     wgpu::CompareFunction::Greater
                 }),
                 stencil: Default::default(),
-                bias: Default::default(),
+                bias: if variant.biased { MAP_BIAS } else { Default::default() },
             }),
             multisample: Default::default(),
             fragment: Some(wgpu::FragmentState {

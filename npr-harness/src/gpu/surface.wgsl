@@ -69,6 +69,10 @@ override surface_blended: bool = false;
 override surface_ground: bool = false;
 // What the surface emits: 0 nothing, 1 the material's colour, 2 that times a texture.
 override surface_emission: u32 = 0u;
+// Whether a blended surface is drawn where it hides what is behind it, instead of blended.
+override surface_hides: bool = false;
+// Whether only what is behind a layer of see-through surfaces is drawn, whose depth is bound as the shadow map.
+override surface_behind_layer: bool = false;
 
 @group(0) @binding(0) var<uniform> view: SurfaceView;
 @group(0) @binding(2) var<uniform> ink: SurfaceInk;
@@ -148,6 +152,11 @@ struct Texel {
 // The alpha written with a surface's colour. A write mask cannot be used: WebGL2 has one for all targets of a pass.
 fn surface_alpha(alpha: f32) -> f32 {
     return select(1.0, alpha, surface_blended);
+}
+
+// The least alpha of a fragment that is drawn.
+fn least_alpha() -> f32 {
+    return select(material.cutoff, 0.5, surface_hides);
 }
 
 fn to_eye(position_px: vec2<f32>) -> vec3<f32> {
@@ -386,7 +395,7 @@ fn fs_painted_textured(in: TexturedSurface, @builtin(front_facing) front: bool) 
 
 @fragment
 fn fs_cut_out(in: TexturedSurface) {
-    if base_color(texture_color(in.uv), in.color).a < material.cutoff {
+    if base_color(texture_color(in.uv), in.color).a < least_alpha() {
         discard;
     }
     clip_off(in.position);
@@ -394,6 +403,27 @@ fn fs_cut_out(in: TexturedSurface) {
 
 @fragment
 fn fs_nothing() {
+}
+
+// The alpha of a see-through surface, unless it hides what is behind it or belongs to the layer before.
+fn veil(position: vec4<f32>, alpha: f32) -> vec4<f32> {
+    let at = position.xy / vec2<f32>(textureDimensions(shadow_map));
+    let before = textureSampleLevel(shadow_map, shadow_nearest, at, 0.0).x;
+    if alpha >= 0.5 || surface_behind_layer && position.z >= before {
+        discard;
+    }
+    clip_off(position);
+    return vec4<f32>(alpha);
+}
+
+@fragment
+fn fs_veil(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    return veil(position, material.base_color.a);
+}
+
+@fragment
+fn fs_veil_textured(in: TexturedSurface) -> @location(0) vec4<f32> {
+    return veil(in.position, base_color(texture_color(in.uv), in.color).a);
 }
 
 fn wrapped(texel: i32, size: i32, wrap: u32) -> i32 {
@@ -617,7 +647,7 @@ fn fs_texels(in: InkedSurface, @builtin(front_facing) front: bool) -> Texel {
 fn fs_texels_textured(in: InkedTexturedSurface, @builtin(front_facing) front: bool) -> Texel {
     let texel = texture_color(in.uv);
     let at = shadow_at(in.position, facing(in.normal, front));
-    if base_color(texel, in.color).a < material.cutoff {
+    if base_color(texel, in.color).a < least_alpha() {
         discard;
     }
     clip_off(in.position);

@@ -14,6 +14,7 @@ use npr_imagespace::pass::INK_FORMAT;
 use npr_imagespace::pass::disc::DiscScratch;
 use npr_imagespace::pass::fused::texel_format;
 use npr_outline::line_pass::COVERAGE_FORMAT;
+use npr_outline::segment::VEIL_LAYERS;
 use std::cell::{Cell, OnceCell, Ref, RefCell};
 
 /// Without sRGB encoding on store, because values are display-referred.
@@ -41,6 +42,8 @@ pub struct Targets {
     depth_view: OnceCell<wgpu::TextureView>,
     /// Created when lines along edges are first drawn.
     edge_lines: OnceCell<EdgeLineTargets>,
+    /// Depth and alpha of layers of see-through surfaces, created when they are first drawn.
+    veils: OnceCell<[[wgpu::TextureView; 2]; VEIL_LAYERS]>,
     /// Created on first use, and recreated for a style that needs others.
     ink: RefCell<Option<InkTargets>>,
     /// The stencil in which shadow volumes are counted.
@@ -158,6 +161,7 @@ impl Targets {
             color,
             depth_view: OnceCell::new(),
             edge_lines: OnceCell::new(),
+            veils: OnceCell::new(),
             ink: RefCell::default(),
             stencil: StencilTarget::default(),
             is_inked: Cell::new(false),
@@ -186,6 +190,18 @@ impl Targets {
         self.depth_view.get_or_init(|| {
             let read = wgpu::TextureUsages::TEXTURE_BINDING;
             texture(device, "depth", DEPTH_FORMAT, read, (self.width, self.height)).create_view(&Default::default())
+        })
+    }
+
+    /// Depth and alpha of layers of see-through surfaces.
+    pub(crate) fn veils(&self, device: &wgpu::Device) -> &[[wgpu::TextureView; 2]; VEIL_LAYERS] {
+        self.veils.get_or_init(|| {
+            std::array::from_fn(|_| {
+                [("depth of a layer", DEPTH_FORMAT), ("alpha of a layer", COLOR_FORMAT)].map(|(label, format)| {
+                    let read = wgpu::TextureUsages::TEXTURE_BINDING;
+                    texture(device, label, format, read, (self.width, self.height)).create_view(&Default::default())
+                })
+            })
         })
     }
 

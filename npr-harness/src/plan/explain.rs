@@ -4,6 +4,7 @@ use super::{PaintPlan, Plan, Reason};
 use crate::ground::GROUND;
 use crate::hatch::HatchMapping;
 use crate::image_lines::{ImagePlan, InkScale};
+use crate::scene::Scene;
 use crate::shadow::{ShadowLines, ShadowTechnique};
 use crate::style::Style;
 use crate::variant::Part;
@@ -23,20 +24,23 @@ impl Plan {
         let no_shadow = if style.shadow.is_some() { "the style shows nothing of it" } else { "no light casts shadows" };
         let rays = matches!(technique, Some(ShadowTechnique::Rays));
         let by_rays = "the CPU follows rays to the light";
+        let because = self.shadow.as_ref().and_then(|shadow| shadow.because);
         let no_volumes = match (rays, map) {
             (true, _) => by_rays,
+            (_, true) if because.is_some() => because.unwrap_or_default(),
             (_, true) => "the style asks for a map",
             _ => no_shadow,
         };
         add(rays, "shadow rays", by_rays, if technique.is_some() { "a device has other means" } else { no_shadow });
         add(volumes, "geometry: depth, before all", "shadows fall on what is seen", no_volumes);
-        add(volumes, "shadow volumes into a stencil", "a light casts shadows", no_volumes);
+        add(volumes, "shadow volumes into a stencil", because.unwrap_or("a light casts shadows"), no_volumes);
         let no_map = match (rays, volumes) {
             (true, _) => by_rays,
             (_, true) => "volumes are exact",
             _ => no_shadow,
         };
-        add(map, "shadow map", "a light casts shadows, and the style asks for a map", no_map);
+        let why_map = because.unwrap_or("a light casts shadows, and the style asks for a map");
+        add(map, "shadow map", why_map, no_map);
 
         let painted = self.paint.is_some();
         add(painted, "geometry: colour and depth", "surfaces are painted", "the style paints no surface");
@@ -49,10 +53,16 @@ impl Plan {
         add(textured, "texture and vertex colour lookups", "materials have them", "no material needs them");
         add(self.cut_out, "alpha test", "materials have a cutoff", "no material has a cutoff");
         add(self.blended, "blended surfaces, back to front", "materials are blended", "no material is blended");
+        if self.blended_hide {
+            add(true, "blended surfaces from alpha 0.5 on, in depth", "they hide lines behind them", "");
+        }
+        if self.veiled {
+            add(true, "layers of see-through surfaces", "they dim the lines behind them", "");
+        }
         add(
             !self.cull_back,
             "back faces",
-            "the model is open, cut, or seen from inside",
+            "the model is open, cut, see-through, or seen from inside",
             "the model is closed: they are hidden",
         );
         add(
@@ -190,6 +200,19 @@ impl Plan {
     }
 }
 
+/// The lines along the cuts of a scene's meshes, if there are any.
+pub(super) fn cut_lines(scene: &Scene) -> Option<Reason> {
+    let cuts = || scene.meshes().iter().map(|mesh| mesh.cut_lines()).filter(|cuts| !cuts.edges.is_empty());
+    let segments: usize = cuts().map(|cuts| cuts.edges.len()).sum();
+    let step = cuts().map(|cuts| cuts.step).max()?;
+    let found = match step {
+        1 => String::new(),
+        _ => format!(", found between every {step} texels, since there are too many"),
+    };
+    let why = format!("alpha cuts faces: {segments} segments where it passes the cutoff{found}");
+    Some(Reason { pass: "lines along cuts", why })
+}
+
 /// The part of a picture that a pass makes, for its costs: a tonal art map and its field for strokes, and what surfaces
 /// need besides for their light, or for strokes.
 pub fn part_of_pass(pass: &str, is_hatched: bool) -> Part {
@@ -199,6 +222,9 @@ pub fn part_of_pass(pass: &str, is_hatched: bool) -> Part {
         "inverted hull: displaced back faces"
         | "printed fins, all edges"
         | "line coverage and ink"
+        | "lines along cuts"
+        | "blended surfaces from alpha 0.5 on, in depth"
+        | "layers of see-through surfaces"
         | "normal, region, depth beside colour"
         | "geometry: normal, region, depth"
         | "G-buffer in the style's formats"

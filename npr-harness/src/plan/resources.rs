@@ -18,6 +18,7 @@ use glam::DVec4;
 use npr_imagespace::format::texel::TexelLayout;
 use npr_imagespace::morphology::disc::{SITE_PX, WORD_PX};
 use npr_outline::ContourEdges;
+use npr_outline::segment::VEIL_LAYERS;
 use npr_toon::painter::PainterUniform;
 use std::fmt;
 use std::sync::Arc;
@@ -178,6 +179,10 @@ impl Plan {
         if self.edge_lines.as_ref().is_some_and(|lines| !lines.groups(scene).is_empty()) {
             list.target("colour and lines", COLOR, size, samples);
             list.target("greatest coverage", COVERAGE, size, samples);
+            for _ in 0..if self.veiled { VEIL_LAYERS } else { 0 } {
+                list.target("depth of a layer", DEPTH, size, samples);
+                list.target("alpha of a layer", COLOR, size, samples);
+            }
         }
         if let Some(image) = &self.image {
             let size = image.size;
@@ -216,7 +221,7 @@ impl Plan {
                     list.target("shadow mask", SHADOW_MASK, size, samples);
                 }
             }
-            ShadowTechnique::Map { side } => list.target("shadow map", SHADOW_MAP, (side, side), 1),
+            ShadowTechnique::Map { side, .. } => list.target("shadow map", SHADOW_MAP, (side, side), 1),
             ShadowTechnique::Rays => {}
         }
     }
@@ -279,7 +284,7 @@ impl Plan {
         let stride = capabilities.uniform_alignment as usize;
         let materials = material_table(scene, self, stride);
         list.buffer("faces", index_bytes * index_count(scene, &splits, &materials.duplicates));
-        if self.blended {
+        if self.blended || self.blended_hide || self.veiled {
             list.buffer("blended faces", 3 * index_bytes * blended_faces(scene).len() as u64);
         }
         list.buffer("objects", INSTANCE_BYTES * scene.objects().len().max(1) as u64);

@@ -6,7 +6,7 @@
 //! rule of [`npr_mesh::coplanar`].
 
 use super::Scene;
-use super::mesh::{Mesh, find_edges};
+use super::mesh::Mesh;
 use super::object::{Object, Unseparated};
 use glam::{DAffine3, DVec3, Vec2, Vec4};
 use npr_mesh::Model;
@@ -49,8 +49,7 @@ impl Scene {
             let unseparated = Unseparated { mesh: object.mesh, scene_from_mesh: *object.scene_from_mesh() };
             let own = self.file_meshes[object.mesh].model().clone().transformed(object.scene_from_mesh());
             let own = with_pieces(own, &pieces[number], &model);
-            let edges = find_edges(&own);
-            let mesh = Arc::new(Mesh::with_edges(own, edges));
+            let mesh = Arc::new(Mesh::of_separated(own));
             // The mesh of the file makes way if no other object has it.
             let at = unseparated.mesh;
             let place = if taken[number] || std::mem::replace(&mut replaced[at], true) {

@@ -1,10 +1,12 @@
 //! A mesh prepared for both executors, shared by all objects that place it.
 
+use super::cut::CutLines;
 use crate::derived::Derived;
 use crate::rays::RayCaster;
 use glam::{DVec3, Vec3};
 use npr_mesh::edges::{self, EdgeKind, EdgeOptions, Edges};
 use npr_mesh::{AlphaMode, Model, coplanar};
+use std::borrow::Cow;
 use std::sync::OnceLock;
 
 /// A model and the data derived from it. Its positions are relative to a local origin and scaled by a power of two
@@ -14,6 +16,7 @@ pub struct Mesh {
     origin: DVec3,
     scale: f64,
     edges: Edges,
+    cut: CutLines,
     closed: bool,
     bounds: Option<(Vec3, Vec3)>,
     rays: OnceLock<RayCaster>,
@@ -26,6 +29,7 @@ impl Mesh {
     /// overlap in one plane those are kept that are seen ([`npr_mesh::coplanar`]).
     pub fn new(mut model: Model) -> Self {
         model.fill_face_material();
+        super::opacity::settle(&mut model);
         let bounds = model.bounds();
         let (origin, scale) =
             bounds.map_or((DVec3::ZERO, 1.0), |(low, high)| normalization(low.as_dvec3(), high.as_dvec3()));
@@ -37,8 +41,15 @@ impl Mesh {
             }
         }
         let model = coplanar::separate(&model).map_or(model, |separated| separated.model);
-        let edges = find_edges(&model);
-        Self { origin, scale, ..Self::with_edges(model, edges) }
+        Self { origin, scale, ..Self::of_separated(model) }
+    }
+
+    /// Finds the edges and cut lines of a model that needs no normalization, and whose coplanar faces are separated.
+    pub(super) fn of_separated(mut model: Model) -> Self {
+        let mut edges = find_edges(&model);
+        let cut = super::cut::cut_lines(&mut model);
+        edges.representative.extend(edges.representative.len() as u32..model.positions.len() as u32);
+        Self { cut, ..Self::with_edges(model, edges) }
     }
 
     /// Builds a mesh from a model that needs no normalization, and its edges.
@@ -53,6 +64,7 @@ impl Mesh {
             origin: DVec3::ZERO,
             scale: 1.0,
             edges,
+            cut: CutLines::default(),
             closed,
             rays: OnceLock::new(),
             boundary_sides: OnceLock::new(),
@@ -81,6 +93,22 @@ impl Mesh {
     /// The edges to draw, without those of redundant faces.
     pub fn edges(&self) -> &Edges {
         &self.edges
+    }
+
+    /// The lines along which alpha cuts faces. Their ends are vertices that no face has.
+    pub fn cut_lines(&self) -> &CutLines {
+        &self.cut
+    }
+
+    /// The edges to draw, with the cut lines.
+    pub(crate) fn edges_and_cuts(&self) -> Cow<'_, Edges> {
+        if self.cut.edges.is_empty() {
+            return Cow::Borrowed(&self.edges);
+        }
+        // Further faces refer to edges by number, so the cut lines follow.
+        let mut edges = self.edges.clone();
+        edges.edges.extend_from_slice(&self.cut.edges);
+        Cow::Owned(edges)
     }
 
     /// Whether every edge has two consistently wound faces, so that no back face is visible from outside.

@@ -43,6 +43,31 @@ pub(crate) struct ShadowOnDevice {
     pub(crate) map: Option<wgpu::TextureView>,
 }
 
+/// The bias of depths in a shadow map.
+///
+/// A texel represents points up to half a texel from its centre along both axes, where the depth of a plane differs by up
+/// to the larger of its slopes. With a bias of that slope away from the light (depth is reversed, so the bias is negative),
+/// no plane shadows itself. The constant covers rounding.
+pub(crate) const MAP_BIAS: wgpu::DepthBiasState = wgpu::DepthBiasState { constant: -16, slope_scale: -1.0, clamp: 0.0 };
+
+/// The surfaces whose depth a shadow technique asks for.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum ShadowDepth {
+    /// Those on which shadows fall, as the picture shows them.
+    Receivers,
+    /// Those that cast shadows, tested by alpha, seen from the light.
+    Casters {
+        /// The camera of the shadow map.
+        from: Camera,
+        /// The side of the map, texels.
+        side: u32,
+    },
+}
+
+/// Draws the depth of surfaces into a view.
+pub(crate) type DrawDepth<'a> =
+    dyn FnMut(&mut wgpu::CommandEncoder, &wgpu::TextureView, ShadowDepth) -> Result<(), HarnessError> + 'a;
+
 /// Placeholder resources, bound if there are no shadows.
 pub(crate) struct BlankShadow {
     pub(crate) uniform: wgpu::Buffer,
@@ -143,7 +168,7 @@ impl ShadowFrame<'_> {
         let world_from_px = px_from_world.inverse();
         let light = self.plan.light;
         let map_from_px = match self.plan.technique {
-            ShadowTechnique::Map { side } => {
+            ShadowTechnique::Map { side, .. } => {
                 let texels = DVec2::splat(side.into());
                 px_from_clip(texels) * map_camera(self.scene, light).clip_from_world(1.0) * world_from_px
             }
@@ -206,20 +231,28 @@ impl ShadowPasses {
         })
     }
 
-    /// Records shadow volumes against the depth that `draw_depth` draws into the view it is given, or the shadow map.
+    /// Records shadow volumes against the depth that `draw_depth` draws into the view it is given, or the shadow map, which
+    /// `draw_depth` draws if casters are tested by alpha.
     pub(crate) fn record(
         &self,
         encoder: &mut wgpu::CommandEncoder,
         frame: &ShadowFrame<'_>,
         target: &StencilTarget,
-        draw_depth: &mut dyn FnMut(&mut wgpu::CommandEncoder, &wgpu::TextureView) -> Result<(), HarnessError>,
+        draw_depth: &mut DrawDepth<'_>,
     ) -> Result<ShadowOnDevice, HarnessError> {
         let device = &frame.context.device;
         let uniform = uniform_buffer(device, bytemuck::bytes_of(&frame.uniform()));
         let light = frame.plan.light;
         let (casters, float_depth) = match &frame.plan.technique {
-            ShadowTechnique::Map { side } => {
-                let map = self.draw_map(encoder, frame, *side);
+            &ShadowTechnique::Map { side, alpha_test } => {
+                let map = if alpha_test {
+                    let view = self.map_view(device, side);
+                    let from = map_camera(frame.scene, light);
+                    draw_depth(encoder, &view, ShadowDepth::Casters { from, side })?;
+                    view
+                } else {
+                    self.draw_map(encoder, frame, side)
+                };
                 return Ok(ShadowOnDevice { uniform, mask: None, map: Some(map) });
             }
             ShadowTechnique::Volumes { casters, float_depth, .. } => (casters, *float_depth),
@@ -228,7 +261,7 @@ impl ShadowPasses {
         };
         let format = texel_format::stencil_format(float_depth).on_device();
         let (depth_stencil, mask) = target.views(device, format, frame.size);
-        draw_depth(encoder, depth_stencil)?;
+        draw_depth(encoder, depth_stencil, ShadowDepth::Receivers)?;
         let parallel = matches!(frame.camera.projection, Projection::Orthographic { .. });
         let pass = self.volumes[usize::from(parallel)]
             .get_or_init(|| ShadowPass::new(device, format, parallel).expect(STENCIL));
@@ -275,11 +308,16 @@ impl ShadowPasses {
         Ok(ShadowOnDevice { uniform, mask: Some(mask.clone()), map: None })
     }
 
-    fn draw_map(&self, encoder: &mut wgpu::CommandEncoder, frame: &ShadowFrame<'_>, side: u32) -> wgpu::TextureView {
-        let device = &frame.context.device;
+    /// A view of the shadow map of a size, which is made if there is none.
+    fn map_view(&self, device: &wgpu::Device, side: u32) -> wgpu::TextureView {
         let mut maps = self.maps.borrow_mut();
         let map = maps.entry(side).or_insert_with(|| texture(device, "shadow map", MAP_FORMAT, (side, side)));
-        let view = map.create_view(&Default::default());
+        map.create_view(&Default::default())
+    }
+
+    fn draw_map(&self, encoder: &mut wgpu::CommandEncoder, frame: &ShadowFrame<'_>, side: u32) -> wgpu::TextureView {
+        let device = &frame.context.device;
+        let view = self.map_view(device, side);
         let pass = self.map.get_or_init(|| MapPass::new(device));
         let clip_from_world = map_camera(frame.scene, frame.plan.light).clip_from_world(1.0);
         pass.record(encoder, frame, clip_from_world, &view);
@@ -346,10 +384,7 @@ impl MapPass {
                 depth_write_enabled: Some(true),
                 depth_compare: Some(wgpu::CompareFunction::Greater),
                 stencil: Default::default(),
-                // A texel represents points up to half a texel from its centre along both axes, where the depth of a
-                // plane differs by up to the larger of its slopes. With a bias of that slope away from the light (depth
-                // is reversed, so the bias is negative), no plane shadows itself. The constant covers rounding.
-                bias: wgpu::DepthBiasState { constant: -16, slope_scale: -1.0, clamp: 0.0 },
+                bias: MAP_BIAS,
             }),
             multisample: Default::default(),
             fragment: None,

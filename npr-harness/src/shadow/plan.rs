@@ -6,7 +6,6 @@ use crate::ground::GroundPlan;
 use crate::rays::Hit;
 use crate::scene::{Mesh, Scene};
 use glam::DVec4;
-use npr_mesh::AlphaMode;
 use npr_mesh::edges::{EdgeOptions, find};
 use npr_outline::shadow_volume::{ShadowCasters, shadow_casters};
 use std::convert::Infallible;
@@ -27,7 +26,18 @@ pub struct ShadowPlan {
     pub in_lines: bool,
     /// The plane under the model that catches shadows.
     pub ground: Option<GroundPlan>,
+    /// Why the technique is not the one that the style names, or what it lacks, if so.
+    pub because: Option<&'static str>,
 }
+
+/// The reason for a map instead of volumes.
+pub(crate) const MAP_FOR_ALPHA: &str = "volumes have no textures, and the shadows of some surfaces depend on alpha";
+
+/// What volumes lack where no map can be made.
+const WHOLE_FACES: &str = "a light casts shadows; it is too near for a map, so that cut-outs cast those of whole faces";
+
+/// The side of the shadow map of a scene whose shadows depend on alpha, if the style names volumes; texels.
+const ALPHA_MAP_SIDE: u32 = 2048;
 
 /// How shadows are computed.
 #[derive(Clone, Debug)]
@@ -47,6 +57,8 @@ pub enum ShadowTechnique {
     Map {
         /// Its side in texels.
         side: u32,
+        /// Whether casters are tested by alpha.
+        alpha_test: bool,
     },
 }
 
@@ -80,26 +92,36 @@ pub fn casters(mesh: &Mesh) -> Arc<ShadowCasters> {
 
 impl ShadowTechnique {
     /// Selects the technique for an executor, and checks that a shadow map can be rendered from `light`. `device` says
-    /// how the GPU makes volumes, and whether it has a depth buffer of 32-bit floats; `None` for the CPU.
+    /// how the GPU makes volumes, and whether it has a depth buffer of 32-bit floats; `None` for the CPU. Also returns why
+    /// it is not as the style says, if so.
+    ///
+    /// Volumes consist of whole faces, so a map replaces them where only a part of a face casts.
     pub(crate) fn new(
         scene: &Scene,
         style: &ShadowStyle,
         light: DVec4,
         device: Option<(VolumeMethod, bool)>,
-    ) -> Result<Self, HarnessError> {
+        texture_px: u32,
+    ) -> Result<(Self, Option<&'static str>), HarnessError> {
+        let by_alpha = scene.casts_by_alpha();
         if let ShadowMethod::Map { side } = style.method {
             check_map_light(scene, light)?;
-            return Ok(if device.is_some() { Self::Map { side } } else { Self::Rays });
+            let alpha_test = by_alpha || scene.has_hiding_blend();
+            return Ok((if device.is_some() { Self::Map { side, alpha_test } } else { Self::Rays }, None));
         }
-        let Some((method, float_depth)) = device else { return Ok(Self::Rays) };
+        let Some((method, float_depth)) = device else { return Ok((Self::Rays, None)) };
+        if by_alpha && check_map_light(scene, light).is_ok() {
+            let side = ALPHA_MAP_SIDE.min(texture_px);
+            return Ok((Self::Map { side, alpha_test: true }, Some(MAP_FOR_ALPHA)));
+        }
         let casters = scene.meshes().iter().map(|mesh| casters(mesh)).collect();
-        Ok(Self::Volumes { casters, method, float_depth })
+        Ok((Self::Volumes { casters, method, float_depth }, by_alpha.then_some(WHOLE_FACES)))
     }
 }
 
-/// Whether the surface at a hit casts a shadow.
+/// Whether the surface at a hit casts a shadow: by its alpha, and whichever side of it the light is on.
 pub(crate) fn casts(scene: &Scene, hit: &Hit) -> bool {
-    scene.material(hit.object, hit.face).alpha_mode != AlphaMode::Blend
+    scene.hides_at(hit)
 }
 
 /// Checks that one shadow map can cover all that a light shines on: the light must not lie within the model's bounding

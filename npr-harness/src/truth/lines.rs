@@ -10,7 +10,7 @@
 //! classified by its Newell normal at the mean of its corners, an oppositely wound face is flipped, a face of zero area
 //! takes the plane of the neighbour at its longest edge, and a face seen exactly edge-on is front-facing. The triangles
 //! of a folded polygon are classified by their own normals, so the folds between them can be silhouettes, but not
-//! creases.
+//! creases. An edge of one or two faces is a line only where one of them is shown: single-sided faces are not, from behind.
 //!
 //! Where the file says which edges are lines ([`npr_mesh::SideVisibility`]), that decides: hard edges are lines at any
 //! angle, silhouettes are no creases, and hidden edges are no lines. The lines that the file itself draws
@@ -23,8 +23,9 @@
 //! the point itself, and if one is edge-on, rounding decides whether it is in front. Surfaces nearer to the point than
 //! [`BEHIND`] of its distance are ignored too. The other faces at the edge's ends count: at a cusp they hide the line.
 //!
-//! Solid surfaces are those that occlude in a picture: not blended faces, and not the backs of single-sided ones.
-//! Alpha-tested faces count as whole. The materials of an edge's own faces do not affect its visibility.
+//! Solid surfaces are those that occlude in a picture, not the backs of single-sided faces: by their alpha, what is left of
+//! cut-outs, and blended ones from alpha 0.5 on. The materials of an edge's own faces do not affect its visibility. Blended
+//! surfaces of a lower alpha dim the lines behind them, which are visible here.
 
 mod intersections;
 
@@ -36,8 +37,9 @@ use crate::rays::Hit;
 use crate::scene::Scene;
 use glam::{DVec2, DVec3, DVec4};
 use npr_mesh::edges::{Edge, EdgeKind, Edges, NO_FACE};
-use npr_mesh::{AlphaMode, SideVisibility, edge_visibility};
+use npr_mesh::{SideVisibility, edge_visibility};
 use npr_outline::LineKind;
+use npr_outline::contour::single_sided_faces;
 use std::collections::HashMap;
 
 /// The edge number of a line that is not an edge.
@@ -179,6 +181,17 @@ struct FacePlanes {
     of_sides: Vec<Plane>,
     /// What the file says of each edge; empty if it says nothing.
     visibility: Vec<SideVisibility>,
+    /// Per face whether it is shown from one side only; empty if none is.
+    single_sided: Vec<bool>,
+}
+
+impl FacePlanes {
+    /// Whether an eye sees one of the faces of an edge, if nothing is in front.
+    fn shows(&self, edge: &Edge, eye: DVec4) -> bool {
+        let is_shown =
+            |face: u32| self.single_sided.get(face as usize) != Some(&true) || self.of_sides[face as usize].faces(eye);
+        edge.kind() == EdgeKind::NonManifold || edge.faces().into_iter().any(|face| face != NO_FACE && is_shown(face))
+    }
 }
 
 fn face_planes(scene: &Scene) -> FacePlanes {
@@ -213,7 +226,8 @@ fn face_planes(scene: &Scene) -> FacePlanes {
         }
     }
     let visibility = edge_visibility(model, scene.single().edges());
-    FacePlanes { of_polygons: planes, of_sides, visibility }
+    let single_sided = single_sided_faces(model, scene.single().edges(), None);
+    FacePlanes { of_polygons: planes, of_sides, visibility, single_sided }
 }
 
 /// Assigns faces of zero area the plane of the neighbour at their longest edge, flipped to match the winding.
@@ -259,6 +273,9 @@ fn line_kind(scene: &Scene, number: u32, planes: &FacePlanes, eye: DVec4, crease
         return None;
     }
     let [first, second] = edge.faces();
+    if !planes.shows(edge, eye) {
+        return None;
+    }
     if second == NO_FACE {
         return Some(LineKind::Boundary);
     }
@@ -425,8 +442,7 @@ impl<'a> Visibility<'a> {
     }
 
     fn is_solid(&self, hit: &Hit) -> bool {
-        (hit.front || self.scene.shows_back(hit.object, hit.face))
-            && self.scene.material(hit.object, hit.face).alpha_mode != AlphaMode::Blend
+        (hit.front || self.scene.shows_back(hit.object, hit.face)) && self.scene.hides_at(hit)
     }
 
     /// The depth from a point of the faces `own` to the next surface behind it, world units; infinite if there is none.

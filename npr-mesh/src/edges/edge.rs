@@ -39,6 +39,15 @@ pub(super) const TWO_MATERIALS: u32 = 1 << 31;
 pub(super) const WOUND_OPPOSITELY: u32 = 1 << 31;
 
 impl Edge {
+    /// An edge with one face, such as a line that was drawn on it.
+    ///
+    /// # Panics
+    /// If the face cannot be numbered.
+    pub fn boundary(ends: [u32; 2], face: u32) -> Self {
+        assert!(face < FACE, "face {face}, where there are at most {MOST_FACES}");
+        Self { ends, packed: [face, FACE] }
+    }
+
     /// The first two faces of the edge. The second is [`NO_FACE`] at a boundary.
     #[inline]
     pub fn faces(&self) -> [u32; 2] {

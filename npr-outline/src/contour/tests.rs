@@ -30,6 +30,7 @@ const NO_CREASES: ContourOptions = ContourOptions {
     authored: true,
     file_edges: true,
     world_from_normal: DMat3::IDENTITY,
+    double_sided: None,
 };
 
 fn point(eye: DVec3) -> DVec4 {
@@ -694,4 +695,60 @@ fn edges_that_can_be_no_line_that_is_drawn_have_no_record() {
         [0; 5],
         "no line is drawn"
     );
+}
+
+/// Of single-sided faces an edge is a line only where one of them is seen from the front, however they are wound.
+#[test]
+fn edges_without_a_face_that_is_shown_are_no_lines() {
+    let outward = embedded::cube();
+    let mut inward = embedded::cube();
+    inward.faces.iter_mut().for_each(|face| face.swap(1, 2));
+    // The polygon of the first two faces has the opposite winding.
+    let mut mixed = embedded::cube();
+    mixed.faces[..2].iter_mut().for_each(|face| face.swap(1, 2));
+    for (name, model) in [("outward", outward), ("inward", inward), ("mixed", mixed)] {
+        let of_sides =
+            |double_sided| contours_of(&model, &ContourOptions { double_sided, ..ContourOptions::default() });
+        let (single, double) = (of_sides(Some(false)), of_sides(Some(true)));
+        assert!(single.single_sided && !double.single_sided && double == of_sides(None));
+        // An eye that faces one side of the inward cube has all of its edges beside a face that is shown.
+        let mut fewer = 0;
+        for eye in crate::normal_format::fibonacci_sphere(40).map(|direction| point(direction * 6.0)) {
+            let is_shown =
+                |face: u32| facing_exact(model.faces[face as usize].map(|v| model.positions[v as usize]), eye) >= 0.0;
+            let (mut found, mut all) = (Vec::new(), Vec::new());
+            single.scan(eye, &mut found);
+            double.scan(eye, &mut all);
+            let expected: Vec<u32> = all
+                .iter()
+                .copied()
+                .filter(|&line| double.edges[line as usize].faces().into_iter().any(is_shown))
+                .collect();
+            assert_eq!(found, expected, "{name}");
+            fewer += usize::from(found.len() < all.len());
+            let local = single.local_eye(eye);
+            for line in all {
+                assert_eq!(single.kind(line as usize, local).is_some(), expected.contains(&line), "{name}");
+            }
+        }
+        assert!(fewer >= 20, "{name}: {fewer}");
+    }
+}
+
+/// A single-sided face with a duplicate of the opposite winding is shown from both sides.
+#[test]
+fn back_to_back_faces_are_shown_from_both_sides() {
+    let square = vec![Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0), Vec3::Y];
+    let count = |faces: Vec<[u32; 3]>, eye: DVec3| {
+        let model = Model { positions: square.clone(), faces, ..Model::default() };
+        let options = ContourOptions { double_sided: Some(false), ..ContourOptions::default() };
+        let mut lines = Vec::new();
+        contours_of(&model, &options).scan(point(eye), &mut lines);
+        lines.len()
+    };
+    let (front, back) = (DVec3::new(0.4, 0.4, 5.0), DVec3::new(0.4, 0.4, -5.0));
+    let one = vec![[0, 1, 2], [0, 2, 3]];
+    assert_eq!((count(one.clone(), front), count(one.clone(), back)), (4, 0));
+    let two: Vec<_> = one.into_iter().chain([[0, 2, 1], [0, 3, 2]]).collect();
+    assert_eq!((count(two.clone(), front), count(two, back)), (4, 4));
 }

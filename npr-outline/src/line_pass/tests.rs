@@ -22,7 +22,7 @@ fn uniforms_are_laid_out_as_in_the_shaders() {
     assert_eq!(
         layout(WGSL, "OutlineView"),
         fields!(OutlineUniform: clip_from_world, viewport_px, depth_per_px, width_px, ink, local_eye, edge_count,
-            always_count, row_stride, authored_px)
+            always_count, row_stride, authored_px, single_sided)
     );
     assert_eq!(
         layout(&crate::fin_pass::wgsl(), "FinPrintedView"),
@@ -37,7 +37,7 @@ fn records_are_laid_out_as_the_vertex_attributes() {
     let of_layout: Vec<usize> = RECORD_LAYOUT.attributes.iter().map(|a| a.offset as usize).collect();
     assert_eq!(of_layout, offsets.iter().map(|(_, offset)| *offset).collect::<Vec<_>>());
     // The entry point's arguments, in the order of their locations, have the fields' names and types.
-    let module = naga::front::wgsl::parse_str(&record_wgsl()).unwrap();
+    let module = naga::front::wgsl::parse_str(&record_wgsl(false)).unwrap();
     let entry = module.entry_points.iter().find(|entry| entry.name == "vs_record").unwrap();
     let located: Vec<_> = entry
         .function

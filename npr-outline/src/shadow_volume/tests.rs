@@ -223,6 +223,9 @@ fn doubled_and_blended_faces_cast_nothing_more() {
     assert_eq!((doubled.faces().len(), doubled.count_at(below, beyond(light), light)), (1, 1));
     let mut glass = soup(positions, vec![[0, 1, 2]]);
     glass.materials[0].alpha_mode = AlphaMode::Blend;
+    glass.materials[0].base_color.w = 0.5;
+    assert_eq!(casters_of(&glass).faces().len(), 1, "from 0.5 on it casts");
+    glass.materials[0].base_color.w = 0.49;
     assert_eq!((casters_of(&glass).faces().len(), casters_of(&glass).edges().len()), (0, 0));
 }
 

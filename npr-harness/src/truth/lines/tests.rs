@@ -10,6 +10,7 @@ use crate::plan::Plan;
 use crate::style::{Lines, Style, style};
 use crate::view::View;
 use glam::{Mat4, Vec3};
+use npr_mesh::AlphaMode;
 use npr_mesh::embedded::{cube, placed, scene as still_life, sphere};
 use npr_mesh::{LoadOptions, Material, Model, load};
 use npr_outline::line_style::LineStyle;
@@ -126,9 +127,14 @@ fn a_box_behind_a_wall_is_not_seen() {
     let both = true_lines(&together([wall(), hidden()]), &camera, SIZE, CREASE_RAD);
     assert_eq!(alone.segments.len(), 4);
     assert_eq!(alone.segments, both.segments);
-    // Glass occludes nothing, not even its own far side; nor does a single-sided sheet that is back-facing.
-    let mut glass = wall();
-    glass.materials[0].alpha_mode = AlphaMode::Blend;
+    // Clear glass occludes nothing, not even its own far side; nor does a single-sided sheet that is back-facing, which has no
+    // lines of its own either.
+    let glass = |alpha: f32| {
+        let mut glass = wall();
+        glass.materials[0].alpha_mode = AlphaMode::Blend;
+        glass.materials[0].base_color.w = alpha;
+        glass
+    };
     let sheet = |turned: bool, double_sided: bool| {
         let mut sheet = wall();
         // The fifth polygon, which faces +Z.
@@ -141,7 +147,12 @@ fn a_box_behind_a_wall_is_not_seen() {
         }
         sheet
     };
-    let cases = [(glass, 12 + 4), (sheet(true, false), 4 + 4), (sheet(true, true), 4), (sheet(false, false), 4)];
+    let glasses =
+        [(0.0, 16), (0.3, 16), (0.49, 16), (0.5, 4), (0.7, 4), (1.0, 4)].map(|(alpha, seen)| (glass(alpha), seen));
+    let sheets = [(sheet(true, false), 4), (sheet(true, true), 4), (sheet(false, false), 4)];
+    let alone = together([sheet(true, false)]);
+    assert!(true_lines(&alone, &camera, SIZE, CREASE_RAD).segments.is_empty(), "seen from behind");
+    let cases = glasses.into_iter().chain(sheets);
     for (front, seen) in cases {
         let segments = true_lines(&together([front, hidden()]), &camera, SIZE, CREASE_RAD).segments;
         assert_eq!(segments.len(), seen);
