@@ -1,19 +1,46 @@
 //! Selects the redundant faces to skip.
 
-/// Which faces to skip; empty if none.
+use crate::weld::Rounding;
+use glam::Vec3;
+
+/// The duplicates and the faces with two corners at one position, of those that are polygons of their own.
 ///
 /// A triangle of a larger polygon may coincide with a triangle of another polygon although the polygons differ, so
 /// triangles of larger polygons are kept.
-pub(super) fn skippable(redundant: &[u32], faces: usize, face_polygon: &[u32]) -> Vec<bool> {
+pub(super) fn skip_redundant(skipped: &mut Vec<bool>, redundant: &[u32], faces: usize, face_polygon: &[u32]) {
     let is_cut = |face: usize| {
         !face_polygon.is_empty()
             && (face.checked_sub(1).is_some_and(|before| face_polygon[before] == face_polygon[face])
                 || face_polygon.get(face + 1) == Some(&face_polygon[face]))
     };
-    let mut skipped = Vec::new();
     for &face in redundant.iter().filter(|&&face| !is_cut(face as usize)) {
         skipped.resize(faces, false);
         skipped[face as usize] = true;
     }
-    skipped
+}
+
+/// The polygons of which no triangle has an area that rounding does not account for.
+///
+/// The sum of the area vectors does not decide, since that of an outline that crosses itself may be zero.
+pub(super) fn skip_without_area(
+    skipped: &mut Vec<bool>,
+    positions: &[Vec3],
+    faces: &[[u32; 3]],
+    face_polygon: &[u32],
+    rounding: &Rounding,
+) {
+    let is_flat = |face: &u32| rounding.has_no_area(faces[*face as usize].map(|vertex| positions[vertex as usize]));
+    let polygon = |face: u32| face_polygon.get(face as usize).copied();
+    // The thin faces of one polygon, of which there may be others.
+    for thin in rounding.thin.chunk_by(|&a, &b| polygon(a).is_some() && polygon(a) == polygon(b)) {
+        let (first, last) = (thin[0], thin[thin.len() - 1]);
+        let is_whole = polygon(first).is_none()
+            || (last - first + 1 == thin.len() as u32
+                && (first == 0 || polygon(first - 1) != polygon(first))
+                && polygon(last + 1) != polygon(last));
+        if is_whole && thin.iter().all(is_flat) {
+            skipped.resize(faces.len(), false);
+            skipped[first as usize..=last as usize].fill(true);
+        }
+    }
 }

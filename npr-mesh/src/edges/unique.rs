@@ -22,6 +22,8 @@ pub(super) struct Unique {
     pub further_faces: Vec<(u32, u32)>,
     /// Duplicates of earlier faces, and faces with two corners at one position; possibly repeated.
     pub redundant: Vec<u32>,
+    /// Pairs of an earlier face and a duplicate of it; possibly repeated.
+    pub twins: Vec<[u32; 2]>,
 }
 
 /// Finds the unique edges of the faces that are not skipped.
@@ -106,7 +108,7 @@ fn search(
 
     // A closed surface has three edges per two faces.
     let edges = Vec::with_capacity(faces.len() + faces.len() / 2 + faces.len() / 32 + 16);
-    let mut found = Unique { edges, further_faces: Vec::new(), redundant };
+    let mut found = Unique { edges, further_faces: Vec::new(), redundant, twins: Vec::new() };
     let mut begin = 0;
     for (low, end) in (0u32..).zip(starts) {
         let sides = &mut sides[begin..end as usize];
@@ -194,8 +196,12 @@ fn gather(low: u32, sides: &mut [Side], found: &mut Unique, corners: impl Fn(u32
             duplicates.clear();
             duplicates.extend(met.iter().map(|&(face, _)| (ascending(corners(face)), face)));
             duplicates.sort_unstable();
-            let twins = duplicates.windows(2).filter(|pair| pair[0].0 == pair[1].0);
-            found.redundant.extend(twins.map(|pair| pair[1].1));
+            for pair in duplicates.windows(2).filter(|pair| pair[0].0 == pair[1].0) {
+                found.redundant.push(pair[1].1);
+                if pair[0].1 != pair[1].1 {
+                    found.twins.push([pair[0].1, pair[1].1]);
+                }
+            }
         }
     }
 }
