@@ -5,6 +5,7 @@ use npr_mesh::{
     Model, Warning,
     edges::{self, EdgeKind, EdgeOptions, Edges},
 };
+use npr_mesh::weld::Weld;
 use std::{collections::HashMap, fmt, ops::Range};
 
 /// The angle over which [`Inspection::creases_over_30_deg`] counts an edge.
@@ -72,7 +73,15 @@ pub struct Inspection {
 /// # Panics
 /// If a face refers to a vertex that does not exist, or a per-face array does not have the length stated in [`Model`].
 pub fn inspect(name: &str, model: &Model, warnings: Vec<Warning>) -> Inspection {
-    let options = EdgeOptions::of_file();
+    inspect_welded(name, model, warnings, Weld::Exact)
+}
+
+/// As [`inspect`], where corners that a rule of welding joins count as one.
+///
+/// # Panics
+/// As [`inspect`].
+pub fn inspect_welded(name: &str, model: &Model, warnings: Vec<Warning>, weld: Weld) -> Inspection {
+    let options = EdgeOptions { weld, ..EdgeOptions::of_file() };
     let found = edges::find(&model.positions, &model.faces, &model.face_polygon, &model.face_material, &options);
     let of_kind = |kind| found.edges.iter().filter(|edge| edge.kind() == kind).count();
     let (boundary_edges, nonmanifold_edges) = (of_kind(EdgeKind::Boundary), of_kind(EdgeKind::NonManifold));

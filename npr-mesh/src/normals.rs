@@ -1,7 +1,7 @@
 //! Computes missing vertex normals.
 
 use crate::Model;
-use crate::weld::weld_exact;
+use crate::weld::Weld;
 use glam::{DVec3, Vec3};
 
 /// Computes a normal for every vertex without one, and normalises the given normals.
@@ -14,23 +14,29 @@ use glam::{DVec3, Vec3};
 /// Facets", 1998), which does not depend on the triangulation. A vertex whose faces are in several groups is split:
 /// the lowest group keeps the vertex, and the others get copies, which are appended to all vertex arrays.
 ///
-/// - Vertices at exactly equal positions are one position, so texture seams do not affect normals.
+/// - Vertices that only rounding separates are at one position ([`crate::weld`]), so seams do not affect normals.
 /// - If the normals of all faces at a position are within half the crease angle of their mean, the faces are one
 ///   group even if some share no edge.
 /// - Faces of one polygon ([`Model::face_polygon`]) have the polygon's normal and are always in one group.
 /// - Two faces of opposite winding are compared with one normal negated; each then gets the normal of the group on
 ///   its own front side.
-/// - A face whose height is within the rounding of its coordinates does not contribute. Two faces on both sides of it
+/// - A face whose height is within the rounding of its coordinates, as for [`crate::edges`], or that has two corners at
+///   one position, does not contribute. Two faces on both sides of it
 ///   are compared as if they were adjacent. It gets the normal of a neighbour, of any face at the position, or +Y.
 ///
 /// Afterwards all normals are finite and of unit length. The time is approximately linear; the memory is about 60
 /// bytes per face.
 pub fn fill_missing(model: &mut Model, crease_angle_rad: f32) {
+    fill_missing_welded(model, crease_angle_rad, Weld::default());
+}
+
+/// As [`fill_missing`], with a rule of its own for which vertices are at one position.
+pub fn fill_missing_welded(model: &mut Model, crease_angle_rad: f32, weld: Weld) {
     let missing = normalize_given(model);
     if !model.faces.iter().flatten().any(|&v| missing[v as usize]) {
         return;
     }
-    let mut representative = weld_exact(&model.positions);
+    let mut representative = weld.representatives(&model.positions, &model.faces);
     let mut wanted = vec![false; representative.len()];
     for (vertex, _) in missing.iter().enumerate().filter(|(_, m)| **m) {
         wanted[representative[vertex] as usize] = true;

@@ -4,6 +4,7 @@ use crate::derived::Derived;
 use crate::rays::RayCaster;
 use glam::{DVec3, Vec3};
 use npr_mesh::edges::{self, EdgeKind, EdgeOptions, Edges};
+use npr_mesh::weld::Weld;
 use npr_mesh::{AlphaMode, Model};
 use std::sync::OnceLock;
 
@@ -23,9 +24,13 @@ pub struct Mesh {
 
 impl Mesh {
     /// Finds a model's edges and prepares it. Faces without material get [`npr_mesh::Material::default`].
-    pub fn new(mut model: Model) -> Self {
+    ///
+    /// `weld`: which vertices are one vertex for edges, before the positions are moved and scaled; a distance is in file
+    /// units.
+    pub fn new(mut model: Model, weld: Weld) -> Self {
         model.fill_face_material();
-        let bounds = model.bounds();
+        let mut edges = find_edges(&model, weld);
+        let bounds = drawn_bounds(&model, &edges);
         let (origin, scale) =
             bounds.map_or((DVec3::ZERO, 1.0), |(low, high)| normalization(low.as_dvec3(), high.as_dvec3()));
         if origin != DVec3::ZERO || scale != 1.0 {
@@ -35,18 +40,18 @@ impl Mesh {
                 *position = if here.is_finite() { here } else { Vec3::ZERO };
             }
         }
-        let edges = find_edges(&model);
+        edges.tolerance = (f64::from(edges.tolerance) * scale) as f32;
         Self { origin, scale, ..Self::with_edges(model, edges) }
     }
 
     /// Builds a mesh from a model that needs no normalization, and its edges.
     pub(super) fn with_edges(model: Model, edges: Edges) -> Self {
         let closed = !edges.edges.is_empty()
-            && edges.skipped.is_empty()
+            && edges.overlaps.is_empty()
             && edges.edges.iter().all(|edge| edge.kind() == EdgeKind::TwoFace && !edge.wound_oppositely())
             && signed_volume(&model) > 0.0;
         Self {
-            bounds: model.bounds(),
+            bounds: drawn_bounds(&model, &edges),
             model,
             origin: DVec3::ZERO,
             scale: 1.0,
@@ -86,7 +91,7 @@ impl Mesh {
         self.closed
     }
 
-    /// The bounding box of all faces; `None` without faces.
+    /// The bounding box of all faces, if any has an area without those that have none; `None` without faces.
     pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
         self.bounds
     }
@@ -96,27 +101,24 @@ impl Mesh {
         self.rays.get_or_init(|| RayCaster::new(&self.model.positions, &self.model.faces))
     }
 
-    /// Per face: a bit mask of its boundary edges; bit i stands for the side from corner i to the next.
+    /// Per face: a bit mask of its boundary edges; bit i stands for the side from corner i to the next, all or a part of
+    /// which is a boundary.
     pub fn boundary_sides(&self) -> &[u8] {
         self.boundary_sides.get_or_init(|| {
             let mut sides = vec![0; self.model.faces.len()];
             for edge in self.edges.edges.iter().filter(|edge| edge.kind() == EdgeKind::Boundary) {
                 let face = edge.faces()[0] as usize;
                 let corners = self.model.faces[face].map(|v| self.edges.representative[v as usize]);
-                for side in 0..3 {
-                    if edge.ends.contains(&corners[side]) && edge.ends.contains(&corners[(side + 1) % 3]) {
-                        sides[face] |= 1 << side;
-                    }
-                }
+                sides[face] |= 1 << edges::side_of(&self.model.positions, corners, edge.ends).0;
             }
             sides
         })
     }
 
-    /// The positions of all vertices used by faces, each once.
+    /// The positions of all vertices used by faces with an area or by lines, each once; of all faces if none has an area.
     pub fn corners(&self) -> impl Iterator<Item = Vec3> + Clone + '_ {
         let mut used = vec![false; self.model.positions.len()];
-        for &vertex in self.model.faces.iter().flatten() {
+        for vertex in drawn_vertices(&self.model, &self.edges) {
             used[vertex as usize] = true;
         }
         self.model.positions.iter().zip(used).filter_map(|(&position, used)| used.then_some(position))
@@ -134,9 +136,34 @@ impl Mesh {
 }
 
 /// Finds the edges of a model with the options used for drawing.
-pub(super) fn find_edges(model: &Model) -> Edges {
+pub(super) fn find_edges(model: &Model, weld: Weld) -> Edges {
     let Model { positions, faces, face_polygon, face_material, .. } = model;
-    edges::find(positions, faces, face_polygon, face_material, &EdgeOptions::default())
+    edges::find(positions, faces, face_polygon, face_material, &EdgeOptions { weld, ..EdgeOptions::default() })
+}
+
+/// As [`find_edges`], of a placed copy of a mesh whose vertices are welded. `tolerance`: see [`Edges::tolerance`].
+pub(super) fn find_edges_welded(model: &Model, representative: Vec<u32>, tolerance: f32) -> Edges {
+    let Model { positions, faces, face_polygon, face_material, .. } = model;
+    let options = EdgeOptions::default();
+    edges::find_welded(positions, faces, face_polygon, face_material, representative, tolerance, &options)
+}
+
+/// The vertices that are drawn: those of lines and of the faces with an area, possibly repeated. Of all faces, if none has
+/// an area.
+fn drawn_vertices<'a>(model: &'a Model, edges: &'a Edges) -> impl Iterator<Item = u32> + use<'a> {
+    let is_skipped = |face: usize| edges.skipped.get(face) == Some(&true);
+    let has_area = (0..model.faces.len()).any(|face| !is_skipped(face));
+    let faces = model.faces.iter().enumerate().filter(move |&(face, _)| !has_area || !is_skipped(face));
+    faces.flat_map(|(_, face)| *face).chain(model.lines.iter().flatten().copied())
+}
+
+/// The bounding box of what is drawn; `None` without faces and lines.
+fn drawn_bounds(model: &Model, edges: &Edges) -> Option<(Vec3, Vec3)> {
+    if edges.skipped.is_empty() {
+        return model.bounds();
+    }
+    let corners = drawn_vertices(model, edges).map(|vertex| model.positions[vertex as usize]);
+    corners.map(|corner| (corner, corner)).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
 }
 
 /// Models whose half diagonal is outside 2^-OCTAVES..=2^OCTAVES are rescaled.

@@ -16,6 +16,8 @@ pub(super) struct Surface<'a> {
     pub face_normals: &'a [Vec3],
     /// Distances up to this are rounding.
     pub tolerance: f32,
+    /// Whether faces that overlap count once.
+    pub merge_overlaps: bool,
 }
 
 /// A face at an edge: its number, and whether it traverses the edge from the lower to the upper vertex.
@@ -36,11 +38,15 @@ const ROUNDED_RAD: f64 = 1e-6;
 const WIDEST_RAD: f64 = 0.02;
 
 impl Surface<'_> {
-    /// The edge of these faces, at least one, of which those that overlap count once.
+    /// The edge of these faces, at least one and in ascending order, of which those that overlap count once.
     ///
     /// If all faces of a non-manifold edge lie within a half-space, the edge is a silhouette where the outer two of them
     /// make it one; these are its first two faces. Of overlapping faces the one with the lowest number remains.
     pub fn edge(&self, [low, high]: [u32; 2], sides: &[Side]) -> Around {
+        if !self.merge_overlaps {
+            let further = sides.iter().skip(2).map(|side| side.0).collect();
+            return Around { edge: edge_of(low, high, sides), further, overlaps: Vec::new() };
+        }
         let mut overlaps = Vec::new();
         let mut fans = self.fans([low, high], sides, &mut overlaps);
         let mut flags = 0;

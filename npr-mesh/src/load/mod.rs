@@ -51,8 +51,9 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, LoadError> {
     }
     let mut warnings = Warning::counted(warnings);
     warnings.extend(report(&meshes).into_iter().map(Warning::from));
-    meshes.iter_mut().for_each(|mesh| normals::fill_missing(mesh, options.normal_crease_angle_rad));
-    Ok(Loaded { meshes, objects, warnings })
+    let (crease_angle_rad, weld) = (options.normal_crease_angle_rad, options.weld);
+    meshes.iter_mut().for_each(|mesh| normals::fill_missing_welded(mesh, crease_angle_rad, weld));
+    Ok(Loaded { meshes, objects, warnings, weld })
 }
 
 /// Warns about missing normals and degenerate faces, for any format. Counts each mesh once.

@@ -6,8 +6,8 @@ use glam::{DVec3, Vec3};
 /// The number of units in the last place (of the largest coordinate) by which rounding separates two positions that
 /// are meant to be equal.
 ///
-/// Two points of a quarter patch of radius 1 that quaternions or matrices turned into the same place in f32 were at
-/// most 4.2 units apart in a million trials; with a translation afterwards, less relative to the larger coordinates.
+/// Common points of two quarters of a tube, each turned into its place by quaternions or matrices in f32, were at most
+/// 6.1 units apart in 24 000 trials, and in 99 of 100 at most 3.1.
 pub const ROUNDING_ULPS: f32 = 8.0;
 
 /// Whatever the coordinates are, no distance over this share of the mesh's extent is attributed to rounding: a model
@@ -81,7 +81,7 @@ pub fn rounding_tolerance(positions: &[Vec3], faces: &[[u32; 3]]) -> f32 {
 /// Vertices that a face with an area keeps apart remain apart, so that nothing that is drawn with more precision than
 /// the rest of the mesh vanishes. An area is one that rounding of the face's own coordinates does not account for.
 ///
-/// On meshes in which few vertices are that near, this takes about twice the time of [`weld_exact`].
+/// On meshes in which few vertices are that near, the time is linear.
 pub fn weld_rounding(positions: &[Vec3], faces: &[[u32; 3]]) -> Vec<u32> {
     weld_by(positions, faces, &Rounding::new(positions, faces))
 }

@@ -4,7 +4,8 @@ use crate::loading::{Loading, load};
 use crate::terminal::say;
 use clap::Args;
 use npr_harness::error::HarnessError;
-use npr_harness::inspect::{Inspection, inspect};
+use npr_harness::inspect::{Inspection, inspect_welded};
+use npr_mesh::weld::Weld;
 use std::path::PathBuf;
 
 #[derive(Args)]
@@ -23,8 +24,10 @@ pub fn run(options: &Options) -> Result<bool, HarnessError> {
     options.loading.check([input])?;
     let loaded = load(input, &options.loading)?;
     let name = input.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+    // Without the flag, the topology is that of the file.
+    let weld = options.loading.weld().unwrap_or(Weld::Exact);
     let (meshes, objects, warnings) = (loaded.meshes.len(), loaded.objects.len(), loaded.warnings.clone());
-    let inspection = Inspection { meshes, objects, ..inspect(&name, &loaded.into_model(), warnings) };
+    let inspection = Inspection { meshes, objects, ..inspect_welded(&name, &loaded.into_model(), warnings, weld) };
     if options.json {
         say(format_args!("{}\n", serde_json::to_string_pretty(&inspection)?))?;
     } else {

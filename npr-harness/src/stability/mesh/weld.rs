@@ -10,6 +10,7 @@ use crate::style::style;
 use crate::view::View;
 use glam::Vec3;
 use npr_mesh::edges::{EdgeKind, EdgeOptions, find};
+use npr_mesh::weld::Weld;
 use npr_mesh::{Model, embedded};
 
 pub(super) const SEAMS: Sweep = Sweep {
@@ -54,8 +55,8 @@ fn strips(gap: f32) -> Model {
 }
 
 /// The share of the seam's sides that are boundaries.
-fn open_share(model: &Model, weld_tolerance: f32) -> f64 {
-    let options = EdgeOptions { weld_tolerance, ..EdgeOptions::default() };
+fn open_share(model: &Model, weld: Weld) -> f64 {
+    let options = EdgeOptions { weld, ..EdgeOptions::default() };
     let found = find(&model.positions, &model.faces, &model.face_polygon, &[], &options);
     let in_seam = |vertex: u32| model.positions[vertex as usize].x.abs() < 0.5;
     let open =
@@ -65,9 +66,9 @@ fn open_share(model: &Model, weld_tolerance: f32) -> f64 {
 
 fn seams(_: &Executor) -> Result<Finding, HarnessError> {
     let gaps = RELATIVE.map(|gap| (gap, strips(gap as f32 * TOLERANCE)));
-    let welded: Vec<(f64, f64)> = gaps.iter().map(|(gap, model)| (*gap, open_share(model, TOLERANCE))).collect();
-    let exact: Vec<(f64, f64)> = gaps.iter().map(|(gap, model)| (*gap, open_share(model, 0.0))).collect();
-    let least = open_share(&strips(f32::from_bits(1)), 0.0);
+    let welded: Vec<(f64, f64)> = gaps.iter().map(|(gap, model)| (*gap, open_share(model, Weld::Within(TOLERANCE)))).collect();
+    let exact: Vec<(f64, f64)> = gaps.iter().map(|(gap, model)| (*gap, open_share(model, Weld::Exact))).collect();
+    let least = open_share(&strips(f32::from_bits(1)), Weld::Exact);
     let opens = first_over(&welded, 0.5);
     let curves = vec![
         curve(
@@ -113,7 +114,7 @@ fn plate(thickness: f32) -> Model {
 fn plates(_: &Executor) -> Result<Finding, HarnessError> {
     let lost = |thickness: f64| {
         let Model { positions, faces, face_polygon, .. } = plate(thickness as f32 * TOLERANCE);
-        let options = EdgeOptions { weld_tolerance: TOLERANCE, ..EdgeOptions::default() };
+        let options = EdgeOptions { weld: Weld::Within(TOLERANCE), ..EdgeOptions::default() };
         let found = find(&positions, &faces, &face_polygon, &[], &options);
         let kept = found.edges.iter().filter(|edge| edge.kind() == EdgeKind::TwoFace).count();
         1.0 - kept as f64 / 12.0
@@ -129,7 +130,7 @@ fn plates(_: &Executor) -> Result<Finding, HarnessError> {
     // The edges as they would be drawn: those of the plate whose vertices are welded.
     let lines = style("lines").expect("a style of this crate");
     let mut collapsed = plate(0.2);
-    let options = EdgeOptions { weld_tolerance: 0.21, ..EdgeOptions::default() };
+    let options = EdgeOptions { weld: Weld::Within(0.21), ..EdgeOptions::default() };
     let found = find(&collapsed.positions, &collapsed.faces, &collapsed.face_polygon, &[], &options);
     collapsed.faces.iter_mut().flatten().for_each(|vertex| *vertex = found.representative[*vertex as usize]);
     let mut images = Vec::new();
