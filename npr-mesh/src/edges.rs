@@ -269,7 +269,7 @@ fn find_with(
     let mut found = unique::unique(faces, &representative, &[]);
     let (mut skipped, mut overlaps) = (Vec::new(), Vec::new());
     if options.skip_redundant {
-        redundant::skip_redundant(&mut skipped, &found.redundant, faces.len(), face_polygon);
+        redundant::skip_redundant(&mut skipped, &found.collapsed, &mut found.twins, faces.len(), face_polygon);
         overlaps.append(&mut found.twins);
     }
     if options.skip_without_area {

@@ -2,20 +2,41 @@
 
 use crate::weld::Rounding;
 use glam::Vec3;
+use std::collections::HashSet;
 
 /// The duplicates and the faces with two corners at one position, of those that are polygons of their own.
 ///
 /// A triangle of a larger polygon may coincide with a triangle of another polygon although the polygons differ, so
-/// triangles of larger polygons are kept.
-pub(super) fn skip_redundant(skipped: &mut Vec<bool>, redundant: &[u32], faces: usize, face_polygon: &[u32]) {
-    let is_cut = |face: usize| {
+/// triangles of larger polygons are kept, and make no other face a duplicate.
+pub(super) fn skip_redundant(
+    skipped: &mut Vec<bool>,
+    collapsed: &[u32],
+    twins: &mut [[u32; 2]],
+    faces: usize,
+    face_polygon: &[u32],
+) {
+    let is_cut = |face: u32| {
+        let face = face as usize;
         !face_polygon.is_empty()
             && (face.checked_sub(1).is_some_and(|before| face_polygon[before] == face_polygon[face])
                 || face_polygon.get(face + 1) == Some(&face_polygon[face]))
     };
-    for &face in redundant.iter().filter(|&&face| !is_cut(face as usize)) {
+    let mut skip = |face: u32| {
         skipped.resize(faces, false);
         skipped[face as usize] = true;
+    };
+    collapsed.iter().copied().filter(|&face| !is_cut(face)).for_each(&mut skip);
+    // Faces with the same corners form a chain of pairs. The later face of a pair is a duplicate if any before it is a
+    // polygon of its own.
+    twins.sort_unstable_by_key(|pair| pair[1]);
+    let mut after_whole = HashSet::new();
+    for &[before, face] in &*twins {
+        if !is_cut(before) || after_whole.contains(&before) {
+            after_whole.insert(face);
+            if !is_cut(face) {
+                skip(face);
+            }
+        }
     }
 }
 
