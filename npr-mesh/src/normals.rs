@@ -1,7 +1,7 @@
 //! Computes missing vertex normals.
 
 use crate::Model;
-use crate::weld::Weld;
+use crate::weld::{Rounding, Weld};
 use glam::{DVec3, Vec3};
 
 /// Computes a normal for every vertex without one, and normalises the given normals.
@@ -41,7 +41,8 @@ pub fn fill_missing_welded(model: &mut Model, crease_angle_rad: f32, weld: Weld)
     for (vertex, _) in missing.iter().enumerate().filter(|(_, m)| **m) {
         wanted[representative[vertex] as usize] = true;
     }
-    let shapes = face_shapes(model);
+    let rounding = Rounding::new(&model.positions, &model.faces);
+    let shapes = face_shapes(model, &rounding);
     // A tolerance, so that rounding of positions does not separate faces that meet at exactly the crease angle.
     let widest = (f64::from(crease_angle_rad).clamp(0.0, std::f64::consts::PI) + 1e-5).min(std::f64::consts::PI);
     let (least_cos, half_cos) = (widest.cos() - 1e-12, (0.5 * widest).cos());
@@ -130,7 +131,7 @@ fn measure(model: &Model, face: &[u32; 3]) -> Measures {
 }
 
 /// Processes blocks, first all measures and then all angles, so that divisions and square roots are pipelined.
-fn face_shapes(model: &Model) -> Vec<FaceShape> {
+fn face_shapes(model: &Model, rounding: &Rounding) -> Vec<FaceShape> {
     const BLOCK: usize = 64;
     let mut measures = [Measures::default(); BLOCK];
     let mut shapes: Vec<FaceShape> = Vec::with_capacity(model.faces.len());
@@ -150,7 +151,7 @@ fn face_shapes(model: &Model) -> Vec<FaceShape> {
             FaceShape {
                 normal: if length > 0.0 && length.is_finite() { measures.area / length } else { DVec3::ZERO },
                 angles_rad: [at_a as f32, at_b as f32, at_c.max(0.0) as f32],
-                sound: is_sound(length, measures.longest_squared, measures.magnitude),
+                sound: is_sound(length, measures.longest_squared, measures.magnitude, rounding),
             }
         }));
         if model.face_polygon.is_empty() {
@@ -172,7 +173,7 @@ fn face_shapes(model: &Model) -> Vec<FaceShape> {
                 let length = area.length();
                 for shape in &mut shapes[first..=face] {
                     shape.normal = if length > 0.0 && length.is_finite() { area / length } else { DVec3::ZERO };
-                    shape.sound = is_sound(length, longest_squared, magnitude);
+                    shape.sound = is_sound(length, longest_squared, magnitude, rounding);
                 }
             }
         }
@@ -180,11 +181,11 @@ fn face_shapes(model: &Model) -> Vec<FaceShape> {
     shapes
 }
 
-/// Whether a normal is more than rounding error: whether the height, twice the area over the longest edge, exceeds
-/// half a unit in the last representative of the coordinates.
-fn is_sound(length: f64, longest_squared: f64, magnitude: f32) -> bool {
-    let rounding = f64::from(magnitude) * f64::from(f32::EPSILON) * 0.5;
-    length.is_finite() && length > rounding * longest_squared.sqrt()
+/// Whether a normal is more than rounding error: whether the height, twice the area over the longest edge, exceeds what
+/// rounding of the coordinates accounts for, and half a unit in their last place in any case.
+fn is_sound(length: f64, longest_squared: f64, magnitude: f32, rounding: &Rounding) -> bool {
+    let least = f64::from(rounding.of(magnitude)).max(f64::from(magnitude) * f64::from(f32::EPSILON) * 0.5);
+    length.is_finite() && length > least * longest_squared.sqrt()
 }
 
 /// The angle between two vectors from the length of their cross product and their dot product; 0 if both are zero.
@@ -346,7 +347,8 @@ impl Fan {
                     let (j, j_towards) = side(other);
                     let (f, g) = (face_of(i), face_of(j));
                     let opposite = i_towards == j_towards;
-                    if model.face_polygon.get(f).is_some_and(|p| model.face_polygon.get(g) == Some(p)) {
+                    // A face with two corners at this position joins nothing.
+                    if f != g && model.face_polygon.get(f).is_some_and(|p| model.face_polygon.get(g) == Some(p)) {
                         self.join(i, j, false);
                     } else {
                         match (shapes[f].sound, shapes[g].sound) {

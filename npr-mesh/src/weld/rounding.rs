@@ -52,12 +52,17 @@ impl Rounding {
         Self { tolerance: (low.abs().max(high.abs()).max_element() * UNIT).min(most), most, thin }
     }
 
+    /// The tolerance for a face from its largest coordinate.
+    pub fn of(&self, magnitude: f32) -> f32 {
+        (magnitude * UNIT).min(self.most)
+    }
+
     /// Whether a triangle is no higher above its longest side than rounding of its own coordinates accounts for.
     ///
     /// The tolerance of a small face among large ones is that of its own coordinates, since these may be precise.
     pub fn has_no_area(&self, corners: [Vec3; 3]) -> bool {
         let magnitude = corners.iter().map(|corner| corner.abs().max_element()).fold(0.0, f32::max);
-        let tolerance = f64::from((magnitude * UNIT).min(self.most));
+        let tolerance = f64::from(self.of(magnitude));
         let [a, b, c] = corners.map(|corner| corner.as_dvec3());
         let (ab, ac) = (b - a, c - a);
         let longest_squared = ab.length_squared().max(ac.length_squared()).max(b.distance_squared(c));

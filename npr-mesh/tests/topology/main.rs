@@ -5,6 +5,7 @@ mod csg;
 mod junctions;
 mod order;
 mod overlaps;
+mod union;
 
 use glam::{DQuat, DVec3, Quat, Vec3};
 use npr_mesh::edges::{self, Edge, EdgeKind, EdgeOptions, Edges};
