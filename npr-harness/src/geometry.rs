@@ -149,7 +149,7 @@ pub(crate) fn add_batches(
     // A duplicate face never passes the depth test after the face with the same corners, so it is dropped; some files
     // have half a million of them. Alpha-tested duplicates are kept, because the first face may be discarded where the
     // second is visible.
-    if !edges.further_faces.is_empty() || edges.skipped.iter().any(|&skipped| skipped) {
+    if !edges.further_faces.is_empty() || !edges.overlaps.is_empty() || edges.skipped.contains(&true) {
         let mut seen = HashSet::new();
         solid.retain(|&face| {
             let corners = model.faces[face as usize].map(|v| edges.representative[v as usize]);

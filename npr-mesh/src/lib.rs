@@ -17,8 +17,9 @@
 //!
 //! # Rules
 //!
-//! - A face is the triple of its corners as loaded. For edges, vertices at exactly equal positions are one vertex, so
-//!   that texture and normal seams are not boundaries. For shading they remain separate.
+//! - A face is the triple of its corners as loaded. For edges and computed normals, vertices that only rounding separates,
+//!   within 8 units in the last place of the mesh's largest coordinate, are one vertex ([`weld`]), so that texture and
+//!   normal seams are not boundaries. For shading they remain separate. `LoadOptions::weld` overrides the distance.
 //! - A polygon of n corners becomes n − 2 triangles ([`triangulate`]). Diagonals are not edges, and all triangles of
 //!   a polygon have its Newell normal.
 //! - Missing normals are computed within each mesh ([`normals`]): weighted by angle, and split at creases.
@@ -28,8 +29,9 @@
 //!   their own.
 //! - Faces are counter-clockwise seen from outside in the space of their mesh. A mirroring transform does not turn a
 //!   mesh inside out: [`Model::transformed`] reverses the faces.
-//! - There is a rule for non-manifold edges, opposite windings, faces of zero area and duplicate faces, see
-//!   [`edges`]. None of them removes a line that should be visible.
+//! - There is a rule for non-manifold edges, opposite windings, T-junctions, faces without area and faces that overlap, see
+//!   [`edges`]. None of them removes a line that should be visible, and none depends on the order of the faces but where
+//!   it says so. For statistics of a file none applies ([`edges::EdgeOptions::of_file`]).
 //! - Files are not trusted: indices, lengths, types and numbers are checked before use, and sizes are checked against
 //!   [`Limits`] before memory is allocated. A violation is a [`LoadError`] that names the file, the element and the
 //!   fault. Repaired or skipped elements are reported as warnings.

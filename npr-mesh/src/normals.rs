@@ -17,7 +17,7 @@ use glam::{DVec3, Vec3};
 /// - Vertices that only rounding separates are at one position ([`crate::weld`]), so seams do not affect normals.
 /// - If the normals of all faces at a position are within half the crease angle of their mean, the faces are one
 ///   group even if some share no edge.
-/// - Faces of one polygon ([`Model::face_polygon`]) have the polygon's normal and are always in one group.
+/// - Faces of one polygon ([`Model::face_polygon`]) have the polygon's normal and, if it has one, are in one group.
 /// - Two faces of opposite winding are compared with one normal negated; each then gets the normal of the group on
 ///   its own front side.
 /// - A face whose height is within the rounding of its coordinates, as for [`crate::edges`], or that has two corners at
@@ -347,9 +347,12 @@ impl Fan {
                     let (j, j_towards) = side(other);
                     let (f, g) = (face_of(i), face_of(j));
                     let opposite = i_towards == j_towards;
-                    // A face with two corners at this position joins nothing.
-                    if f != g && model.face_polygon.get(f).is_some_and(|p| model.face_polygon.get(g) == Some(p)) {
-                        self.join(i, j, false);
+                    let is_polygon = model.face_polygon.get(f).is_some_and(|p| model.face_polygon.get(g) == Some(p));
+                    if is_polygon {
+                        // A polygon without area would join what is on both sides of it.
+                        if shapes[f].sound {
+                            self.join(i, j, false);
+                        }
                     } else {
                         match (shapes[f].sound, shapes[g].sound) {
                             (true, true) if meet_smoothly(i, j, opposite) => self.join(i, j, opposite),

@@ -95,21 +95,25 @@ fn sorted_ends(edge: &Edge) -> [u32; 2] {
 
 /// The boundary edges on which ends of others lie, in ascending order; `None` if there are none, or too many.
 fn split_edges(edges: &[Edge], surface: &Surface) -> Option<Vec<Chain>> {
-    let boundaries = || (0u32..).zip(edges).filter(|(_, edge)| edge.kind() == EdgeKind::Boundary);
-    let count = boundaries().count();
+    let boundaries: Vec<(u32, [u32; 2])> = (0u32..)
+        .zip(edges)
+        .filter(|(_, edge)| edge.kind() == EdgeKind::Boundary)
+        .map(|(number, edge)| (number, edge.ends))
+        .collect();
+    let count = boundaries.len();
     if count < 2 {
         return None;
     }
-    let mut ends: Vec<u32> = boundaries().flat_map(|(_, edge)| edge.ends).collect();
+    let mut ends: Vec<u32> = boundaries.iter().flat_map(|(_, ends)| *ends).collect();
     ends.sort_unstable();
     ends.dedup();
     let tree = PointTree::new(surface.positions, ends);
     let mut chains = Vec::new();
     let mut on_it: Vec<(f64, u32)> = Vec::new();
     let mut pieces = 0;
-    for (number, edge) in boundaries() {
+    for &(number, ends) in &boundaries {
         on_it.clear();
-        let fits = tree.on_segment(surface.positions, edge.ends, f64::from(surface.tolerance), |at, vertex| {
+        let fits = tree.on_segment(surface.positions, ends, f64::from(surface.tolerance), |at, vertex| {
             on_it.push((at, vertex));
             on_it.len() <= MOST_PIECES * count
         });
@@ -122,9 +126,9 @@ fn split_edges(edges: &[Edge], surface: &Surface) -> Option<Vec<Chain>> {
         }
         on_it.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let mut vertices = Vec::with_capacity(on_it.len() + 2);
-        vertices.push(edge.ends[0]);
+        vertices.push(ends[0]);
         vertices.extend(on_it.iter().map(|(_, vertex)| *vertex));
-        vertices.push(edge.ends[1]);
+        vertices.push(ends[1]);
         let shared = vec![false; vertices.len() - 1];
         chains.push(Chain { edge: number, vertices, shared });
     }

@@ -18,20 +18,23 @@ pub(super) fn merge_overlaps(
 ) -> Vec<[u32; 2]> {
     // Two faces that fold back onto each other are a boundary of what they cover. It makes a difference only beside other
     // boundaries.
-    let mut beside = vec![0u64; surface.positions.len().div_ceil(64)];
-    let (mut boundaries, mut others) = (false, false);
-    for edge in edges.iter().filter(|edge| edge.kind() != EdgeKind::TwoFace) {
+    let irregular = edges.iter().filter(|edge| edge.kind() != EdgeKind::TwoFace);
+    let mut beside = Vec::new();
+    let mut is_regular = true;
+    for edge in irregular {
+        is_regular = false;
         if edge.kind() == EdgeKind::Boundary {
-            boundaries = true;
+            beside.resize(surface.positions.len().div_ceil(64), 0u64);
             edge.ends.iter().for_each(|&end| beside[end as usize / 64] |= 1 << (end % 64));
-        } else {
-            others = true;
         }
     }
-    if !boundaries && !others {
+    if is_regular {
         return Vec::new();
     }
-    let is_beside = |edge: &Edge| edge.ends.iter().any(|&end| beside[end as usize / 64] & 1 << (end % 64) != 0);
+    let is_beside = |edge: &Edge| {
+        let has = |end: u32| beside.get(end as usize / 64).is_some_and(|bits: &u64| bits & 1 << (end % 64) != 0);
+        edge.ends.into_iter().any(has)
+    };
     let (mut overlaps, mut kept_further) = (Vec::new(), Vec::new());
     let mut further = further_faces.iter().copied().peekable();
     for (number, edge) in (0u32..).zip(edges) {

@@ -163,3 +163,38 @@ fn an_edge_with_faces_on_all_sides_is_surrounded() {
     let edge = found.edges.iter().find(|edge| edge.kind() == EdgeKind::NonManifold).unwrap();
     assert_eq!((edge.faces(), &found.further_faces[..]), ([1, 2], &[(0, 0)][..]));
 }
+
+#[test]
+fn faces_without_area_leave_computed_normals_alone() {
+    let line = [[0.0, 0.0, 0.0], [1.0, 1.0, 1.0], [2.0, 2.0, 2.0]];
+    let cases: [(&[&[u32]], &[[f32; 3]]); 8] = [
+        (&[&[2, 6, 2]], &[]),
+        (&[&[6, 2, 2]], &[]),
+        (&[&[2, 6, 2, 6]], &[]),
+        (&[&[2, 6, 2], &[6, 2, 6], &[2, 2, 6]], &[]),
+        (&[&[8, 9, 10]], &line),
+        (&[&[2, 8, 6]], &[[0.5, 0.5, 0.1]]),
+        (&[&[6, 8, 2]], &[[0.5, 0.5, 0.1]]),
+        (&[&[8, 8, 8]], &[[0.5, 0.5, 0.5]]),
+    ];
+    for (more, vertices) in cases {
+        for first in [false, true] {
+            let clean = cube(&[], &[]);
+            let mut mesh = cube(more, vertices);
+            if first {
+                mesh.polygons.rotate_right(more.len());
+            }
+            let normals_of = |mesh: &Mesh| {
+                let (faces, face_polygon) = mesh.triangles();
+                let mut model =
+                    npr_mesh::Model { positions: mesh.positions.clone(), faces, face_polygon, ..Default::default() };
+                npr_mesh::normals::fill_missing(&mut model, 45f32.to_radians());
+                let corner = |&v: &u32| (model.positions[v as usize], model.normals[v as usize]);
+                model.faces.iter().map(|face| face.each_ref().map(corner)).collect::<Vec<_>>()
+            };
+            let skipped = if first { normals_of(&mesh).len() - 12 } else { 0 };
+            let found = normals_of(&mesh);
+            assert_eq!(found[skipped..skipped + 12], normals_of(&clean)[..], "{more:?} {first}");
+        }
+    }
+}
