@@ -1,5 +1,7 @@
 //! Computes missing vertex normals.
 
+mod duplicates;
+
 use crate::Model;
 use crate::weld::{Rounding, Weld};
 use glam::{DVec3, Vec3};
@@ -18,6 +20,7 @@ use glam::{DVec3, Vec3};
 /// - If the normals of all faces at a position are within half the crease angle of their mean, the faces are one
 ///   group even if some share no edge.
 /// - Faces of one polygon ([`Model::face_polygon`]) have the polygon's normal and, if it has one, are in one group.
+/// - Faces that are there more than once, in any winding and cut along any diagonal, count once.
 /// - Two faces of opposite winding are compared with one normal negated; each then gets the normal of the group on
 ///   its own front side.
 /// - A face whose height is within the rounding of its coordinates, as for [`crate::edges`], or that has two corners at
@@ -42,7 +45,11 @@ pub fn fill_missing_welded(model: &mut Model, crease_angle_rad: f32, weld: Weld)
         wanted[representative[vertex] as usize] = true;
     }
     let rounding = Rounding::new(&model.positions, &model.faces);
-    let shapes = face_shapes(model, &rounding);
+    let mut shapes = face_shapes(model, &rounding);
+    let duplicates = duplicates::duplicates(&model.faces, &model.face_polygon, &representative);
+    for (shape, _) in shapes.iter_mut().zip(&duplicates).filter(|(_, duplicate)| **duplicate) {
+        shape.angles_rad = [0.0; 3];
+    }
     // A tolerance, so that rounding of positions does not separate faces that meet at exactly the crease angle.
     let widest = (f64::from(crease_angle_rad).clamp(0.0, std::f64::consts::PI) + 1e-5).min(std::f64::consts::PI);
     let (least_cos, half_cos) = (widest.cos() - 1e-12, (0.5 * widest).cos());

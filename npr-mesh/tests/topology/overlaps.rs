@@ -198,3 +198,33 @@ fn faces_without_area_leave_computed_normals_alone() {
         }
     }
 }
+
+#[test]
+fn duplicates_leave_computed_normals_alone() {
+    // A round cap, of which some faces are there twice.
+    let sphere = npr_mesh::embedded::sphere(12);
+    let half = sphere.faces.len() / 2;
+    for quads in [false, true] {
+        let face_polygon: Vec<u32> = (0..half as u32).map(|face| if quads { face / 2 } else { face }).collect();
+        let normals_of = |more: &[[u32; 3]], polygons: &[u32]| {
+            let mut model = npr_mesh::Model {
+                positions: sphere.positions.clone(),
+                faces: [&sphere.faces[..half], more].concat(),
+                face_polygon: [&face_polygon[..], polygons].concat(),
+                ..Default::default()
+            };
+            npr_mesh::normals::fill_missing(&mut model, 45f32.to_radians());
+            let corner = |&v: &u32| (model.positions[v as usize], model.normals[v as usize]);
+            model.faces.iter().map(|face| face.each_ref().map(corner)).collect::<Vec<_>>()
+        };
+        let clean = normals_of(&[], &[]);
+        let [a, b] = [sphere.faces[40], sphere.faces[41]];
+        for more in [[a, b], [[a[1], a[2], a[0]], [b[2], b[0], b[1]]], [[a[2], a[1], a[0]], [b[1], b[0], b[2]]]] {
+            let found = normals_of(&more, &[9999, if quads { 9999 } else { 10_000 }]);
+            for (found, clean) in found.iter().flatten().zip(clean.iter().flatten()) {
+                assert_eq!(found.0, clean.0);
+                assert!(found.1.distance(clean.1) < 1e-6, "{quads} {more:?}: {} {}", found.1, clean.1);
+            }
+        }
+    }
+}
