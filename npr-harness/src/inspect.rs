@@ -1,11 +1,11 @@
 //! Statistics of a model.
 
 use glam::DVec3;
+use npr_mesh::weld::Weld;
 use npr_mesh::{
     Model, Warning,
     edges::{self, EdgeKind, EdgeOptions, Edges},
 };
-use npr_mesh::weld::Weld;
 use std::{collections::HashMap, fmt, ops::Range};
 
 /// The angle over which [`Inspection::creases_over_30_deg`] counts an edge.

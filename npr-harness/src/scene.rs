@@ -69,7 +69,8 @@ pub struct Scene {
 
 impl From<Loaded> for Scene {
     fn from(loaded: Loaded) -> Self {
-        Self::with_objects_welded(loaded.meshes, loaded.objects, loaded.weld).expect("the loader refuses such transforms")
+        Self::with_objects_welded(loaded.meshes, loaded.objects, loaded.weld)
+            .expect("the loader refuses such transforms")
     }
 }
 
@@ -650,7 +651,8 @@ impl Scene {
             // Edges are found per object, so vertices of touching objects are not merged.
             let welded = mesh.edges().representative.clone();
             let matrix = object.scene_from_mesh().matrix3;
-            let scale = [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(DVec3::length).into_iter().fold(0.0, f64::max);
+            let scale =
+                [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(DVec3::length).into_iter().fold(0.0, f64::max);
             let tolerance = f64::from(mesh.edges().tolerance) * scale;
             let found = mesh::find_edges_welded(&model, welded, tolerance as f32);
             edges.append(&found, flat.positions.len() as u32, flat.faces.len() as u32);

@@ -184,8 +184,7 @@ fn a_solid_with_t_junctions_has_the_lines_and_the_shadow_of_its_shape() {
             assert_eq!((of(EdgeKind::Boundary), of(EdgeKind::NonManifold)), (4, 0));
             for executor in executors() {
                 for name in ["toon-shadow", "lines", "cartoon"] {
-                    let [expected, actual] =
-                        [&clean, &cut].map(|scene| picture(&executor, scene, name, [30.0, 35.0]));
+                    let [expected, actual] = [&clean, &cut].map(|scene| picture(&executor, scene, name, [30.0, 35.0]));
                     assert_same(&expected, &actual, &format!("{} {name} {turn}", executor.name()));
                 }
             }

@@ -292,13 +292,8 @@ fn find_with(
         folds = diagonals::drop_diagonals(&mut edges, &mut further_faces, faces, &representative, face_polygon);
         folds::keep_folded(&mut folds, positions, faces, face_polygon, options.fold_rad);
     }
-    let surface = Surface {
-        positions,
-        faces,
-        face_normals: &face_normals,
-        tolerance,
-        merge_overlaps: options.merge_overlaps,
-    };
+    let surface =
+        Surface { positions, faces, face_normals: &face_normals, tolerance, merge_overlaps: options.merge_overlaps };
     let upwards = |face, ends| runs_along(positions, faces[face as usize].map(|v| representative[v as usize]), ends);
     if options.merge_overlaps {
         overlaps.extend(overlaps::merge_overlaps(&mut edges, &mut further_faces, &surface, upwards));

@@ -5,8 +5,8 @@
 
 mod rounding;
 
-pub(crate) use rounding::{Rounding, weld_by};
 pub use rounding::{ROUNDING_ULPS, rounding_tolerance, weld_rounding};
+pub(crate) use rounding::{Rounding, weld_by};
 
 use glam::Vec3;
 
@@ -126,8 +126,8 @@ pub fn weld_within(positions: &[Vec3], tolerance: f32) -> Vec<u32> {
     let mut representative = exact.clone();
     let unique = (0u32..).zip(&exact).filter(|&(vertex, &first)| vertex == first).map(|(vertex, _)| vertex);
     join_nearest(positions, unique, tolerance, &mut representative);
-    for vertex in 0..representative.len() {
-        representative[vertex] = representative[exact[vertex] as usize];
+    for (vertex, &first) in exact.iter().enumerate() {
+        representative[vertex] = representative[first as usize];
     }
     representative
 }

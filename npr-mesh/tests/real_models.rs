@@ -27,9 +27,8 @@ fn clean_models_have_the_edges_of_their_file() {
         let loaded = npr_mesh::load(&path, &Default::default()).expect("a model loads");
         for (number, mesh) in loaded.meshes.iter().enumerate() {
             let (positions, faces) = (&mesh.positions, &mesh.faces);
-            let find = |options: EdgeOptions| {
-                edges::find(positions, faces, &mesh.face_polygon, &mesh.face_material, &options)
-            };
+            let find =
+                |options: EdgeOptions| edges::find(positions, faces, &mesh.face_polygon, &mesh.face_material, &options);
             let plain = find(EdgeOptions { skip_redundant: true, ..EdgeOptions::of_file() });
             let drawn = find(EdgeOptions::default());
             if NOT_CLEAN.contains(&&*name) {

@@ -59,7 +59,8 @@ impl Surface<'_> {
                 let after = (widest + 1) % fans.len();
                 let mut outer = [fans[widest].side, fans[after].side];
                 outer.sort_unstable();
-                let mut inner: Vec<Side> = fans.iter().map(|fan| fan.side).filter(|side| !outer.contains(side)).collect();
+                let mut inner: Vec<Side> =
+                    fans.iter().map(|fan| fan.side).filter(|side| !outer.contains(side)).collect();
                 inner.sort_unstable();
                 outer.into_iter().chain(inner).collect()
             } else {
@@ -94,7 +95,8 @@ impl Surface<'_> {
             .iter()
             .map(|&side| {
                 let direction = direction(&side);
-                let angle_rad = (direction != DVec3::ZERO).then(|| direction.dot(other_axis).atan2(direction.dot(axis)));
+                let angle_rad =
+                    (direction != DVec3::ZERO).then(|| direction.dot(other_axis).atan2(direction.dot(axis)));
                 Fan { side, angle_rad, height: self.height(side.0, from, along) }
             })
             .collect();

@@ -34,7 +34,7 @@ impl PointTree {
     ) -> bool {
         let [from, to] = ends.map(|vertex| positions[vertex as usize].as_dvec3());
         let length = from.distance(to);
-        if !(length > 2.0 * tolerance) || !length.is_finite() {
+        if length <= 2.0 * tolerance || !length.is_finite() {
             return true;
         }
         let along = (to - from) / length;

@@ -25,6 +25,11 @@ pub(super) const CREASE_ANGLE_RAD: f32 = 45f32.to_radians();
 
 impl Default for LoadOptions {
     fn default() -> Self {
-        Self { limits: Limits::default(), asset_root: None, normal_crease_angle_rad: CREASE_ANGLE_RAD, weld: Weld::default() }
+        Self {
+            limits: Limits::default(),
+            asset_root: None,
+            normal_crease_angle_rad: CREASE_ANGLE_RAD,
+            weld: Weld::default(),
+        }
     }
 }

@@ -44,9 +44,11 @@ impl Rounding {
             // A last, shorter block is followed by faces of the block before it, or by zeros.
             let (lower, upper, is_high) = bounds_and_heights(&corners);
             let count = block.len();
-            for axis in 0..3 {
-                low[axis] = lower[axis][..count].iter().fold(low[axis], |a, &b| if b < a { b } else { a });
-                high[axis] = upper[axis][..count].iter().fold(high[axis], |a, &b| if b > a { b } else { a });
+            for (low, lower) in low.iter_mut().zip(&lower) {
+                *low = lower[..count].iter().fold(*low, |a, &b| if b < a { b } else { a });
+            }
+            for (high, upper) in high.iter_mut().zip(&upper) {
+                *high = upper[..count].iter().fold(*high, |a, &b| if b > a { b } else { a });
             }
             if is_high[..count] != [true; BLOCK][..count] {
                 let first = (number * BLOCK) as u32;
@@ -91,6 +93,7 @@ type Block<T> = [T; BLOCK];
 /// Of triangles, given by corner and axis: the lower and the upper ends of their boxes by axis, and whether each surely has
 /// an area by [`Rounding::has_no_area`]. In f32 and with twice the tolerance; what overflows or is no number has none.
 #[inline]
+#[allow(clippy::needless_range_loop, reason = "loops over several arrays at once, which the compiler vectorises")]
 fn bounds_and_heights([a, b, c]: &[[Block<f32>; 3]; 3]) -> ([Block<f32>; 3], [Block<f32>; 3], Block<bool>) {
     let least = |x: f32, y: f32| if x < y { x } else { y };
     let most = |x: f32, y: f32| if x > y { x } else { y };
@@ -107,11 +110,7 @@ fn bounds_and_heights([a, b, c]: &[[Block<f32>; 3]; 3]) -> ([Block<f32>; 3], [Bl
         let (ab, ac) = (from_a(b), from_a(c));
         let bc = [ac[0] - ab[0], ac[1] - ab[1], ac[2] - ab[2]];
         let squared = |of: [f32; 3]| of[0] * of[0] + of[1] * of[1] + of[2] * of[2];
-        let area = [
-            ab[1] * ac[2] - ab[2] * ac[1],
-            ab[2] * ac[0] - ab[0] * ac[2],
-            ab[0] * ac[1] - ab[1] * ac[0],
-        ];
+        let area = [ab[1] * ac[2] - ab[2] * ac[1], ab[2] * ac[0] - ab[0] * ac[2], ab[0] * ac[1] - ab[1] * ac[0]];
         let largest = |axis: usize| most(upper[axis][i], -lower[axis][i]);
         let tolerance = 2.0 * UNIT * most(most(largest(0), largest(1)), largest(2));
         let longest_squared = most(most(squared(ab), squared(ac)), squared(bc));
@@ -154,7 +153,8 @@ pub(crate) fn weld_by(positions: &[Vec3], faces: &[[u32; 3]], rounding: &Roundin
         }
         None => {
             let exact = weld_exact(positions);
-            let unique = || all.clone().zip(&exact).filter(|&(vertex, &first)| vertex == first).map(|(vertex, _)| vertex);
+            let unique =
+                || all.clone().zip(&exact).filter(|&(vertex, &first)| vertex == first).map(|(vertex, _)| vertex);
             let suspects = with_neighbours(positions, unique(), rounding.tolerance, usize::MAX).unwrap_or_default();
             (exact, suspects)
         }
@@ -167,8 +167,8 @@ pub(crate) fn weld_by(positions: &[Vec3], faces: &[[u32; 3]], rounding: &Roundin
     if !join_nearest(positions, unique, rounding.tolerance, &mut welded) {
         return exact;
     }
-    for vertex in 0..welded.len() {
-        welded[vertex] = welded[exact[vertex] as usize];
+    for (vertex, &first) in exact.iter().enumerate() {
+        welded[vertex] = welded[first as usize];
     }
     keep_faces(positions, faces, rounding, &exact, &mut welded);
     welded
@@ -180,11 +180,10 @@ fn keep_faces(positions: &[Vec3], faces: &[[u32; 3]], rounding: &Rounding, exact
     for face in faces {
         let [a, b, c] = face.map(|vertex| vertex as usize);
         for (from, to) in [(a, b), (b, c), (c, a)] {
-            if welded[from] == welded[to] && exact[from] != exact[to] {
-                if !rounding.has_no_area(face.map(|vertex| positions[vertex as usize])) {
-                    parted.resize(exact.len(), false);
-                    parted[welded[from] as usize] = true;
-                }
+            let is_joined = welded[from] == welded[to] && exact[from] != exact[to];
+            if is_joined && !rounding.has_no_area(face.map(|vertex| positions[vertex as usize])) {
+                parted.resize(exact.len(), false);
+                parted[welded[from] as usize] = true;
             }
         }
     }

@@ -87,9 +87,7 @@ fn count(found: &Edges, kind: EdgeKind) -> usize {
 
 fn rotation() -> impl Strategy<Value = Quat> {
     let part = || -1f32..1.0;
-    (part(), part(), part(), part()).prop_map(|(x, y, z, w)| {
-        Quat::from_xyzw(x, y, z, w).try_normalize_or_identity()
-    })
+    (part(), part(), part(), part()).prop_map(|(x, y, z, w)| Quat::from_xyzw(x, y, z, w).try_normalize_or_identity())
 }
 
 trait OrIdentity {
@@ -120,7 +118,13 @@ fn a_tube_whose_last_column_is_at_two_pi_is_closed() {
         let found = tube.edges();
         assert_eq!(count(&found, EdgeKind::Boundary), 2 * columns as usize);
         assert_eq!(count(&found, EdgeKind::TwoFace), columns as usize);
-        assert_eq!(count(&edges::find(&tube.positions, &tube.triangles().0, &tube.triangles().1, &[], &EdgeOptions::of_file()), EdgeKind::Boundary), 2 * columns as usize + 2);
+        assert_eq!(
+            count(
+                &edges::find(&tube.positions, &tube.triangles().0, &tube.triangles().1, &[], &EdgeOptions::of_file()),
+                EdgeKind::Boundary
+            ),
+            2 * columns as usize + 2
+        );
     }
 }
 

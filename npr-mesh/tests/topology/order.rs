@@ -105,3 +105,64 @@ proptest! {
         }
     }
 }
+
+/// A round cap with faces that are there twice or have no area, as triangles.
+fn cap(twice: &[usize], flat: &[usize]) -> Mesh {
+    let sphere = npr_mesh::embedded::sphere(12);
+    let mut mesh = Mesh { positions: sphere.positions, polygons: Vec::new() };
+    let faces = &sphere.faces[..sphere.faces.len() / 2];
+    mesh.polygons.extend(faces.iter().map(|face| face.to_vec()));
+    mesh.polygons.extend(twice.iter().map(|&face| {
+        let [a, b, c] = faces[face % faces.len()];
+        if face.is_multiple_of(2) { vec![b, c, a] } else { vec![c, b, a] }
+    }));
+    mesh.polygons.extend(flat.iter().map(|&face| {
+        let [a, b, _] = faces[face % faces.len()];
+        vec![a, b, a]
+    }));
+    mesh
+}
+
+proptest! {
+    #[test]
+    fn computed_normals_are_the_same_for_any_order_of_faces_and_corners(
+        twice in prop::collection::vec(0usize..500, 0..9),
+        flat in prop::collection::vec(0usize..500, 0..9),
+        keys in prop::collection::vec(any::<u32>(), 300),
+        crease in 0.1f32..1.5,
+    ) {
+        let mesh = cap(&twice, &flat);
+        // By the corners of each face in their cyclic order, from the lowest: the normals there.
+        let normals_of = |mesh: &Mesh| {
+            let mut model = npr_mesh::Model {
+                positions: mesh.positions.clone(),
+                faces: mesh.triangles().0,
+                ..Default::default()
+            };
+            npr_mesh::normals::fill_missing(&mut model, crease);
+            let corner = |&v: &u32| (model.positions[v as usize].to_array().map(f32::to_bits), model.normals[v as usize]);
+            let with_area = model.faces.iter().filter(|face| !edges::has_zero_area(&model.positions, face));
+            let mut all: Vec<[_; 3]> = with_area
+                .map(|face| {
+                    let mut corners = face.each_ref().map(corner);
+                    let lowest = (0..3).min_by_key(|&i| corners[i].0).unwrap_or(0);
+                    corners.rotate_left(lowest);
+                    corners
+                })
+                .collect();
+            all.sort_by_key(|corners| corners.map(|corner| corner.0));
+            all
+        };
+        let mut other = mesh.clone();
+        let mut order: Vec<usize> = (0..mesh.polygons.len()).collect();
+        order.sort_by_key(|&face| keys[face % keys.len()].rotate_left(face as u32 / 300));
+        other.polygons = order.iter().map(|&face| mesh.polygons[face].clone()).collect();
+        for (polygon, key) in other.polygons.iter_mut().zip(&keys) {
+            polygon.rotate_left(*key as usize % 3);
+        }
+        for (a, b) in normals_of(&mesh).iter().flatten().zip(normals_of(&other).iter().flatten()) {
+            prop_assert_eq!(a.0, b.0);
+            prop_assert!(a.1.distance(b.1) < 1e-5, "{} {}", a.1, b.1);
+        }
+    }
+}

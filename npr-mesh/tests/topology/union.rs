@@ -48,7 +48,8 @@ pub fn union(boxes: &[Cells], cut: Cut) -> (Vec<Vec3>, Vec<Vec<u32>>) {
                 }
                 while let Some(&(a, b)) = open.first() {
                     let (mut wide, mut high) = (1, 1);
-                    let fits = |wide: i32, high: i32| (0..wide).all(|i| (0..high).all(|j| open.contains(&(a + i, b + j))));
+                    let fits =
+                        |wide: i32, high: i32| (0..wide).all(|i| (0..high).all(|j| open.contains(&(a + i, b + j))));
                     for turn in 0..if cut == Cut::Unit { 0 } else { 2 } {
                         if (turn + axis + usize::from(cut == Cut::Wide)).is_multiple_of(2) {
                             while fits(wide + 1, high) {

@@ -66,7 +66,8 @@ fn open_share(model: &Model, weld: Weld) -> f64 {
 
 fn seams(_: &Executor) -> Result<Finding, HarnessError> {
     let gaps = RELATIVE.map(|gap| (gap, strips(gap as f32 * TOLERANCE)));
-    let welded: Vec<(f64, f64)> = gaps.iter().map(|(gap, model)| (*gap, open_share(model, Weld::Within(TOLERANCE)))).collect();
+    let welded: Vec<(f64, f64)> =
+        gaps.iter().map(|(gap, model)| (*gap, open_share(model, Weld::Within(TOLERANCE)))).collect();
     let exact: Vec<(f64, f64)> = gaps.iter().map(|(gap, model)| (*gap, open_share(model, Weld::Exact))).collect();
     let rounding = {
         let Model { positions, faces, .. } = strips(0.0);
@@ -81,12 +82,7 @@ fn seams(_: &Executor) -> Result<Finding, HarnessError> {
         curve(
             "within a tolerance",
             welded,
-            limit_at(
-                "gap at which a seam opens, relative to the tolerance",
-                opens,
-                joins,
-                Bound::AtLeast(0.99),
-            ),
+            limit_at("gap at which a seam opens, relative to the tolerance", opens, joins, Bound::AtLeast(0.99)),
         ),
         curve(
             "within rounding, as for drawing",

@@ -40,7 +40,8 @@ fn what_is_near_by_rounding_is_one_vertex() {
 
 #[test]
 fn vertices_without_faces_do_not_raise_the_tolerance() {
-    let positions = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::new(1.0, 1e-5, 0.0), Vec3::splat(1e9), Vec3::NAN, Vec3::INFINITY];
+    let positions =
+        [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::new(1.0, 1e-5, 0.0), Vec3::splat(1e9), Vec3::NAN, Vec3::INFINITY];
     let faces = [[0, 1, 2], [0, 3, 2]];
     assert_eq!(rounding_tolerance(&positions, &faces), 8.0 * f32::EPSILON);
     assert_eq!(weld_rounding(&positions, &faces), [0, 1, 2, 3, 4, 5, 6]);
