@@ -32,7 +32,7 @@ fn what_is_near_by_rounding_is_one_vertex() {
     assert_eq!(weld_rounding(&seam, &used(3)), [0, 0, 2]);
     let apart = [Vec3::ONE, Vec3::ONE * 1.00001, -Vec3::ONE];
     assert_eq!(weld_rounding(&apart, &used(3)), [0, 1, 2]);
-    assert_eq!(weld_rounding(&[], &[]), []);
+    assert!(weld_rounding(&[], &[]).is_empty());
     assert_eq!(weld_rounding(&[Vec3::X; 3], &used(3)), [0, 0, 0]);
     assert_eq!(rounding_tolerance(&[Vec3::X; 3], &used(3)), 0.0);
     assert_eq!(rounding_tolerance(&[Vec3::X, Vec3::Y], &used(2)), 8.0 * f32::EPSILON);
