@@ -218,7 +218,7 @@ pub fn find(
     options: &EdgeOptions,
 ) -> Edges {
     if options.weld == Weld::Exact && !options.skip_without_area && !options.share_junctions {
-        let mesh = (positions, faces, face_polygon, face_material);
+        let mesh = Arrays { positions, faces, face_polygon, face_material };
         return find_with(mesh, weld::weld_exact(positions), 0.0, None, options);
     }
     let rounding = Rounding::new(positions, faces);
@@ -230,7 +230,7 @@ pub fn find(
         Weld::Within(tolerance) => rounding.tolerance.max(tolerance),
         Weld::Exact | Weld::Rounding => rounding.tolerance,
     };
-    let mesh = (positions, faces, face_polygon, face_material);
+    let mesh = Arrays { positions, faces, face_polygon, face_material };
     find_with(mesh, representative, tolerance, Some(&rounding), options)
 }
 
@@ -251,11 +251,21 @@ pub fn find_welded(
     tolerance: f32,
     options: &EdgeOptions,
 ) -> Edges {
-    find_with((positions, faces, face_polygon, face_material), representative, tolerance, None, options)
+    let mesh = Arrays { positions, faces, face_polygon, face_material };
+    find_with(mesh, representative, tolerance, None, options)
+}
+
+/// The arguments of [`find`].
+#[derive(Clone, Copy)]
+struct Arrays<'a> {
+    positions: &'a [Vec3],
+    faces: &'a [[u32; 3]],
+    face_polygon: &'a [u32],
+    face_material: &'a [u32],
 }
 
 fn find_with(
-    (positions, faces, face_polygon, face_material): (&[Vec3], &[[u32; 3]], &[u32], &[u32]),
+    Arrays { positions, faces, face_polygon, face_material }: Arrays,
     representative: Vec<u32>,
     tolerance: f32,
     rounding: Option<&Rounding>,

@@ -165,8 +165,10 @@ fn an_edge_with_faces_on_all_sides_is_surrounded() {
 
 #[test]
 fn faces_without_area_leave_computed_normals_alone() {
+    /// More polygons, and the vertices that they need.
+    type Case<'a> = (&'a [&'a [u32]], &'a [[f32; 3]]);
     let line = [[0.0, 0.0, 0.0], [1.0, 1.0, 1.0], [2.0, 2.0, 2.0]];
-    let cases: [(&[&[u32]], &[[f32; 3]]); 8] = [
+    let cases: [Case; 8] = [
         (&[&[2, 6, 2]], &[]),
         (&[&[6, 2, 2]], &[]),
         (&[&[2, 6, 2, 6]], &[]),
