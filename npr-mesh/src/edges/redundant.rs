@@ -2,12 +2,12 @@
 
 use crate::weld::Rounding;
 use glam::Vec3;
-use std::collections::HashSet;
+use std::collections::HashMap;
 
 /// The duplicates and the faces with two corners at one position, of those that are polygons of their own.
 ///
 /// A triangle of a larger polygon may coincide with a triangle of another polygon although the polygons differ, so
-/// triangles of larger polygons are kept, and make no other face a duplicate.
+/// triangles of larger polygons are kept. Of the others the first is kept, if no larger polygon has the same triangle.
 pub(super) fn skip_redundant(
     skipped: &mut Vec<bool>,
     collapsed: &[u32],
@@ -26,17 +26,21 @@ pub(super) fn skip_redundant(
         skipped[face as usize] = true;
     };
     collapsed.iter().copied().filter(|&face| !is_cut(face)).for_each(&mut skip);
-    // Faces with the same corners form a chain of pairs. The later face of a pair is a duplicate if any before it is a
-    // polygon of its own.
+    // Faces with the same corners form a chain of pairs.
     twins.sort_unstable_by_key(|pair| pair[1]);
-    let mut after_whole = HashSet::new();
+    let mut first_of = HashMap::new();
+    let mut members = Vec::new();
     for &[before, face] in &*twins {
-        if !is_cut(before) || after_whole.contains(&before) {
-            after_whole.insert(face);
-            if !is_cut(face) {
-                skip(face);
-            }
-        }
+        let first = first_of.get(&before).copied().unwrap_or(before);
+        first_of.insert(face, first);
+        members.extend([(first, before), (first, face)]);
+    }
+    members.sort_unstable();
+    members.dedup();
+    for same in members.chunk_by(|a, b| a.0 == b.0) {
+        let in_larger = same.iter().any(|of| is_cut(of.1));
+        let whole = same.iter().map(|of| of.1).filter(|&face| !is_cut(face));
+        whole.skip(usize::from(!in_larger)).for_each(&mut skip);
     }
 }
 
