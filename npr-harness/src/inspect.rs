@@ -1,6 +1,7 @@
 //! Statistics of a model.
 
 use glam::{DVec3, Vec3};
+use npr_mesh::weld::Weld;
 use npr_mesh::{
     Loaded, Model, SideVisibility, Warning,
     edges::{self, EdgeKind, EdgeOptions, Edges},
@@ -79,19 +80,20 @@ pub struct Inspection {
 /// # Panics
 /// If a face refers to a vertex that does not exist, or a per-face array does not have the length stated in [`Model`].
 pub fn inspect(name: &str, model: &Model, warnings: Vec<Warning>) -> Inspection {
-    inspect_at(name, model, DVec3::ZERO, warnings)
+    inspect_at(name, model, DVec3::ZERO, warnings, Weld::Exact)
 }
 
-/// Computes the statistics of a file: as [`inspect`] of all its objects in one model.
-pub fn inspect_loaded(name: &str, loaded: Loaded) -> Inspection {
+/// Computes the statistics of a file: as [`inspect`] of all its objects in one model, where corners that a rule of welding
+/// joins count as one.
+pub fn inspect_loaded(name: &str, loaded: Loaded, weld: Weld) -> Inspection {
     let (meshes, objects, warnings) = (loaded.meshes.len(), loaded.objects.len(), loaded.warnings.clone());
     let (model, origin) = loaded.into_model_near();
-    Inspection { meshes, objects, ..inspect_at(name, &model, origin, warnings) }
+    Inspection { meshes, objects, ..inspect_at(name, &model, origin, warnings, weld) }
 }
 
 /// [`inspect`] of a model whose positions are relative to an origin.
-fn inspect_at(name: &str, model: &Model, origin: DVec3, warnings: Vec<Warning>) -> Inspection {
-    let options = EdgeOptions { skip_redundant: false, ..EdgeOptions::default() };
+fn inspect_at(name: &str, model: &Model, origin: DVec3, warnings: Vec<Warning>, weld: Weld) -> Inspection {
+    let options = EdgeOptions { weld, ..EdgeOptions::of_file() };
     let found = edges::find(&model.positions, &model.faces, &model.face_polygon, &model.face_material, &options);
     let of_kind = |kind| found.edges.iter().filter(|edge| edge.kind() == kind).count();
     let (boundary_edges, nonmanifold_edges) = (of_kind(EdgeKind::Boundary), of_kind(EdgeKind::NonManifold));

@@ -24,6 +24,7 @@ use glam::{DAffine3, DVec2, DVec3, DVec4, Vec3};
 use hierarchy::BoxHierarchy;
 use npr_imagespace::artist::LineKind;
 use npr_mesh::edges::Edges;
+use npr_mesh::weld::Weld;
 use npr_mesh::{AlphaMode, LoadOptions, Loaded, Material, Model, Texture, normals};
 use opacity::Hides;
 use std::borrow::Cow;
@@ -81,7 +82,8 @@ pub struct Scene {
 
 impl From<Loaded> for Scene {
     fn from(loaded: Loaded) -> Self {
-        Self::with_objects(loaded.meshes, loaded.objects).expect("the loader refuses such transforms")
+        Self::with_objects_welded(loaded.meshes, loaded.objects, loaded.weld)
+            .expect("the loader refuses such transforms")
     }
 }
 
@@ -100,7 +102,20 @@ impl Scene {
     ///
     /// # Errors
     /// [`HarnessError::ObjectMesh`]; [`HarnessError::ObjectTransform`] where a transform is not finite.
-    pub fn with_objects(mut models: Vec<Model>, mut placed: Vec<npr_mesh::Object>) -> Result<Self, HarnessError> {
+    pub fn with_objects(models: Vec<Model>, placed: Vec<npr_mesh::Object>) -> Result<Self, HarnessError> {
+        Self::with_objects_welded(models, placed, Weld::default())
+    }
+
+    /// As [`Scene::with_objects`], with a rule for which vertices of a mesh are one vertex for its edges. A distance is in
+    /// the mesh's own units.
+    ///
+    /// # Errors
+    /// As [`Scene::with_objects`].
+    pub fn with_objects_welded(
+        mut models: Vec<Model>,
+        mut placed: Vec<npr_mesh::Object>,
+        weld: Weld,
+    ) -> Result<Self, HarnessError> {
         let count = models.len();
         // Equal singular transforms of a mesh share a mesh.
         let mut baked = HashMap::new();
@@ -122,7 +137,7 @@ impl Scene {
                 object.world_from_mesh = DAffine3::IDENTITY;
             }
         }
-        let meshes: Vec<Arc<Mesh>> = models.into_iter().map(|model| Arc::new(Mesh::new(model))).collect();
+        let meshes: Vec<Arc<Mesh>> = models.into_iter().map(|model| Arc::new(Mesh::new(model, weld))).collect();
         let world_box = |object: &npr_mesh::Object| {
             let mesh = &meshes[object.mesh];
             let (low, high) = mesh.bounds()?;
@@ -786,7 +801,12 @@ impl Scene {
                 line_kinds.push(self.line_kinds[number]);
             }
             // Edges are found per object, so vertices of touching objects are not merged.
-            let mut found = mesh::find_edges(&model);
+            let welded = mesh.edges().representative.clone();
+            let matrix = object.scene_from_mesh().matrix3;
+            let scale =
+                [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(DVec3::length).into_iter().fold(0.0, f64::max);
+            let tolerance = f64::from(mesh.edges().tolerance) * scale;
+            let mut found = mesh::find_edges_welded(&model, welded, tolerance as f32);
             found.edges.extend_from_slice(&mesh.cut_lines().edges);
             edges.append(&found, flat.positions.len() as u32, flat.faces.len() as u32);
             model.textures.clear();

@@ -67,6 +67,24 @@ fn inspect_counts_a_model() {
 }
 
 #[test]
+fn weld_says_which_vertices_are_one() {
+    let folder = Folder::new();
+    // Two triangles, 0.001 apart along their common side.
+    let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1.001 0 0\nv 0.001 1 0\nv 1 1 0\nf 1 2 3\nf 4 6 5\n";
+    std::fs::write(folder.join("gap.obj"), text).expect("a file");
+    let boundaries = |flags: &[&str]| {
+        let output = npr(&[&["inspect", "gap.obj", "--json"], flags].concat(), &[], &folder.0);
+        let counted: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        counted["boundary_edges"].as_u64().expect("a count")
+    };
+    assert_eq!([boundaries(&[]), boundaries(&["--weld", "0"]), boundaries(&["--weld", "0.002"])], [6, 6, 4]);
+    for wrong in ["-1", "NaN", "inf", "far"] {
+        let flag = format!("--weld={wrong}");
+        assert_ne!(npr(&["inspect", "gap.obj", &flag], &[], &folder.0).status.code(), Some(0), "{wrong}");
+    }
+}
+
+#[test]
 fn render_writes_a_picture_of_the_size_asked_for() {
     let folder = with_model();
     let arguments = ["render", "corner.obj", "-o", "a.png", "--size", "123x45", "--backend", "cpu", "--json"];

@@ -14,13 +14,15 @@ use npr_harness::picture::Image;
 use npr_harness::scene::Scene;
 use npr_harness::shade::Shade;
 use npr_harness::style::{Style, style};
+use npr_mesh::weld::Weld;
 use npr_mesh::{LoadOptions, Loaded, load_bytes};
 use std::io::{self, Cursor};
 
 const SIZE: (u32, u32) = (160, 120);
 
 /// From the front, without perspective.
-const FRONT: Framing = Framing { yaw_rad: 0.0, pitch_rad: 0.0, distance: 1.0, fov_y_rad: None };
+const FRONT: Framing =
+    Framing { yaw_rad: 0.0, pitch_rad: 0.0, roll_rad: 0.0, target: None, distance: 1.0, fov_y_rad: None };
 
 fn loaded(name: &str, text: &str, files: &[(&str, Vec<u8>)]) -> Loaded {
     let resolver = |name: &str| match files.iter().find(|(known, _)| *known == name) {
@@ -237,12 +239,12 @@ fn statistics_of_what_is_far_are_exact() {
         obj += &format!("v 8388608.{} {} 8388608.{}\n", at(0), corner >> 1 & 1, at(2));
     }
     obj += "f 5 6 8 7\nf 2 4 8 6\nf 1 3 4 2\nf 1 5 7 3\nf 3 7 8 4\nf 1 2 6 5\n";
-    let inspection = inspect_loaded("m", loaded("m.obj", &obj, &[]));
+    let inspection = inspect_loaded("m", loaded("m.obj", &obj, &[]), Weld::Exact);
     assert_eq!(inspection.extent, [0.6, 1.0, 0.6]);
     assert_eq!((inspection.min, inspection.max), ([8388608.2, 0.0, 8388608.2], [8388608.8, 1.0, 8388608.8]));
     assert!(inspection.closed && inspection.zero_area_faces == 0 && inspection.positions == 8);
     let utm = "v 500000.0 5400000.0 0\nv 500000.3 5400000.0 0\nv 500000.0 5400000.2 0\nf 1 2 3\n";
-    let inspection = inspect_loaded("m", loaded("m.obj", utm, &[]));
+    let inspection = inspect_loaded("m", loaded("m.obj", utm, &[]), Weld::Exact);
     assert_eq!((inspection.extent, inspection.zero_area_faces), ([0.3, 0.2, 0.0], 0));
     assert_eq!(inspection.min, [500_000.0, 5_400_000.0, 0.0]);
     let (model, _) = loaded("m.obj", utm, &[]).into_model_near();
@@ -253,7 +255,7 @@ fn statistics_of_what_is_far_are_exact() {
 #[test]
 fn extents_beyond_f32_are_numbers() {
     let obj = "v -3e38 0 0\nv 3e38 0 0\nv 0 3e38 -1e-3\nf 1 2 3\n";
-    let inspection = inspect_loaded("m", loaded("m.obj", obj, &[]));
+    let inspection = inspect_loaded("m", loaded("m.obj", obj, &[]), Weld::Exact);
     assert_eq!((inspection.extent[0], inspection.max[1]), (6e38, 3e38));
     let json = serde_json::to_string(&inspection).expect("plain numbers");
     assert!(!json.contains("null"), "{json}");

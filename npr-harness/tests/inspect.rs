@@ -2,6 +2,7 @@
 #![allow(clippy::print_stdout)]
 
 use npr_harness::inspect::{Inspection, inspect, inspect_loaded};
+use npr_mesh::weld::Weld;
 use std::{fs, path::Path};
 
 #[test]
@@ -44,7 +45,7 @@ fn inspected(name: &str, text: &str) -> Inspection {
     fs::write(folder.join(name), text).expect("written");
     let loaded = npr_mesh::load(&folder.join(name), &Default::default()).expect("a good file");
     let _ = fs::remove_dir_all(&folder);
-    inspect_loaded(name, loaded)
+    inspect_loaded(name, loaded, Weld::Exact)
 }
 
 #[test]

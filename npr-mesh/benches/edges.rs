@@ -19,7 +19,7 @@ fn bench(name: &str, model: &Model, rounds: usize) {
     let found = edges::find(positions, faces, &[], &[], &options);
     let bytes_out = size_of_val(&found.edges[..]) + size_of_val(&found.face_normals[..]) + 4 * positions.len();
     let bytes_in = size_of_val(&positions[..]) + size_of_val(&faces[..]);
-    let [mut sort, mut find, mut welding, mut normals, mut copy] = [f64::INFINITY; 5];
+    let [mut sort, mut find, mut exact, mut welding, mut normals, mut copy, mut welding_exactly] = [f64::INFINITY; 7];
     for _ in 0..rounds {
         time_ms(&mut sort, || {
             let mut keys: Vec<u64> = faces
@@ -33,8 +33,14 @@ fn bench(name: &str, model: &Model, rounds: usize) {
         time_ms(&mut find, || {
             black_box(edges::find(positions, faces, &[], &[], &options));
         });
-        time_ms(&mut welding, || {
+        time_ms(&mut exact, || {
+            black_box(edges::find(positions, faces, &[], &[], &edges::EdgeOptions::of_file()));
+        });
+        time_ms(&mut welding_exactly, || {
             black_box(weld::weld_exact(positions));
+        });
+        time_ms(&mut welding, || {
+            black_box(weld::weld_rounding(positions, faces));
         });
         time_ms(&mut normals, || {
             black_box(edges::face_normals(positions, faces, &[]));
@@ -48,7 +54,9 @@ fn bench(name: &str, model: &Model, rounds: usize) {
     println!("{name}: {} faces, {} edges, {bytes_in} bytes in, {bytes_out} out", faces.len(), found.edges.len());
     println!("  sort_unstable of bare edge keys        {sort:8.2} ms  1.00");
     println!("  weld + edges + normals + kinds         {find:8.2} ms  {:.2}", find / sort);
+    println!("  the same as in the file, without rules {exact:8.2} ms  {:.2}", exact / sort);
     println!("    of which weld                        {welding:8.2} ms  {:.2}", welding / sort);
+    println!("    of which weld, at equal positions    {welding_exactly:8.2} ms  {:.2}", welding_exactly / sort);
     println!("    of which normals                     {normals:8.2} ms  {:.2}", normals / sort);
     println!("  fresh copy of the bytes in and out     {copy:8.2} ms  {:.2}", copy / sort);
 }

@@ -18,8 +18,9 @@
 //!
 //! # Rules
 //!
-//! - A face is the triple of its corners as loaded. For edges, vertices at exactly equal positions are one vertex, so
-//!   that texture and normal seams are not boundaries. For shading they remain separate.
+//! - A face is the triple of its corners as loaded. For edges and computed normals, vertices that only rounding separates,
+//!   within 8 units in the last place of the mesh's largest coordinate, are one vertex ([`weld`]), so that texture and
+//!   normal seams are not boundaries. For shading they remain separate. `LoadOptions::weld` overrides the distance.
 //! - A polygon of n corners becomes n − 2 triangles ([`triangulate`]). Diagonals are not edges, and all triangles of
 //!   a polygon have its Newell normal.
 //! - Missing normals are computed within each mesh ([`normals`]): weighted by angle, and split at creases, or by the
@@ -34,8 +35,9 @@
 //!   mesh inside out: [`Model::transformed`] reverses the faces.
 //! - Of faces that overlap in one plane the one turned to the eye is seen, then the later in the file ([`coplanar`], which
 //!   is not applied when a file is loaded).
-//! - There is a rule for non-manifold edges, opposite windings, faces of zero area and duplicate faces, see
-//!   [`edges`]. None of them removes a line that should be visible.
+//! - There is a rule for non-manifold edges, opposite windings, T-junctions, faces without area and faces that overlap, see
+//!   [`edges`]. None of them removes a line that should be visible, and none depends on the order of the faces but where
+//!   it says so. For statistics of a file none applies ([`edges::EdgeOptions::of_file`]).
 //! - Transforms of nodes, instances and joints are composed in f64. [`Object::world_from_mesh`] keeps them, so that a city
 //!   at large coordinates has the digits of the file; `Loaded::into_model_near` subtracts its origin before it narrows
 //!   them to f32.

@@ -1,7 +1,9 @@
 //! Computes missing vertex normals.
 
+mod duplicates;
+
 use crate::Model;
-use crate::weld::weld_exact;
+use crate::weld::{Rounding, Weld};
 use glam::{DVec3, Vec3};
 
 /// Computes a normal for every vertex without one, and normalises the given normals.
@@ -14,40 +16,52 @@ use glam::{DVec3, Vec3};
 /// Facets", 1998), which does not depend on the triangulation. A vertex whose faces are in several groups is split:
 /// the lowest group keeps the vertex, and the others get copies, which are appended to all vertex arrays.
 ///
-/// - Vertices at exactly equal positions are one position, so texture seams do not affect normals.
+/// - Vertices that only rounding separates are at one position ([`crate::weld`]), so seams do not affect normals.
 /// - If the normals of all faces at a position are within half the crease angle of their mean, the faces are one
 ///   group even if some share no edge.
-/// - Faces of one polygon ([`Model::face_polygon`]) have the polygon's normal and are always in one group.
+/// - Faces of one polygon ([`Model::face_polygon`]) have the polygon's normal and, if it has one, are in one group.
+/// - Faces that are there more than once, in any winding and cut along any diagonal, count once.
 /// - Two faces of opposite winding are compared with one normal negated; each then gets the normal of the group on
 ///   its own front side.
-/// - A face whose height is within the rounding of its coordinates does not contribute. Two faces on both sides of it
+/// - A face whose height is within the rounding of its coordinates, as for [`crate::edges`], or that has two corners at
+///   one position, does not contribute. Two faces on both sides of it
 ///   are compared as if they were adjacent. It gets the normal of a neighbour, of any face at the position, or +Y.
 ///
 /// Afterwards all normals are finite and of unit length. The time is approximately linear; the memory is about 60
 /// bytes per face.
 pub fn fill_missing(model: &mut Model, crease_angle_rad: f32) {
-    fill_missing_in_groups(model, crease_angle_rad, &[]);
+    fill_missing_welded(model, crease_angle_rad, Weld::default());
+}
+
+/// As [`fill_missing`], with a rule of its own for which vertices are at one position.
+pub fn fill_missing_welded(model: &mut Model, crease_angle_rad: f32, weld: Weld) {
+    fill_missing_in_groups(model, crease_angle_rad, &[], weld);
 }
 
 /// The group of faces for which the crease angle decides.
 pub(crate) const UNSTATED: u32 = u32::MAX;
 
-/// [`fill_missing`] with a smoothing group for each face, as in OBJ files. Empty means [`UNSTATED`] for all.
+/// [`fill_missing_welded`] with a smoothing group for each face, as in OBJ files. Empty means [`UNSTATED`] for all.
 ///
 /// All faces of a group at one position are one smooth group whatever their angle, faces of group 0 are flat, and
 /// faces of different groups share no normal. Between faces of group [`UNSTATED`] the crease angle decides.
-pub(crate) fn fill_missing_in_groups(model: &mut Model, crease_angle_rad: f32, groups: &[u32]) {
+pub(crate) fn fill_missing_in_groups(model: &mut Model, crease_angle_rad: f32, groups: &[u32], weld: Weld) {
     debug_assert!(groups.is_empty() || groups.len() == model.faces.len());
     let missing = normalize_given(model);
     if !model.faces.iter().flatten().any(|&v| missing[v as usize]) {
         return;
     }
-    let mut representative = weld_exact(&model.positions);
+    let mut representative = weld.representatives(&model.positions, &model.faces);
     let mut wanted = vec![false; representative.len()];
     for (vertex, _) in missing.iter().enumerate().filter(|(_, m)| **m) {
         wanted[representative[vertex] as usize] = true;
     }
-    let shapes = face_shapes(model);
+    let rounding = Rounding::new(&model.positions, &model.faces);
+    let mut shapes = face_shapes(model, &rounding);
+    let duplicates = duplicates::duplicates(&model.faces, &model.face_polygon, &representative);
+    for (shape, _) in shapes.iter_mut().zip(&duplicates).filter(|(_, duplicate)| **duplicate) {
+        shape.angles_rad = [0.0; 3];
+    }
     // A tolerance, so that rounding of positions does not separate faces that meet at exactly the crease angle.
     let widest = (f64::from(crease_angle_rad).clamp(0.0, std::f64::consts::PI) + 1e-5).min(std::f64::consts::PI);
     let (least_cos, half_cos) = (widest.cos() - 1e-12, (0.5 * widest).cos());
@@ -136,7 +150,7 @@ fn measure(model: &Model, face: &[u32; 3]) -> Measures {
 }
 
 /// Processes blocks, first all measures and then all angles, so that divisions and square roots are pipelined.
-fn face_shapes(model: &Model) -> Vec<FaceShape> {
+fn face_shapes(model: &Model, rounding: &Rounding) -> Vec<FaceShape> {
     const BLOCK: usize = 64;
     let mut measures = [Measures::default(); BLOCK];
     let mut shapes: Vec<FaceShape> = Vec::with_capacity(model.faces.len());
@@ -156,7 +170,7 @@ fn face_shapes(model: &Model) -> Vec<FaceShape> {
             FaceShape {
                 normal: if length > 0.0 && length.is_finite() { measures.area / length } else { DVec3::ZERO },
                 angles_rad: [at_a as f32, at_b as f32, at_c.max(0.0) as f32],
-                sound: is_sound(length, measures.longest_squared, measures.magnitude),
+                sound: is_sound(length, measures.longest_squared, measures.magnitude, rounding),
             }
         }));
         if model.face_polygon.is_empty() {
@@ -178,7 +192,7 @@ fn face_shapes(model: &Model) -> Vec<FaceShape> {
                 let length = area.length();
                 for shape in &mut shapes[first..=face] {
                     shape.normal = if length > 0.0 && length.is_finite() { area / length } else { DVec3::ZERO };
-                    shape.sound = is_sound(length, longest_squared, magnitude);
+                    shape.sound = is_sound(length, longest_squared, magnitude, rounding);
                 }
             }
         }
@@ -186,11 +200,11 @@ fn face_shapes(model: &Model) -> Vec<FaceShape> {
     shapes
 }
 
-/// Whether a normal is more than rounding error: whether the height, twice the area over the longest edge, exceeds
-/// half a unit in the last representative of the coordinates.
-fn is_sound(length: f64, longest_squared: f64, magnitude: f32) -> bool {
-    let rounding = f64::from(magnitude) * f64::from(f32::EPSILON) * 0.5;
-    length.is_finite() && length > rounding * longest_squared.sqrt()
+/// Whether a normal is more than rounding error: whether the height, twice the area over the longest edge, exceeds what
+/// rounding of the coordinates accounts for, and half a unit in their last place in any case.
+fn is_sound(length: f64, longest_squared: f64, magnitude: f32, rounding: &Rounding) -> bool {
+    let least = f64::from(rounding.of(magnitude)).max(f64::from(magnitude) * f64::from(f32::EPSILON) * 0.5);
+    length.is_finite() && length > least * longest_squared.sqrt()
 }
 
 /// The angle between two vectors from the length of their cross product and their dot product; 0 if both are zero.
@@ -373,8 +387,12 @@ impl Fan {
                     let (j, j_towards) = side(other);
                     let (f, g) = (face_of(i), face_of(j));
                     let opposite = i_towards == j_towards;
-                    if model.face_polygon.get(f).is_some_and(|p| model.face_polygon.get(g) == Some(p)) {
-                        self.join(i, j, false);
+                    let is_polygon = model.face_polygon.get(f).is_some_and(|p| model.face_polygon.get(g) == Some(p));
+                    if is_polygon {
+                        // A polygon without area would join what is on both sides of it.
+                        if shapes[f].sound {
+                            self.join(i, j, false);
+                        }
                     } else {
                         match (shapes[f].sound, shapes[g].sound) {
                             (true, true) if meet_smoothly(i, j, opposite) => self.join(i, j, opposite),

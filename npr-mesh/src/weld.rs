@@ -3,7 +3,38 @@
 //! Files split vertices at seams of texture coordinates and normals, and exporters may write a point several times.
 //! An edge search without welding would find spurious boundaries there.
 
+mod rounding;
+
+pub use rounding::{ROUNDING_ULPS, rounding_tolerance, weld_rounding};
+pub(crate) use rounding::{Rounding, weld_by};
+
 use glam::Vec3;
+
+/// Which vertices are one vertex for edges and computed normals.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Weld {
+    /// Those at exactly equal positions: [`weld_exact`].
+    Exact,
+    /// Those that only rounding separates: [`weld_rounding`].
+    #[default]
+    Rounding,
+    /// Those within a distance, in units of the positions: [`weld_within`]. What is thinner collapses.
+    Within(f32),
+}
+
+impl Weld {
+    /// Per vertex a representative, the lowest-numbered of those that are one vertex.
+    ///
+    /// # Panics
+    /// If a face refers to a vertex that does not exist.
+    pub fn representatives(self, positions: &[Vec3], faces: &[[u32; 3]]) -> Vec<u32> {
+        match self {
+            Self::Exact => weld_exact(positions),
+            Self::Rounding => weld_rounding(positions, faces),
+            Self::Within(tolerance) => weld_within(positions, tolerance),
+        }
+    }
+}
 
 /// Per vertex the lowest-numbered vertex at exactly the same position.
 ///
@@ -91,18 +122,31 @@ pub fn weld_within(positions: &[Vec3], tolerance: f32) -> Vec<u32> {
     if tolerance.is_nan() || tolerance <= 0.0 {
         return weld_exact(positions);
     }
-    let tolerance = f64::from(tolerance);
     let exact = weld_exact(positions);
+    let mut representative = exact.clone();
+    let unique = (0u32..).zip(&exact).filter(|&(vertex, &first)| vertex == first).map(|(vertex, _)| vertex);
+    join_nearest(positions, unique, tolerance, &mut representative);
+    for (vertex, &first) in exact.iter().enumerate() {
+        representative[vertex] = representative[first as usize];
+    }
+    representative
+}
+
+/// Assigns these vertices, given in ascending order and at distinct positions, their representatives among themselves.
+/// Returns whether any were joined.
+fn join_nearest(
+    positions: &[Vec3],
+    vertices: impl Iterator<Item = u32>,
+    tolerance: f32,
+    representative: &mut [u32],
+) -> bool {
+    let tolerance = f64::from(tolerance);
+    let mut any = false;
     let mut cells: std::collections::HashMap<[i64; 3], Vec<u32>> = std::collections::HashMap::new();
-    let mut representative: Vec<u32> = Vec::with_capacity(positions.len());
-    for (vertex, &twin) in exact.iter().enumerate() {
-        if twin as usize != vertex {
-            representative.push(representative[twin as usize]);
-            continue;
-        }
-        let position = positions[vertex].as_dvec3();
+    for vertex in vertices {
+        let position = positions[vertex as usize].as_dvec3();
         let cell = (position / tolerance).floor().to_array().map(|c| c as i64);
-        let mut nearest = (tolerance * tolerance, vertex as u32);
+        let mut nearest = (tolerance * tolerance, vertex);
         for step in 0..27i64 {
             let neighbour = [
                 cell[0].saturating_add(step % 3 - 1),
@@ -116,12 +160,13 @@ pub fn weld_within(positions: &[Vec3], tolerance: f32) -> Vec<u32> {
                 }
             }
         }
-        if nearest.1 as usize == vertex {
-            cells.entry(cell).or_default().push(vertex as u32);
+        if nearest.1 == vertex {
+            cells.entry(cell).or_default().push(vertex);
         }
-        representative.push(nearest.1);
+        any |= nearest.1 != vertex;
+        representative[vertex as usize] = nearest.1;
     }
-    representative
+    any
 }
 
 /// The bits of a position with −0.0 replaced by 0.0.

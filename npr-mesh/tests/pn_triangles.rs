@@ -54,7 +54,7 @@ fn octahedron() -> Model {
 }
 
 fn find(model: &Model) -> Edges {
-    let options = EdgeOptions { skip_redundant: false, ..EdgeOptions::default() };
+    let options = EdgeOptions::of_file();
     edges::find(&model.positions, &model.faces, &model.face_polygon, &[], &options)
 }
 

@@ -48,7 +48,7 @@ fn soup() -> impl Strategy<Value = Model> {
 
 fn find(model: &Model, polygons: bool, skip_redundant: bool) -> Edges {
     let face_polygon = if polygons { &model.face_polygon[..] } else { &[] };
-    let options = EdgeOptions { skip_redundant, ..EdgeOptions::default() };
+    let options = EdgeOptions { skip_redundant, ..EdgeOptions::of_file() };
     edges::find(&model.positions, &model.faces, face_polygon, &model.face_material, &options)
 }
 

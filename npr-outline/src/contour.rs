@@ -191,8 +191,8 @@ pub struct ContourEdges {
 /// A face of zero area takes the plane of the neighbour across its longest edge, so that a sliver between two faces
 /// does not hide their silhouette or crease.
 ///
-/// An edge between faces whose planes are the same numbers is a silhouette for no eye. It has no record unless it is
-/// another line.
+/// An edge between faces whose planes are the same numbers is a silhouette for no eye, and neither is a non-manifold edge
+/// with faces on all sides ([`Edge::is_surrounded`]). It has no record unless it is another line.
 ///
 /// Lines of the file ([`Model::lines`]) come last among those for every eye, without those of no length. One that runs
 /// along an edge has its faces, so that it is as visible as the edge would be at the bottom of a valley.
@@ -254,7 +254,7 @@ pub fn contour_edges(model: &Model, edges: &Edges, options: &ContourOptions) -> 
     // After flipping, two faces with different windings remain only on non-orientable surfaces.
     let fits = |edge: &Edge| {
         let [first, second] = edge.faces();
-        edge.kind() != EdgeKind::TwoFace || edge.wound_oppositely() == (is_flipped(first) != is_flipped(second))
+        edge.kind() == EdgeKind::Boundary || edge.wound_oppositely() == (is_flipped(first) != is_flipped(second))
     };
     let visibility = if options.file_edges { edge_visibility(model, edges) } else { Vec::new() };
     let line_by_angle = |edge: &Edge| match edge.kind() {
@@ -290,7 +290,8 @@ pub fn contour_edges(model: &Model, edges: &Edges, options: &ContourOptions) -> 
     // Faces in exactly one plane are on the same side of it for every eye.
     let is_flat = |edge: &Edge| {
         let [first, second] = edge.faces();
-        edge.kind() != EdgeKind::Boundary && planes[first as usize] == planes[second as usize] && fits(edge)
+        edge.is_surrounded()
+            || edge.kind() != EdgeKind::Boundary && planes[first as usize] == planes[second as usize] && fits(edge)
     };
     let is_kept = |edge: &Edge, line: u8| match options.silhouettes {
         _ if line == LineKind::Boundary as u8 => options.boundaries,
@@ -318,8 +319,10 @@ pub fn contour_edges(model: &Model, edges: &Edges, options: &ContourOptions) -> 
         let position = if is_always(line) { &mut next_always } else { &mut next };
         let [first, second] = edge.faces();
         let is_single = second == NO_FACE;
-        let negated = if is_single || !fits { SECOND_NEGATED } else { 0 };
         let cut_out = if any_cut_out && is_cut_out(first) && is_cut_out(second) { CUT_OUT } else { 0 };
+        // Twice the same plane is a silhouette for no eye.
+        let (second, fits) = if edge.is_surrounded() { (first, true) } else { (second, fits) };
+        let negated = if is_single || !fits { SECOND_NEGATED } else { 0 };
         let second = if is_single { first } else { second };
         let side = |face: u32| match single_sided.get(face as usize) {
             Some(true) if edge.kind() != EdgeKind::NonManifold => {

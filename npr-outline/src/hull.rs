@@ -39,6 +39,7 @@
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4, Vec3};
 use npr_mesh::edges::Edges;
 use npr_mesh::{AlphaMode, Model};
+use std::collections::HashSet;
 
 /// WGSL functions: no bindings, no entry points.
 pub const HULL_WGSL: &str = include_str!("hull.wgsl");
@@ -93,7 +94,7 @@ pub struct Hull {
 impl Hull {
     /// Gathers the faces of a model that are in the hull, and the normals along which their corners are displaced.
     ///
-    /// - Faces skipped as redundant are left out, and so are those of blended and cut-out materials, through which the
+    /// - Faces skipped as duplicates, or with two corners at one position, are left out, and so are those of blended and cut-out materials, through which the
     ///   hull behind them would be visible. They do not contribute to normals.
     /// - Faces without area contribute no normal, but are part of the hull: they fill the gap beside a T-junction.
     /// - Where the faces at a position cancel out, or have no area, the welded normal is zero. Shading normals that are
@@ -104,8 +105,16 @@ impl Hull {
     /// `edges`: of this model, whose vertices of equal positions and face normals are used. Temporarily takes 28 bytes
     /// for each vertex of the model.
     pub fn new(model: &Model, edges: &Edges, normals: HullNormals) -> Self {
+        let mut duplicates = HashSet::new();
+        if edges.skipped.contains(&true) {
+            duplicates.extend(edges.overlaps.iter().map(|pair| pair[1]));
+        }
+        let fills_gap = |face: usize| {
+            let [a, b, c] = model.faces[face].map(|vertex| edges.representative[vertex as usize]);
+            a != b && b != c && c != a && !duplicates.contains(&(face as u32))
+        };
         let is_in = |&(face, _): &(usize, &[u32; 3])| {
-            edges.skipped.get(face) != Some(&true)
+            (edges.skipped.get(face) != Some(&true) || fills_gap(face))
                 && model.material_of(face as u32).is_none_or(|material| material.alpha_mode == AlphaMode::Opaque)
         };
         let faces = || model.faces.iter().enumerate().filter(is_in);

@@ -33,7 +33,8 @@
 
 use crate::contour::outline_facing;
 use glam::{DVec3, DVec4, Vec3, Vec4};
-use npr_mesh::edges::{Edge, EdgeKind, Edges, NO_FACE};
+use npr_mesh::edges::{Edge, EdgeKind, EdgeOptions, Edges, FOLD_RAD, NO_FACE, runs_along};
+use npr_mesh::weld::Weld;
 use npr_mesh::{AlphaMode, Material, Model};
 
 /// In [`VolumeEdge::flags`]: there is a second face.
@@ -119,6 +120,17 @@ const SAME_DIRECTION: u32 = 1 << 30;
 /// A blended material with a lower alpha casts no shadow.
 const LEAST_CASTING_ALPHA: f32 = 0.5;
 
+/// How the edges for [`shadow_casters`] are best found: faces without area are kept, since volumes are closed exactly
+/// where all faces have their corners in common, and so are faces that overlap at an edge, each of which casts by itself.
+pub const EDGES: EdgeOptions = EdgeOptions {
+    skip_without_area: false,
+    merge_overlaps: false,
+    weld: Weld::Rounding,
+    skip_redundant: true,
+    share_junctions: true,
+    fold_rad: FOLD_RAD,
+};
+
 /// Whether a face can cast a shadow.
 fn casts(model: &Model, edges: &Edges, face: usize) -> bool {
     let lets_through =
@@ -130,8 +142,8 @@ fn casts(model: &Model, edges: &Edges, face: usize) -> bool {
 /// cannot.
 ///
 /// `edges`: of this model's triangles, found without polygons (an empty `face_polygon`), so that diagonals are among
-/// them: a polygon may be warped, and its triangles then face a light differently. Where the model's `face_material` is
-/// empty, all faces are opaque.
+/// them: a polygon may be warped, and its triangles then face a light differently. Best found with [`EDGES`]; every face
+/// that is not skipped must be at all of its edges. Where the model's `face_material` is empty, all faces are opaque.
 pub fn shadow_casters(model: &Model, edges: &Edges) -> ShadowCasters {
     let origin = model.bounds().map_or(Vec3::ZERO, |(low, high)| low.midpoint(high));
     let casting: Vec<bool> = (0..model.faces.len()).map(|face| casts(model, edges, face)).collect();
@@ -145,14 +157,15 @@ pub fn shadow_casters(model: &Model, edges: &Edges) -> ShadowCasters {
     let mut number = vec![NO_FACE; model.faces.len()];
     for face in (0..model.faces.len()).filter(|&face| casting[face]) {
         number[face] = casters.faces.len() as u32;
-        casters.faces.push(model.faces[face]);
+        // The corners that the edges have, so that caps and sides meet exactly.
+        casters.faces.push(model.faces[face].map(|v| edges.representative[v as usize]));
         casters.planes.push(plane(model.faces[face].map(|v| model.positions[v as usize]), origin));
         casters.open_faces.push(open[face]);
     }
     casters.open = casters.open_faces.contains(&true);
     let runs = |face: u32, [from, to]: [u32; 2]| {
         let corners = model.faces[face as usize].map(|v| edges.representative[v as usize]);
-        (0..3).any(|side| [corners[side], corners[(side + 1) % 3]] == [from, to])
+        runs_along(&model.positions, corners, [from, to])
     };
     casters.edges.reserve(edges.edges.len());
     let single = |face: u32, [from, to]: [u32; 2]| CastingEdge {

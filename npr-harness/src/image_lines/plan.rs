@@ -303,7 +303,9 @@ fn face_regions(
                     && edges.dihedral_rad(edge).is_some_and(|angle| angle <= crease_angle_rad)
             };
             let smooth = edges.edges.iter().filter(|edge| is_smooth(edge)).map(Edge::faces);
-            let pairs: Vec<[u32; 2]> = smooth.chain(same_polygon(&model.face_polygon)).collect();
+            // Of faces at one place only one has edges.
+            let overlaps = edges.overlaps.iter().copied();
+            let pairs: Vec<[u32; 2]> = smooth.chain(same_polygon(&model.face_polygon)).chain(overlaps).collect();
             let mut patches = region_of_patches(faces, &pairs)?;
             for ((patch, &material), mesh) in patches.iter_mut().zip(&model.face_material).zip(meshes()) {
                 if !matches!(line_kinds[material as usize], LineKind::Normals | LineKind::Regions) {

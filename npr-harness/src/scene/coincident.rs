@@ -11,6 +11,7 @@ use super::object::{Object, Unseparated};
 use glam::{DAffine3, DVec3, Vec2, Vec4};
 use npr_mesh::Model;
 use npr_mesh::coplanar::{ROUNDING, Separated, separate};
+use npr_mesh::weld::rounding_tolerance;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -49,7 +50,13 @@ impl Scene {
             let unseparated = Unseparated { mesh: object.mesh, scene_from_mesh: *object.scene_from_mesh() };
             let own = self.file_meshes[object.mesh].model().clone().transformed(object.scene_from_mesh());
             let own = with_pieces(own, &pieces[number], &model);
-            let mesh = Arc::new(Mesh::of_separated(own));
+            // Rounding in scene space may be coarser than in the mesh's own.
+            let matrix = unseparated.scene_from_mesh.matrix3;
+            let scale =
+                [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(DVec3::length).into_iter().fold(0.0, f64::max);
+            let of_file = f64::from(self.file_meshes[object.mesh].edges().tolerance) * scale;
+            let tolerance = (of_file as f32).max(rounding_tolerance(&own.positions, &own.faces));
+            let mesh = Arc::new(Mesh::of_separated(own, tolerance));
             // The mesh of the file makes way if no other object has it.
             let at = unseparated.mesh;
             let place = if taken[number] || std::mem::replace(&mut replaced[at], true) {

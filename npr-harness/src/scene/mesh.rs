@@ -5,6 +5,7 @@ use crate::derived::Derived;
 use crate::rays::RayCaster;
 use glam::{DVec3, Vec3};
 use npr_mesh::edges::{self, EdgeKind, EdgeOptions, Edges};
+use npr_mesh::weld::{Weld, weld_within};
 use npr_mesh::{AlphaMode, Model, coplanar};
 use std::borrow::Cow;
 use std::sync::OnceLock;
@@ -27,10 +28,14 @@ pub struct Mesh {
 impl Mesh {
     /// Finds a model's edges and prepares it. Faces without material get [`npr_mesh::Material::default`]. Of faces that
     /// overlap in one plane those are kept that are seen ([`npr_mesh::coplanar`]).
-    pub fn new(mut model: Model) -> Self {
+    ///
+    /// `weld`: which vertices are one vertex for edges, before the positions are moved and scaled; a distance is in file
+    /// units.
+    pub fn new(mut model: Model, weld: Weld) -> Self {
         model.fill_face_material();
         super::opacity::settle(&mut model);
-        let bounds = model.bounds();
+        let mut edges = find_edges(&model, weld);
+        let bounds = drawn_bounds(&model, &edges);
         let (origin, scale) =
             bounds.map_or((DVec3::ZERO, 1.0), |(low, high)| normalization(low.as_dvec3(), high.as_dvec3()));
         if origin != DVec3::ZERO || scale != 1.0 {
@@ -40,13 +45,23 @@ impl Mesh {
                 *position = if here.is_finite() { here } else { Vec3::ZERO };
             }
         }
-        let model = coplanar::separate(&model).map_or(model, |separated| separated.model);
-        Self { origin, scale, ..Self::of_separated(model) }
+        edges.tolerance = (f64::from(edges.tolerance) * scale) as f32;
+        let mesh = match coplanar::separate(&model) {
+            Some(separated) => Self::of_separated(separated.model, edges.tolerance),
+            None => Self::with_cuts(model, edges),
+        };
+        Self { origin, scale, ..mesh }
     }
 
-    /// Finds the edges and cut lines of a model that needs no normalization, and whose coplanar faces are separated.
-    pub(super) fn of_separated(mut model: Model) -> Self {
-        let mut edges = find_edges(&model);
+    /// Builds a mesh from a model that needs no normalization, and whose coplanar faces are separated. `tolerance`: the
+    /// distance within which its vertices are one vertex for edges.
+    pub(super) fn of_separated(model: Model, tolerance: f32) -> Self {
+        let welded = weld_within(&model.positions, tolerance);
+        let edges = find_edges_welded(&model, welded, tolerance);
+        Self::with_cuts(model, edges)
+    }
+
+    fn with_cuts(mut model: Model, mut edges: Edges) -> Self {
         let cut = super::cut::cut_lines(&mut model);
         edges.representative.extend(edges.representative.len() as u32..model.positions.len() as u32);
         Self { cut, ..Self::with_edges(model, edges) }
@@ -55,11 +70,11 @@ impl Mesh {
     /// Builds a mesh from a model that needs no normalization, and its edges.
     pub(super) fn with_edges(model: Model, edges: Edges) -> Self {
         let closed = !edges.edges.is_empty()
-            && edges.skipped.is_empty()
+            && edges.overlaps.is_empty()
             && edges.edges.iter().all(|edge| edge.kind() == EdgeKind::TwoFace && !edge.wound_oppositely())
             && signed_volume(&model) > 0.0;
         Self {
-            bounds: model.bounds(),
+            bounds: drawn_bounds(&model, &edges),
             model,
             origin: DVec3::ZERO,
             scale: 1.0,
@@ -116,7 +131,7 @@ impl Mesh {
         self.closed
     }
 
-    /// The bounding box of all faces and lines; `None` without either.
+    /// The bounding box of all lines and faces, if any has an area without those that have none; `None` without either.
     pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
         self.bounds
     }
@@ -126,27 +141,24 @@ impl Mesh {
         self.rays.get_or_init(|| RayCaster::new(&self.model.positions, &self.model.faces))
     }
 
-    /// Per face: a bit mask of its boundary edges; bit i stands for the side from corner i to the next.
+    /// Per face: a bit mask of its boundary edges; bit i stands for the side from corner i to the next, all or a part of
+    /// which is a boundary.
     pub fn boundary_sides(&self) -> &[u8] {
         self.boundary_sides.get_or_init(|| {
             let mut sides = vec![0; self.model.faces.len()];
             for edge in self.edges.edges.iter().filter(|edge| edge.kind() == EdgeKind::Boundary) {
                 let face = edge.faces()[0] as usize;
                 let corners = self.model.faces[face].map(|v| self.edges.representative[v as usize]);
-                for side in 0..3 {
-                    if edge.ends.contains(&corners[side]) && edge.ends.contains(&corners[(side + 1) % 3]) {
-                        sides[face] |= 1 << side;
-                    }
-                }
+                sides[face] |= 1 << edges::side_of(&self.model.positions, corners, edge.ends).0;
             }
             sides
         })
     }
 
-    /// The positions of all vertices used by faces or lines, each once.
+    /// The positions of all vertices used by faces with an area or by lines, each once; of all faces if none has an area.
     pub fn corners(&self) -> impl Iterator<Item = Vec3> + Clone + '_ {
         let mut used = vec![false; self.model.positions.len()];
-        for &vertex in self.model.faces.iter().flatten().chain(self.model.lines.iter().flatten()) {
+        for vertex in drawn_vertices(&self.model, &self.edges) {
             used[vertex as usize] = true;
         }
         self.model.positions.iter().zip(used).filter_map(|(&position, used)| used.then_some(position))
@@ -160,7 +172,7 @@ impl Mesh {
     /// Whether a cut-out face may be at the place of another face.
     pub(crate) fn has_layers(&self) -> bool {
         self.model.materials.iter().any(|m| matches!(m.alpha_mode, AlphaMode::Mask { .. }))
-            && (!self.edges.further_faces.is_empty() || self.edges.skipped.contains(&true))
+            && !(self.edges.further_faces.is_empty() && self.edges.overlaps.is_empty())
     }
 
     /// Data that the techniques derive from the mesh and cache.
@@ -170,9 +182,34 @@ impl Mesh {
 }
 
 /// Finds the edges of a model with the options used for drawing.
-pub(super) fn find_edges(model: &Model) -> Edges {
+pub(super) fn find_edges(model: &Model, weld: Weld) -> Edges {
     let Model { positions, faces, face_polygon, face_material, .. } = model;
-    edges::find(positions, faces, face_polygon, face_material, &EdgeOptions::default())
+    edges::find(positions, faces, face_polygon, face_material, &EdgeOptions { weld, ..EdgeOptions::default() })
+}
+
+/// As [`find_edges`], of a placed copy of a mesh whose vertices are welded. `tolerance`: see [`Edges::tolerance`].
+pub(super) fn find_edges_welded(model: &Model, representative: Vec<u32>, tolerance: f32) -> Edges {
+    let Model { positions, faces, face_polygon, face_material, .. } = model;
+    let options = EdgeOptions::default();
+    edges::find_welded(positions, faces, face_polygon, face_material, representative, tolerance, &options)
+}
+
+/// The vertices that are drawn: those of lines and of the faces with an area, possibly repeated. Of all faces, if none has
+/// an area.
+fn drawn_vertices<'a>(model: &'a Model, edges: &'a Edges) -> impl Iterator<Item = u32> + use<'a> {
+    let is_skipped = |face: usize| edges.skipped.get(face) == Some(&true);
+    let has_area = (0..model.faces.len()).any(|face| !is_skipped(face));
+    let faces = model.faces.iter().enumerate().filter(move |&(face, _)| !has_area || !is_skipped(face));
+    faces.flat_map(|(_, face)| *face).chain(model.lines.iter().flatten().copied())
+}
+
+/// The bounding box of what is drawn; `None` without faces and lines.
+fn drawn_bounds(model: &Model, edges: &Edges) -> Option<(Vec3, Vec3)> {
+    if edges.skipped.is_empty() {
+        return model.bounds();
+    }
+    let corners = drawn_vertices(model, edges).map(|vertex| model.positions[vertex as usize]);
+    corners.map(|corner| (corner, corner)).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
 }
 
 /// Models whose half diagonal is outside 2^-OCTAVES..=2^OCTAVES are rescaled.

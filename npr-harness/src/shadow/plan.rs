@@ -6,8 +6,9 @@ use crate::ground::GroundPlan;
 use crate::rays::Hit;
 use crate::scene::{Mesh, Scene};
 use glam::DVec4;
-use npr_mesh::edges::{EdgeOptions, find};
-use npr_outline::shadow_volume::{ShadowCasters, shadow_casters};
+use npr_mesh::Model;
+use npr_mesh::edges::find_welded;
+use npr_outline::shadow_volume::{EDGES, ShadowCasters, shadow_casters};
 use std::convert::Infallible;
 use std::sync::Arc;
 
@@ -78,12 +79,13 @@ struct CastersKey;
 /// The faces and edges of a mesh that cast shadows.
 pub fn casters(mesh: &Mesh) -> Arc<ShadowCasters> {
     let found = mesh.derived().get(CastersKey, || {
-        let model = mesh.model();
-        if model.face_polygon.is_empty() {
-            return Ok::<_, Infallible>(shadow_casters(model, mesh.edges()));
+        let (model, drawn) = (mesh.model(), mesh.edges());
+        if model.face_polygon.is_empty() && drawn.overlaps.is_empty() && drawn.skipped.is_empty() {
+            return Ok::<_, Infallible>(shadow_casters(model, drawn));
         }
-        // Includes the diagonals of polygons, which need not be planar.
-        let edges = find(&model.positions, &model.faces, &[], &[], &EdgeOptions::default());
+        // Includes the diagonals of polygons, which need not be planar, and all faces at an edge.
+        let Model { positions, faces, .. } = model;
+        let edges = find_welded(positions, faces, &[], &[], drawn.representative.clone(), drawn.tolerance, &EDGES);
         Ok(shadow_casters(model, &edges))
     });
     let Ok(casters) = found;

@@ -280,7 +280,7 @@ fn line_kind(scene: &Scene, number: u32, planes: &FacePlanes, eye: DVec4, crease
         return Some(LineKind::Boundary);
     }
     let [plane0, plane1] = wound_alike(edge, &planes.of_sides, [first, second]);
-    if plane0.faces(eye) != plane1.faces(eye) {
+    if plane0.faces(eye) != plane1.faces(eye) && !edge.is_surrounded() {
         return Some(LineKind::Silhouette);
     }
     is_crease(scene, number, planes, crease_angle_rad).then_some(LineKind::Crease)
@@ -295,7 +295,7 @@ pub fn scene_edge(scene: &Scene, number: u32) -> &Edge {
 /// The planes of an edge's two faces, the second flipped to match the winding of the first.
 fn wound_alike(edge: &Edge, planes: &[Plane], [first, second]: [u32; 2]) -> [Plane; 2] {
     let (plane0, mut plane1) = (planes[first as usize], planes[second as usize]);
-    if edge.kind() == EdgeKind::TwoFace && edge.wound_oppositely() {
+    if edge.wound_oppositely() {
         plane1.normal = -plane1.normal;
     }
     [plane0, plane1]
@@ -338,7 +338,10 @@ impl<'a> Visibility<'a> {
     fn visible_pieces(&self, number: u32, kind: LineKind, least_step: f64) -> Vec<TrueSegment> {
         let edge = scene_edge(self.scene, number);
         let ends = edge.ends.map(|v| self.scene.single().model().positions[v as usize].as_dvec3());
-        let own = |face: u32| self.is_own(face, edge);
+        let further = &self.scene.single().edges().further_faces;
+        let start = further.partition_point(|of| of.0 < number);
+        let further = further[start..].iter().take_while(|of| of.0 == number);
+        let own = |face: u32| self.is_own(face, edge) || further.clone().any(|of| self.same_polygon(of.1, face));
         let seen =
             |point| self.sees_past(point, own) && (least_step <= 0.0 || self.step_behind(point, own) >= least_step);
         let pieces = self.seen_pieces(ends, seen);

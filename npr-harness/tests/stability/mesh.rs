@@ -22,14 +22,15 @@ fn executors_show_the_same_of_faces_in_one_plane() {
 }
 
 #[test]
-fn seams_with_a_t_junction_are_drawn_as_lines() {
-    let found = holds("t-junctions", &["lines from edges"]).expect("on the CPU");
-    near_prediction(&found, "lines from edges", 1.01);
+fn seams_with_t_junctions_are_not_drawn_and_as_they_are_in_the_file_they_are_open() {
+    let curves = ["lines from edges", "edges as they are in the file"];
+    let found = holds("t-junctions", &curves).expect("on the CPU");
+    near_prediction(&found, curves[1], 1.01);
 }
 
 #[test]
 fn seams_open_at_a_gap_of_the_tolerance_and_exactly_welded_ones_at_any_gap() {
-    let curves = ["within a tolerance", "exactly, as for drawing"];
+    let curves = ["within a tolerance", "within rounding, as for drawing", "exactly"];
     let found = holds("weld-seams", &curves).expect("on the CPU");
     for method in curves {
         near_prediction(&found, method, 1.02);
@@ -53,5 +54,5 @@ fn opposite_windings_misjudge_no_edge_by_the_rule_and_half_of_them_without_it() 
 fn faces_without_area_change_nothing_and_thin_ones_take_creases_away() {
     let curves = ["two equal corners", "three points nearly on a line"];
     let found = holds("zero-area-faces", &curves).expect("on the CPU");
-    near_prediction(&found, curves[1], 2.0);
+    near_prediction(&found, curves[1], 1.1);
 }

@@ -36,6 +36,8 @@ pub(super) const NON_MANIFOLD: u32 = 1 << 30;
 /// A flag in the first element of [`Edge::packed`].
 pub(super) const TWO_MATERIALS: u32 = 1 << 31;
 /// A flag in the second element of [`Edge::packed`].
+pub(super) const SURROUNDED: u32 = 1 << 30;
+/// A flag in the second element of [`Edge::packed`].
 pub(super) const WOUND_OPPOSITELY: u32 = 1 << 31;
 
 impl Edge {
@@ -77,6 +79,14 @@ impl Edge {
     #[inline]
     pub fn wound_oppositely(&self) -> bool {
         self.packed[1] & WOUND_OPPOSITELY != 0
+    }
+
+    /// Whether the faces of a non-manifold edge lie on all sides of it, so that for no eye all of them are on one side of
+    /// the edge: it is never a silhouette. Known if the edges were found with
+    /// [`EdgeOptions::merge_overlaps`](super::EdgeOptions::merge_overlaps).
+    #[inline]
+    pub fn is_surrounded(&self) -> bool {
+        self.packed[1] & SURROUNDED != 0
     }
 
     /// Whether faces of different materials meet at the edge.

@@ -20,8 +20,10 @@ pub(super) struct Unique {
     pub edges: Vec<Edge>,
     /// (edge, face) for third and further faces, sorted by edge.
     pub further_faces: Vec<(u32, u32)>,
-    /// Duplicates of earlier faces, and faces with two corners at one position; possibly repeated.
-    pub redundant: Vec<u32>,
+    /// Faces with two corners at one position, ascending.
+    pub collapsed: Vec<u32>,
+    /// Pairs of a face and the next one with the same three corners; possibly repeated.
+    pub twins: Vec<[u32; 2]>,
 }
 
 /// Finds the unique edges of the faces that are not skipped.
@@ -83,7 +85,7 @@ fn search(
         total += std::mem::replace(start, total);
     }
     let mut sides = vec![0; total as usize];
-    let mut redundant = Vec::new();
+    let mut collapsed = Vec::new();
     for (number, &face) in (0u32..).zip(faces) {
         if skipped(number) {
             continue;
@@ -91,7 +93,7 @@ fn search(
         let [a, b, c] = corners(face);
         let [low, middle, high] = ascending([a, b, c]);
         if low == middle || middle == high {
-            redundant.push(number);
+            collapsed.push(number);
         }
         // Whether the face traverses its corners in the order lowest, middle, highest.
         let up = u32::from(a < b) + u32::from(b < c) + u32::from(c < a) == 2;
@@ -106,7 +108,7 @@ fn search(
 
     // A closed surface has three edges per two faces.
     let edges = Vec::with_capacity(faces.len() + faces.len() / 2 + faces.len() / 32 + 16);
-    let mut found = Unique { edges, further_faces: Vec::new(), redundant };
+    let mut found = Unique { edges, further_faces: Vec::new(), collapsed, twins: Vec::new() };
     let mut begin = 0;
     for (low, end) in (0u32..).zip(starts) {
         let sides = &mut sides[begin..end as usize];
@@ -189,13 +191,12 @@ fn gather(low: u32, sides: &mut [Side], found: &mut Unique, corners: impl Fn(u32
         found.edges.push(edge_of(low, high, &met));
         found.further_faces.extend(met.iter().skip(2).map(|&(face, _)| (number, face)));
         if met.len() > 1 {
-            // Of faces with the same corners at an edge, all but the first are redundant, and so is a face that
-            // occurs twice because two of its corners are at one position.
+            // A face that occurs twice, because two of its corners are at one position, is no twin of itself.
             duplicates.clear();
             duplicates.extend(met.iter().map(|&(face, _)| (ascending(corners(face)), face)));
             duplicates.sort_unstable();
-            let twins = duplicates.windows(2).filter(|pair| pair[0].0 == pair[1].0);
-            found.redundant.extend(twins.map(|pair| pair[1].1));
+            let twins = duplicates.windows(2).filter(|pair| pair[0].0 == pair[1].0 && pair[0].1 != pair[1].1);
+            found.twins.extend(twins.map(|pair| [pair[0].1, pair[1].1]));
         }
     }
 }

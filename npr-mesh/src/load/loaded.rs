@@ -2,6 +2,7 @@
 
 use super::far;
 use super::options::CREASE_ANGLE_RAD;
+use crate::weld::Weld;
 use crate::{AlphaMode, Material, Model, Object, Texture, Warning, Wrap, normals};
 use glam::{BVec3, DAffine3, DVec3, Vec3};
 use std::collections::HashMap;
@@ -16,6 +17,8 @@ pub struct Loaded {
     pub objects: Vec<Object>,
     /// Distinct warnings in the order of their first occurrence.
     pub warnings: Vec<Warning>,
+    /// Which vertices are to be one vertex for edges, as [`LoadOptions::weld`](crate::LoadOptions::weld).
+    pub weld: Weld,
 }
 
 impl Loaded {

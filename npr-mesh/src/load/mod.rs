@@ -112,11 +112,12 @@ fn load_from(format: Format, bytes: Vec<u8>, external: &External, options: &Load
     }
     let mut warnings = Warning::counted(warnings);
     warnings.extend(report(&meshes).into_iter().map(Warning::from));
+    let weld = options.weld;
     for (number, mesh) in meshes.iter_mut().enumerate() {
         let groups = smoothing.get(number).map_or(&[][..], Vec::as_slice);
-        normals::fill_missing_in_groups(mesh, options.normal_crease_angle_rad, groups);
+        normals::fill_missing_in_groups(mesh, options.normal_crease_angle_rad, groups, weld);
     }
-    Ok(Loaded { meshes, objects, warnings })
+    Ok(Loaded { meshes, objects, warnings, weld })
 }
 
 /// Warns about missing normals and degenerate faces, for any format. Counts each mesh once.

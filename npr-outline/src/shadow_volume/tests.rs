@@ -1,5 +1,5 @@
 use super::*;
-use npr_mesh::edges::{EdgeOptions, find};
+use npr_mesh::edges::find;
 use npr_mesh::{Material, embedded};
 use proptest::prelude::*;
 
@@ -54,7 +54,7 @@ fn crossing(corners: [DVec4; 3], inside: DVec3, outside: DVec3) -> i32 {
 }
 
 fn casters_of(model: &Model) -> ShadowCasters {
-    let edges = find(&model.positions, &model.faces, &[], &model.face_material, &EdgeOptions::default());
+    let edges = find(&model.positions, &model.faces, &[], &model.face_material, &EDGES);
     shadow_casters(model, &edges)
 }
 

@@ -5,6 +5,7 @@ use crate::terminal::spinner;
 use clap::Args;
 use npr_harness::error::{HarnessError, PathRole};
 use npr_harness::suggest::nearest;
+use npr_mesh::weld::Weld;
 use npr_mesh::{Limits, LoadOptions, Loaded};
 use std::path::{Path, PathBuf};
 
@@ -31,6 +32,11 @@ pub struct Loading {
     /// instances, displacements, texels or texels-in-all, and how many at most. May be repeated.
     #[arg(long, value_name = "NAME=NUMBER", value_parser = parse_limit)]
     limit: Vec<(String, u64)>,
+    /// Take vertices within this distance, in units of the file, for one vertex where edges and missing normals are found;
+    /// 0: only those at equal positions. By default those that only the rounding of coordinates separates, and for
+    /// `inspect` those at equal positions.
+    #[arg(long, value_name = "DISTANCE", value_parser = parse_weld)]
+    weld: Option<f32>,
 }
 
 impl Loading {
@@ -45,6 +51,11 @@ impl Loading {
         }
     }
 
+    /// The rule of `--weld`, if given.
+    pub fn weld(&self) -> Option<Weld> {
+        self.weld.map(|distance| if distance > 0.0 { Weld::Within(distance) } else { Weld::Exact })
+    }
+
     pub fn options(&self) -> LoadOptions {
         let mut limits = Limits::default();
         for (name, most) in &self.limit {
@@ -52,7 +63,12 @@ impl Loading {
                 *limit = *most;
             }
         }
-        LoadOptions { limits, asset_root: self.asset_root.clone(), ..LoadOptions::default() }
+        LoadOptions {
+            limits,
+            asset_root: self.asset_root.clone(),
+            weld: self.weld().unwrap_or_default(),
+            ..LoadOptions::default()
+        }
     }
 }
 
@@ -80,6 +96,11 @@ fn parse_limit(text: &str) -> Result<(String, u64), String> {
     }
     let number = number.parse().map_err(|_| format!("{number:?} is not a whole number"))?;
     Ok((name.to_owned(), number))
+}
+
+fn parse_weld(text: &str) -> Result<f32, String> {
+    let distance: f32 = text.parse().map_err(|_| format!("{text:?} is not a number"))?;
+    if distance.is_finite() && distance >= 0.0 { Ok(distance) } else { Err("a distance is 0 or more".into()) }
 }
 
 pub fn load(path: &Path, loading: &Loading) -> Result<Loaded, HarnessError> {

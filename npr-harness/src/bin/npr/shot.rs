@@ -148,13 +148,13 @@ impl ShotOptions {
         };
         warn(&loaded.warnings);
         let start = Instant::now();
-        let Loaded { mut meshes, objects, warnings } = loaded;
+        let Loaded { mut meshes, objects, warnings, weld } = loaded;
         if self.segments > 1 {
             for mesh in &mut meshes {
                 *mesh = pn_triangles::tessellate(mesh, self.segments)?;
             }
         }
-        let mut scene = Scene::with_objects(meshes, objects)?;
+        let mut scene = Scene::with_objects_welded(meshes, objects, weld)?;
         // Meshes may have the same to say.
         let mut of_edges: Vec<Warning> = Vec::new();
         for text in scene.meshes().iter().flat_map(|mesh| mesh.edges().warnings()) {

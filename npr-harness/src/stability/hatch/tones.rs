@@ -35,7 +35,7 @@ fn picture(encoding: HatchEncoding, tone: f64) -> Result<Image, HarnessError> {
 }
 
 fn measure(_: &Executor) -> Result<Finding, HarnessError> {
-    let view = PatchView { tilted: Tilted::Camera, tilt_deg: 0.0, ..Framing::default() };
+    let view = PatchView { tilted: Tilted::Camera, tilt_deg: 0.0, distance: 1.0 };
     let mut curves = Vec::new();
     for (name, encoding) in [("six tones", HatchEncoding::SixTones), ("thresholds", HatchEncoding::Thresholds)] {
         let shade = black(&strokes(1), encoding, HatchMapping::Planes, LINEAR, TILE);

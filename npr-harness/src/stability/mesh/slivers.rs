@@ -26,7 +26,7 @@ pub(super) const SWEEP: Sweep = Sweep {
 };
 
 /// Heights of the slivers, relative to the prism's height of 2.
-const HEIGHTS: [f64; 12] = [0.0, 1e-12, 1e-10, 1e-9, 3e-9, 1e-8, 3e-8, 1e-7, 3e-7, 1e-6, 1e-4, 1e-3];
+const HEIGHTS: [f64; 12] = [0.0, 1e-12, 1e-10, 1e-9, 1e-8, 1e-7, 3e-7, 4.5e-7, 5e-7, 1e-6, 1e-4, 1e-3];
 const SIZE: (u32, u32) = (104, 150);
 /// Six sides meet at 60°, above the crease angle of 45°.
 const SIDES: u32 = 6;
@@ -103,7 +103,7 @@ fn measure(_: &Executor) -> Result<Finding, HarnessError> {
     let none = (0.0, "a face without area has no influence");
     let of_two = worst(&with_two);
     let opens = first_over(&with_middle, 0.001);
-    let least = (0.25 * 2f64.powi(-24), "a step of f32 below 1 over the prism's height: less is rounded to no area");
+    let least = (4.0 * f64::from(f32::EPSILON), "8 units in the last place of 1, half of the prism's height");
     let curves = vec![
         curve(
             "two equal corners",
@@ -122,7 +122,7 @@ fn measure(_: &Executor) -> Result<Finding, HarnessError> {
                 "least height of a face, relative to the model, that takes a crease away",
                 opens,
                 Some(least),
-                Bound::AtLeast(5e-9),
+                Bound::AtLeast(4.5e-7),
             )
             .mend_by("treat what is thinner than any pixel like a face of no area"),
         ),

@@ -10,13 +10,14 @@ use crate::style::style;
 use crate::view::View;
 use glam::Vec3;
 use npr_mesh::edges::{EdgeKind, EdgeOptions, find};
+use npr_mesh::weld::{Weld, rounding_tolerance};
 use npr_mesh::{Model, embedded};
 
 pub(super) const SEAMS: Sweep = Sweep {
     name: "weld-seams",
     technique: "lines from edges",
-    what: "A seam whose sides differ by rounding is drawn as two boundaries, unless its vertices are welded within a \
-           tolerance.",
+    what: "A seam whose sides differ by more than the tolerance is drawn as two boundaries. For drawing the tolerance is the \
+           rounding of the mesh's largest coordinate; only equal positions are always one vertex.",
     needs_adapter: false,
     run: seams,
 };
@@ -54,8 +55,8 @@ fn strips(gap: f32) -> Model {
 }
 
 /// The share of the seam's sides that are boundaries.
-fn open_share(model: &Model, weld_tolerance: f32) -> f64 {
-    let options = EdgeOptions { weld_tolerance, ..EdgeOptions::default() };
+fn open_share(model: &Model, weld: Weld) -> f64 {
+    let options = EdgeOptions { weld, ..EdgeOptions::default() };
     let found = find(&model.positions, &model.faces, &model.face_polygon, &[], &options);
     let in_seam = |vertex: u32| model.positions[vertex as usize].x.abs() < 0.5;
     let open =
@@ -65,31 +66,43 @@ fn open_share(model: &Model, weld_tolerance: f32) -> f64 {
 
 fn seams(_: &Executor) -> Result<Finding, HarnessError> {
     let gaps = RELATIVE.map(|gap| (gap, strips(gap as f32 * TOLERANCE)));
-    let welded: Vec<(f64, f64)> = gaps.iter().map(|(gap, model)| (*gap, open_share(model, TOLERANCE))).collect();
-    let exact: Vec<(f64, f64)> = gaps.iter().map(|(gap, model)| (*gap, open_share(model, 0.0))).collect();
-    let least = open_share(&strips(f32::from_bits(1)), 0.0);
-    let opens = first_over(&welded, 0.5);
+    let welded: Vec<(f64, f64)> =
+        gaps.iter().map(|(gap, model)| (*gap, open_share(model, Weld::Within(TOLERANCE)))).collect();
+    let exact: Vec<(f64, f64)> = gaps.iter().map(|(gap, model)| (*gap, open_share(model, Weld::Exact))).collect();
+    let rounding = {
+        let Model { positions, faces, .. } = strips(0.0);
+        rounding_tolerance(&positions, &faces)
+    };
+    let of_rounding = |gap: f64| (gap, open_share(&strips(gap as f32 * rounding), Weld::Rounding));
+    let rounded: Vec<(f64, f64)> = RELATIVE.map(of_rounding).to_vec();
+    let least = open_share(&strips(f32::from_bits(1)), Weld::Exact);
+    let (opens, rounded_opens) = (first_over(&welded, 0.5), first_over(&rounded, 0.5));
+    let joins = Some((1.0, "a vertex joins a representative at most the tolerance away"));
     let curves = vec![
         curve(
             "within a tolerance",
             welded,
+            limit_at("gap at which a seam opens, relative to the tolerance", opens, joins, Bound::AtLeast(0.99)),
+        ),
+        curve(
+            "within rounding, as for drawing",
+            rounded,
             limit_at(
-                "gap at which a seam opens, relative to the tolerance",
-                opens,
-                Some((1.0, "a vertex joins a representative at most the tolerance away")),
+                "gap at which a seam opens, relative to 8 units in the last place of the largest coordinate",
+                rounded_opens,
+                joins,
                 Bound::AtLeast(0.99),
             ),
         ),
         curve(
-            "exactly, as for drawing",
+            "exactly",
             exact,
             limit(
                 "share of a seam that opens at the smallest gap of f32",
                 least,
                 Some((1.0, "only equal positions are one vertex")),
                 Bound::AtMost(1.0),
-            )
-            .mend_by("weld within the mesh's own rounding"),
+            ),
         ),
     ];
     let scene = Scene::new(strips(0.25 * TOLERANCE));
@@ -99,7 +112,7 @@ fn seams(_: &Executor) -> Result<Finding, HarnessError> {
         parameter: Axis::logarithmic("gap, relative to the tolerance", ""),
         error: Axis::linear("share of the seam that is a boundary", ""),
         curves,
-        pictures: vec![("a seam with a gap of 1/8192 of the size, welded exactly".into(), picture)],
+        pictures: vec![("a seam with a gap of 1/8192 of the size".into(), picture)],
     })
 }
 
@@ -113,7 +126,7 @@ fn plate(thickness: f32) -> Model {
 fn plates(_: &Executor) -> Result<Finding, HarnessError> {
     let lost = |thickness: f64| {
         let Model { positions, faces, face_polygon, .. } = plate(thickness as f32 * TOLERANCE);
-        let options = EdgeOptions { weld_tolerance: TOLERANCE, ..EdgeOptions::default() };
+        let options = EdgeOptions { weld: Weld::Within(TOLERANCE), ..EdgeOptions::default() };
         let found = find(&positions, &faces, &face_polygon, &[], &options);
         let kept = found.edges.iter().filter(|edge| edge.kind() == EdgeKind::TwoFace).count();
         1.0 - kept as f64 / 12.0
@@ -129,7 +142,7 @@ fn plates(_: &Executor) -> Result<Finding, HarnessError> {
     // The edges as they would be drawn: those of the plate whose vertices are welded.
     let lines = style("lines").expect("a style of this crate");
     let mut collapsed = plate(0.2);
-    let options = EdgeOptions { weld_tolerance: 0.21, ..EdgeOptions::default() };
+    let options = EdgeOptions { weld: Weld::Within(0.21), ..EdgeOptions::default() };
     let found = find(&collapsed.positions, &collapsed.faces, &collapsed.face_polygon, &[], &options);
     collapsed.faces.iter_mut().flatten().for_each(|vertex| *vertex = found.representative[*vertex as usize]);
     let mut images = Vec::new();
