@@ -36,7 +36,7 @@ fn camera(scene: &Scene, yaw_deg: f64, pitch_deg: f64) -> Camera {
         yaw_rad: f64::to_radians(yaw_deg),
         pitch_rad: f64::to_radians(pitch_deg),
         fov_y_rad: Some(f64::to_radians(70.0)),
-        distance: 1.0,
+        ..Framing::default()
     };
     Camera::framed(scene.corners(), f64::from(SIZE.0) / f64::from(SIZE.1), &framing)
 }

@@ -115,8 +115,8 @@ fn options_alpha_and_formats_of_textures() {
         for (u, v) in [(0.125, 0.125), (0.375, 0.125), (0.875, 0.375), (0.625, 0.875), (0.375, 0.625), (0.875, 0.875)] {
             assert_eq!(at(0, u, v), quarter(2.0 * u, 2.0 * v), "repeated twice, at {u} {v}");
             assert_eq!(at(1, u, v), quarter(u + 0.25, v), "shifted, at {u} {v}");
-            for number in 3..6 {
-                assert_eq!(at(number, u, v), quarter(u, v), "{}, at {u} {v}", maps[number]);
+            for (number, map) in maps.iter().enumerate().skip(3) {
+                assert_eq!(at(number, u, v), quarter(u, v), "{map}, at {u} {v}");
             }
         }
         for (u, v) in [(0.06, 0.06), (0.94, 0.06), (0.06, 0.94), (0.94, 0.94)] {

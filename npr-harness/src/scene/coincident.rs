@@ -9,9 +9,9 @@ use super::Scene;
 use super::mesh::Mesh;
 use super::object::{Object, Unseparated};
 use glam::{DAffine3, DVec3, Vec2, Vec4};
-use npr_mesh::Model;
 use npr_mesh::coplanar::{ROUNDING, Separated, separate};
 use npr_mesh::weld::rounding_tolerance;
+use npr_mesh::{Model, SideVisibility};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -125,6 +125,8 @@ impl Scene {
                 merged.faces.push(if object.is_mirrored() { [a, c, b] } else { [a, b, c] });
                 merged.face_material.push(self.material_number(number, face) as u32);
                 merged.one_sided.push(model.one_sided.get(face as usize) == Some(&true));
+                let [p, q, r] = model.side_visibility.get(face as usize).copied().unwrap_or_default();
+                merged.side_visibility.push(if object.is_mirrored() { [r, q, p] } else { [p, q, r] });
                 faces.push([number, face]);
                 if faces.len() > MOST_FACES {
                     return None;
@@ -167,18 +169,20 @@ fn with_pieces(mut own: Model, pieces: &HashMap<u32, Vec<u32>>, from: &Model) ->
     let [materials, meshes, polygons] =
         [&mut own.face_material, &mut own.face_mesh, &mut own.face_polygon].map(std::mem::take);
     let one_sided = std::mem::take(&mut own.one_sided);
+    let sides = std::mem::take(&mut own.side_visibility);
     let mut vertex_of: HashMap<u32, u32> = HashMap::new();
     for (face, corners) in (0u32..).zip(faces) {
         let number = face as usize;
-        let add = |own: &mut Model, corners: [u32; 3], one_sided: bool| {
+        let add = |own: &mut Model, corners: [u32; 3], one_sided: bool, of_sides: &[[SideVisibility; 3]], at: usize| {
             own.faces.push(corners);
+            own.side_visibility.extend(of_sides.get(at).filter(|_| !sides.is_empty()));
             own.face_material.push(materials[number]);
             own.face_mesh.extend(meshes.get(number));
             own.face_polygon.push(if has_polygons { polygons[number] } else { face });
             own.one_sided.push(one_sided);
         };
         let Some(pieces) = pieces.get(&face) else {
-            add(&mut own, corners, one_sided.get(number) == Some(&true));
+            add(&mut own, corners, one_sided.get(number) == Some(&true), &sides, number);
             continue;
         };
         for &piece in pieces {
@@ -196,7 +200,8 @@ fn with_pieces(mut own: Model, pieces: &HashMap<u32, Vec<u32>>, from: &Model) ->
                     own.positions.len() as u32 - 1
                 })
             });
-            add(&mut own, corners, from.one_sided.get(piece as usize) == Some(&true));
+            let one_sided = from.one_sided.get(piece as usize) == Some(&true);
+            add(&mut own, corners, one_sided, &from.side_visibility, piece as usize);
         }
     }
     own

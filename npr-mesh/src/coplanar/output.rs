@@ -2,7 +2,7 @@
 
 use super::layers::Seen;
 use super::overlap::Projection;
-use crate::Model;
+use crate::{Model, SideVisibility};
 use glam::{DVec3, Vec2, Vec3, Vec4};
 use std::collections::HashMap;
 
@@ -96,20 +96,21 @@ impl Output {
             let vertices = model.faces[face as usize];
             let is_one_sided = model.one_sided.get(face as usize) == Some(&true);
             let shows_back = model.shows_back(face);
+            let sides = model.side_visibility.get(face as usize).copied().unwrap_or_default();
             match self.fates.remove(&face) {
-                None => builder.push(vertices, is_one_sided),
-                Some(Fate::Whole(seen)) => builder.push_seen(vertices, seen, is_one_sided, shows_back),
+                None => builder.push(vertices, sides, is_one_sided),
+                Some(Fate::Whole(seen)) => builder.push_seen(vertices, sides, seen, is_one_sided, shows_back),
                 Some(Fate::Pieces(pieces)) => {
                     for Piece { corners, seen, is_turned } in pieces {
                         if !(seen.front || seen.back) {
                             continue;
                         }
                         let vertices = corners.map(|corner| builder.vertex(vertices, corner));
+                        let sides = sides_of_piece(&corners, sides);
                         if is_turned {
-                            let [a, b, c] = vertices.map(|vertex| builder.turned(vertex));
-                            builder.push([a, c, b], false);
+                            builder.push_turned(vertices, sides, false);
                         } else {
-                            builder.push_seen(vertices, seen, is_one_sided, shows_back);
+                            builder.push_seen(vertices, sides, seen, is_one_sided, shows_back);
                         }
                     }
                 }
@@ -119,6 +120,9 @@ impl Output {
         let mut made = builder.made;
         if !made.one_sided.contains(&true) {
             made.one_sided.clear();
+        }
+        if model.side_visibility.is_empty() {
+            made.side_visibility.clear();
         }
         if made.faces == model.faces && made.one_sided == model.one_sided {
             return None;
@@ -137,6 +141,19 @@ impl Output {
     }
 }
 
+/// What is stated of the sides of a piece: of those on a side of the face the same, of cuts that they are hidden.
+fn sides_of_piece(corners: &[Corner; 3], of_face: [SideVisibility; 3]) -> [SideVisibility; 3] {
+    [0, 1, 2].map(|side| {
+        let ends = [corners[side], corners[(side + 1) % 3]];
+        let on = (0..3).find(|on| ends.iter().all(|end| end.weights[(on + 2) % 3] < 1e-6));
+        match on {
+            Some(on) => of_face[on],
+            None if of_face == [SideVisibility::Unstated; 3] => SideVisibility::Unstated,
+            None => SideVisibility::Hidden,
+        }
+    })
+}
+
 struct Builder<'a> {
     model: &'a Model,
     /// Without the arrays of faces other than the corners and sides.
@@ -153,25 +170,37 @@ impl<'a> Builder<'a> {
             face_mesh: Vec::new(),
             face_polygon: Vec::new(),
             one_sided: Vec::with_capacity(model.faces.len()),
+            side_visibility: Vec::with_capacity(model.faces.len()),
             ..model.clone()
         };
         Self { model, made, added: HashMap::new() }
     }
 
-    fn push(&mut self, vertices: [u32; 3], is_one_sided: bool) {
+    fn push(&mut self, vertices: [u32; 3], sides: [SideVisibility; 3], is_one_sided: bool) {
         self.made.faces.push(vertices);
+        self.made.side_visibility.push(sides);
         self.made.one_sided.push(is_one_sided);
     }
 
+    /// Adds a face with the opposite winding and normals.
+    fn push_turned(&mut self, vertices: [u32; 3], sides: [SideVisibility; 3], is_one_sided: bool) {
+        let [a, b, c] = vertices.map(|vertex| self.turned(vertex));
+        self.push([a, c, b], SideVisibility::reversed(sides), is_one_sided);
+    }
+
     /// Adds a face as far as it is seen. `is_one_sided` and `shows_back` are those of the face before.
-    fn push_seen(&mut self, vertices: [u32; 3], seen: Seen, is_one_sided: bool, shows_back: bool) {
+    fn push_seen(
+        &mut self,
+        vertices: [u32; 3],
+        sides: [SideVisibility; 3],
+        seen: Seen,
+        is_one_sided: bool,
+        shows_back: bool,
+    ) {
         match seen {
-            Seen { front: true, back } => self.push(vertices, is_one_sided || shows_back && !back),
-            Seen { front: false, back: true } => {
-                // Its back becomes the front of a one-sided face.
-                let [a, b, c] = vertices.map(|vertex| self.turned(vertex));
-                self.push([a, c, b], true);
-            }
+            Seen { front: true, back } => self.push(vertices, sides, is_one_sided || shows_back && !back),
+            // Its back becomes the front of a one-sided face.
+            Seen { front: false, back: true } => self.push_turned(vertices, sides, true),
             Seen { front: false, back: false } => {}
         }
     }

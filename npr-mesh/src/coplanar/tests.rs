@@ -255,6 +255,28 @@ fn sources_and_coincident_faces_are_named() {
 }
 
 #[test]
+fn pieces_have_what_the_file_says_of_their_sides() {
+    let square = [DVec2::NEG_ONE, DVec2::new(1.0, -1.0), DVec2::ONE, DVec2::new(-1.0, 1.0)];
+    let [a, b, c, d] = square;
+    let mark = square.map(|corner| corner * 0.5);
+    let mut soup = Soup::new(vec![[a, b, c], [a, c, d], [mark[0], mark[1], mark[2]]], DQuat::IDENTITY, DVec3::ZERO);
+    use crate::SideVisibility::{Hard, Hidden, Silhouette};
+    soup.model.side_visibility = vec![[Hard, Silhouette, Hidden], [Hidden, Hard, Hard], [Hard; 3]];
+    let separated = separate(&soup.model).expect("the mark is on the square").model;
+    assert_eq!(separated.side_visibility.len(), separated.faces.len());
+    let mut lengths = HashMap::new();
+    for (face, sides) in (0u32..).zip(&separated.side_visibility) {
+        let corners = corners_of(&separated, face);
+        for side in 0..3 {
+            *lengths.entry(sides[side]).or_insert(0.0) += corners[side].distance(corners[(side + 1) % 3]);
+        }
+    }
+    // The outer sides: three hard and one silhouette; and those of the mark, its diagonal among them.
+    assert!((lengths[&Silhouette] - 2.0).abs() < 1e-6, "{lengths:?}");
+    assert!((lengths[&Hard] - (6.0 + 2.0 + 2f64.sqrt())).abs() < 1e-6, "{lengths:?}");
+}
+
+#[test]
 fn pieces_interpolate_what_their_corners_have() {
     let square = [DVec2::NEG_ONE, DVec2::new(1.0, -1.0), DVec2::ONE, DVec2::new(-1.0, 1.0)];
     let mark = square.map(|corner| corner * 0.5);
