@@ -220,9 +220,9 @@ fn counts(model: Model, style: &Style) -> [usize; 5] {
 fn the_classes_of_a_file_decide_what_is_a_line_unless_the_style_has_its_own_rules() {
     let style = black([1.0; 5]);
     let own = Style { file_edges: false, ..style.clone() };
-    for (class, expected) in [(Hidden, [0; 5]), (Silhouette, [6, 0, 0, 0, 0]), (Hard, [6, 0, 12, 0, 0])] {
+    for (class, expected) in [(Hidden, [0; 5]), (Silhouette, [6, 0, 0, 0, 0]), (Hard, [6, 0, 6, 0, 0])] {
         assert_eq!(counts(classed(class), &style), expected, "{class:?}");
-        assert_eq!(counts(classed(class), &own), [6, 0, 6, 0, 0], "{class:?}");
+        assert_eq!(counts(classed(class), &own), [6, 0, 3, 0, 0], "{class:?}");
         // In pictures too, and in truth.
         let scene = Scene::new(classed(class));
         let camera =

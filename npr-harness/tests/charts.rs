@@ -43,6 +43,11 @@ const NO_VARIANTS: &[(&str, &str)] = &[
     ("XToonDetail", "how bands look"),
     ("LineKind", "which edges are lines"),
     ("TamChannels", "the plan chooses by adapter"),
+    ("Encoding", "a file's"),
+    ("Kind", "a file's"),
+    ("Scalar", "a file's"),
+    ("UpAxis", "a file's"),
+    ("Weld", "what edges are"),
 ];
 
 /// Choices that are covered by another one, and why.

@@ -323,7 +323,10 @@ fn a_stray_triangle_is_warned_of_once_and_can_be_left_out() {
     ] {
         let (said, image) = picture("stray.obj", fit);
         assert_eq!(said.lines().filter(|line| *line == format!("{outlier}{advice}")).count(), 1, "{said}");
-        assert_eq!(image == alone, is_alone, "{fit:?}");
+        // The scene with the triangle is not closed, so that the dots of hidden edges may differ.
+        let pixels = |png: &[u8]| image::load_from_memory(png).expect("a PNG file").to_rgba8().into_raw();
+        let differ = pixels(&image).chunks(4).zip(pixels(&alone).chunks(4)).filter(|(a, b)| a != b).count();
+        assert_eq!(differ <= 24, is_alone, "{fit:?}: {differ} px of 2,400");
     }
     let done = npr(&["render", "stray.obj", "-o", "a.png", "--size", "9x9", "--backend", "cpu", "--json"], &folder);
     let json: Value = serde_json::from_slice(&done.stdout).expect("JSON");

@@ -12,6 +12,8 @@ use npr_harness::style::{Style, styles};
 
 const LINE: &str = include_str!("../../npr-outline/src/segment.wgsl");
 const LINE_INK: &str = include_str!("../../npr-outline/src/line_ink.wgsl");
+const LINE_UNVEILED: &str = include_str!("../../npr-outline/src/line_unveiled.wgsl");
+const LINE_VEILED: &str = include_str!("../../npr-outline/src/line_veiled.wgsl");
 const LINE_PASS: &str = include_str!("../../npr-outline/src/line_pass.wgsl");
 const NORMAL_FORMAT: &str = include_str!("../../npr-outline/src/normal_format.wgsl");
 const FIN_PRINTED: &str = include_str!("../../npr-outline/src/fin_printed.wgsl");
@@ -97,7 +99,8 @@ fn every_shader_translates() {
     let shaders = vec![
         ("resolve", RESOLVE.into()),
         ("shadow map", SHADOW_MAP.into()),
-        ("lines", [LINE, LINE_INK, LINE_PASS].concat()),
+        ("lines", [LINE, LINE_INK, LINE_UNVEILED, LINE_PASS].concat()),
+        ("lines behind see-through surfaces", [LINE, LINE_INK, LINE_VEILED, LINE_PASS].concat()),
         ("printed fins", [NORMAL_FORMAT, FIN_PRINTED, FIN_PASS].concat()),
         ("inverted hulls", [HULL, HULL_PASS].concat()),
         ("shadow volumes", [SHADOW_VOLUME, SHADOW_PASS].concat()),

@@ -168,16 +168,17 @@ fn many_materials_take_no_draw_each_or_are_refused() {
     }
 }
 
-/// The second half has other colours, so that the picture shows which half was drawn.
+/// The first has another colour than those that follow, so that the picture shows which were drawn.
 #[test]
-fn faces_on_one_another_are_drawn_once_and_the_first_is_seen() {
+fn faces_on_one_another_are_drawn_once_and_the_last_is_seen() {
     let Some(context) = on_device() else { return };
     let executor = Executor::Gpu(context);
     let mut model = embedded::cube();
     let faces = model.faces.len() as u32;
     model.materials = [0.2, 0.9].map(|red| plain(Vec4::new(red, 0.5, 0.5, 1.0), AlphaMode::Opaque, false)).to_vec();
-    model.face_material = vec![0; faces as usize];
+    model.face_material = vec![1; faces as usize];
     let once = Scene::new(model.clone());
+    model.face_material.fill(0);
     for _ in 0..50_000 / faces {
         model.faces.extend_from_within(..faces as usize);
         model.face_material.extend(vec![1; faces as usize]);

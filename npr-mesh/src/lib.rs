@@ -67,6 +67,7 @@
 #![warn(missing_docs)]
 
 pub mod coplanar;
+mod edge_visibility;
 pub mod edges;
 pub mod embedded;
 mod error;
@@ -89,13 +90,14 @@ pub mod weld;
 /// The vector and matrix types in this API.
 pub use glam;
 
+pub use edge_visibility::edge_visibility;
 pub use error::LoadError;
 pub use limits::Limits;
 #[cfg(any(feature = "obj", feature = "gltf", feature = "ply", feature = "stl"))]
 pub use load::{LoadOptions, Loaded, Resolver, Warning, load, load_bytes};
 pub use model::{AlphaMode, Material, Model, Texture, Wrap};
 pub use object::Object;
-pub use side_visibility::{SideVisibility, edge_visibility};
+pub use side_visibility::SideVisibility;
 pub use up::UpAxis;
 
 /// Compiles the example of the README.

@@ -1,7 +1,7 @@
 //! Materials, textures, images and samplers of a file.
 
-use super::ExportError;
 use super::buffer::Buffer;
+use super::error::ExportError;
 use crate::{AlphaMode, Material, Model, Texture, Wrap};
 use image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
 use serde_json::{Map, Value, json};

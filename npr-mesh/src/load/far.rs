@@ -30,6 +30,7 @@ pub fn offset(low: DVec3, high: DVec3) -> Option<DVec3> {
 }
 
 /// The box around positions; `None` without any.
+#[cfg(any(feature = "obj", feature = "ply", feature = "stl"))]
 pub fn bounds(positions: impl Iterator<Item = DVec3>) -> Option<(DVec3, DVec3)> {
     positions
         .fold(None, |bounds, p| Some(bounds.map_or((p, p), |(low, high): (DVec3, DVec3)| (low.min(p), high.max(p)))))

@@ -17,8 +17,10 @@
 
 mod accessor;
 mod compressed;
+mod compressed_view;
 mod document;
 mod edge_visibility;
+mod extensions;
 mod extra;
 mod files;
 mod indices;
@@ -29,34 +31,16 @@ mod meshes;
 mod parse;
 mod pose;
 mod scene;
+mod slice;
 
 use super::external::{External, shortened};
 use super::file::Parsed;
 use crate::LoadError;
-use document::{Bytes, Document, QUANTIZATION, malformed};
+use document::{Bytes, Document, malformed};
+use extensions::{EXTENSIONS, QUANTIZATION};
 use gltf::json::Root;
 use parse::ParseFault;
 use std::path::Path;
-
-/// Instances of a node's mesh.
-const INSTANCING: &str = "EXT_mesh_gpu_instancing";
-
-/// Textures whose images are WebP files.
-const WEBP: &str = "EXT_texture_webp";
-
-/// The supported extensions. `KHR_materials_unlit` has no effect here.
-const EXTENSIONS: [&str; 10] = [
-    edge_visibility::NAME,
-    INSTANCING,
-    compressed::MESHOPT[0],
-    compressed::MESHOPT[1],
-    WEBP,
-    "KHR_materials_emissive_strength",
-    "KHR_materials_pbrSpecularGlossiness",
-    "KHR_materials_unlit",
-    QUANTIZATION,
-    "KHR_texture_transform",
-];
 
 /// Loads a file. Missing normals are zero, and there may be no objects.
 ///

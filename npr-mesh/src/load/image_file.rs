@@ -124,7 +124,8 @@ fn decode_one_of(
     Ok(Decoded { width, height, rgba8: image.into_rgba8().into_raw(), has_alpha })
 }
 
-#[cfg(all(test, feature = "gltf", feature = "obj"))]
+#[cfg(test)]
+#[cfg(all(feature = "gltf", feature = "obj"))]
 mod tests {
     use super::*;
     use image::{Rgba, RgbaImage};

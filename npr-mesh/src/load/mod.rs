@@ -3,6 +3,8 @@
 //! A loader parses a file with the crate of its format, checks everything that is used afterwards (indices, lengths,
 //! finite numbers, [`Limits`]), and then converts it.
 
+#[cfg(any(feature = "obj", feature = "ply"))]
+mod color;
 // Files of the other formats refer to no files.
 #[cfg_attr(not(any(feature = "obj", feature = "gltf")), allow(dead_code))]
 mod external;
@@ -145,14 +147,4 @@ fn report(meshes: &[Model]) -> Vec<String> {
     let mut bounds = meshes.iter().filter_map(Model::bounds);
     warnings.extend(bounds.find_map(|(low, high)| far::lost_digits(low.as_dvec3(), high.as_dvec3())));
     warnings
-}
-
-/// Linear values of display-referred ones, 0..=1.
-#[cfg(any(feature = "obj", feature = "ply"))]
-fn linear_from_srgb(encoded: Vec3) -> Vec3 {
-    let channel = |c: f32| {
-        let c = f64::from(c.max(0.0));
-        (if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }) as f32
-    };
-    Vec3::new(channel(encoded.x), channel(encoded.y), channel(encoded.z))
 }

@@ -17,9 +17,10 @@ mod prepare;
 mod texture_map;
 mod textures;
 
+use super::color::linear_from_srgb;
 use super::external::{External, shortened};
+use super::far as distant;
 use super::file::Parsed;
-use super::{far as distant, linear_from_srgb};
 use crate::triangulate::EAR_TESTS_OF_A_FILE;
 use crate::{LoadError, Material, Model, Object};
 use builder::Builder;

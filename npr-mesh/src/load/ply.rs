@@ -6,10 +6,10 @@
 mod header;
 mod values;
 
+use super::color::linear_from_srgb;
 use super::external::{External, shortened};
 use super::far::{self, Written};
 use super::file::Parsed;
-use super::linear_from_srgb;
 use super::polygons::Positions;
 use crate::edges::MOST_FACES;
 use crate::triangulate::{EAR_TESTS_OF_A_FILE, triangulate_within};

@@ -1,7 +1,9 @@
 //! Reads numbers from buffers with bounds checks (glTF 2.0, 3.6.2 "Accessors").
 
-use super::document::{Document, QUANTIZATION};
+use super::document::Document;
+use super::extensions::QUANTIZATION;
 use super::files;
+use super::slice::slice;
 use gltf::json::accessor::{ComponentType, Type, sparse};
 use gltf::json::validation::Checked;
 use gltf::json::{self, Index};
@@ -138,7 +140,7 @@ impl<'d> Accessor<'d> {
             let length = (count.saturating_sub(1)).checked_mul(found.stride as u64);
             let length = length.and_then(|l| l.checked_add(if count == 0 { 0 } else { element as u64 }));
             let offset = accessor.byte_offset.unwrap_or_default().0;
-            found.bytes = length.and_then(|length| files::slice(bytes, offset, length)).ok_or_else(|| {
+            found.bytes = length.and_then(|length| slice(bytes, offset, length)).ok_or_else(|| {
                 fail(format!(
                     "{count} elements of {element} bytes every {} bytes from byte {offset} reach beyond buffer view \
                      {}, which has {} bytes",
@@ -269,7 +271,7 @@ impl<'d> Sparse<'d> {
         let part = |what: &str, view, offset: u64, size: u64| {
             let (bytes, _) = files::view(document, view)?;
             let length = count.checked_mul(size);
-            length.and_then(|length| files::slice(bytes, offset, length)).ok_or_else(|| {
+            length.and_then(|length| slice(bytes, offset, length)).ok_or_else(|| {
                 format!("{count} sparse {what} from byte {offset} reach beyond buffer view {}", view.value())
             })
         };

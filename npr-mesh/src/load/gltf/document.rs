@@ -1,6 +1,6 @@
 //! A parsed glTF file.
 
-use super::compressed::CompressedView;
+use super::compressed_view::CompressedView;
 use super::extra::Extra;
 use crate::load::external::External;
 use crate::{Limits, LoadError};
@@ -8,9 +8,6 @@ use gltf::json::Root;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::rc::Rc;
-
-/// An extension that allows attributes of small integers.
-pub const QUANTIZATION: &str = "KHR_mesh_quantization";
 
 /// A parsed file and the data that it refers to.
 pub(super) struct Document<'a> {

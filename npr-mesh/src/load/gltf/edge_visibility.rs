@@ -14,13 +14,11 @@
 
 use super::accessor::{Accessor, Integers, Purpose};
 use super::document::Document;
+use super::extensions::EDGE_VISIBILITY;
 use crate::SideVisibility;
 use gltf::json::mesh::Primitive;
 use gltf::json::{self, Index};
 use serde_json::{Map, Value};
-
-/// The name of the extension.
-pub(super) const NAME: &str = "EXT_mesh_primitive_edge_visibility";
 
 /// The sides by their two bits.
 const CLASSES: [SideVisibility; 4] =
@@ -47,7 +45,7 @@ pub(super) fn string_ends(document: &Document, primitive: &Primitive) -> u64 {
 }
 
 fn of_primitive(primitive: &Primitive) -> Option<&Value> {
-    primitive.extensions.as_ref()?.others.get(NAME)
+    primitive.extensions.as_ref()?.others.get(EDGE_VISIBILITY)
 }
 
 /// Reads the extension of a primitive with so many triangles and vertices; `None` without it.
@@ -61,7 +59,7 @@ pub(super) fn read(
     vertices: usize,
 ) -> Result<Option<PrimitiveEdges>, String> {
     let Some(value) = of_primitive(primitive) else { return Ok(None) };
-    let fail = |fault: String| format!("{NAME}: {fault}");
+    let fail = |fault: String| format!("{EDGE_VISIBILITY}: {fault}");
     let Value::Object(object) = value else { return Err(fail("not an object".to_owned())) };
     let mut edges = PrimitiveEdges::default();
     if let Some(index) = index_of(object, "visibility").map_err(fail)? {
@@ -90,7 +88,7 @@ pub(super) fn read(
         Some(_) => return Err(fail("lineStrings is not an array".to_owned())),
     }
     if materials {
-        edges.warnings.push(format!("the materials of {NAME} are ignored: lines have a style's ink"));
+        edges.warnings.push(format!("the materials of {EDGE_VISIBILITY} are ignored: lines have a style's ink"));
     }
     Ok(Some(edges))
 }
@@ -124,7 +122,7 @@ fn check_normals(document: &Document, index: Index<json::Accessor>, edges: &mut 
     let accessor = Accessor::new(document, index, Purpose::Direction)?;
     if accessor.count != 2 * silhouettes {
         let counts = format!("silhouetteNormals: {} normals for {silhouettes} silhouettes", accessor.count);
-        edges.warnings.push(format!("{NAME}: {counts}; the faces' own are used"));
+        edges.warnings.push(format!("{EDGE_VISIBILITY}: {counts}; the faces' own are used"));
         return Ok(());
     }
     accessor.floats::<3>(Integers::Normalized).map(drop)

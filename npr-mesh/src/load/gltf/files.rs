@@ -1,6 +1,7 @@
 //! Raw data: the binary container, buffers, and URIs.
 
 use super::document::{Bytes, Document};
+use super::slice::slice;
 use crate::LoadError;
 use crate::load::external::{External, meanings, shortened};
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
@@ -128,7 +129,9 @@ pub(super) fn view<'d>(
     let view = &document.root.buffer_views[number];
     let stride = view.byte_stride.map(|stride| stride.0);
     if let Some(compressed) = document.decoded.get(&number) {
-        let content = compressed.content(document).map_err(|fault| format!("buffer view {number}: {fault}"))?;
+        let content = compressed
+            .content(document.buffers[compressed.buffer()].as_slice())
+            .map_err(|fault| format!("buffer view {number}: {fault}"))?;
         return Ok((content, stride));
     }
     let buffer_number = view.buffer.value();
@@ -143,12 +146,6 @@ pub(super) fn view<'d>(
         )
     })?;
     Ok((slice, stride))
-}
-
-/// `length` bytes from `offset`, or `None` if out of range.
-pub(super) fn slice(bytes: &[u8], offset: u64, length: u64) -> Option<&[u8]> {
-    let end = usize::try_from(offset.checked_add(length)?).ok()?;
-    bytes.get(usize::try_from(offset).ok()?..end)
 }
 
 /// The content of a `data:` URI (RFC 2397), or `None` for any other URI.

@@ -156,7 +156,7 @@ impl Checker<'_> {
                 exists(owner, "sampler", "sampler", sampler.number(), root.samplers.len())?;
             }
             let own = (texture.source.value() != super::materials::NO_SOURCE).then(|| texture.source.number());
-            let webp = self.extra.textures.get(number).and_then(|texture| texture.source(super::WEBP));
+            let webp = self.extra.textures.get(number).and_then(|texture| texture.source(super::extensions::WEBP));
             for source in [own, webp].into_iter().flatten() {
                 exists(owner, "source", "image", source, root.images.len())?;
             }

@@ -1,8 +1,8 @@
 //! Instances of a node's mesh (`EXT_mesh_gpu_instancing`).
 
-use super::INSTANCING;
 use super::accessor::{Accessor, Integers, Purpose};
 use super::document::Document;
+use super::extensions::INSTANCING;
 use super::scene::trs;
 use glam::DAffine3;
 use gltf::json::Index;

@@ -1,7 +1,8 @@
 //! Materials, their textures, and the texture coordinates that they use.
 
 use super::document::{self, Document};
-use super::{WEBP, files};
+use super::extensions::WEBP;
+use super::files;
 use crate::load::external::shortened;
 use crate::load::image_file;
 use crate::{AlphaMode, LoadError, Material, Model, Texture, Wrap};

@@ -1,10 +1,10 @@
 //! Loads meshes, and places them.
 
-use super::INSTANCING;
 use super::accessor::{Accessor, Integers, Purpose};
 use super::compressed::refuse_unsupported;
 use super::document::{self, Document};
 use super::edge_visibility;
+use super::extensions::INSTANCING;
 use super::instancing::Instances;
 use super::lines;
 use super::materials::{Materials, UvSource};

@@ -1,8 +1,8 @@
 //! Material files.
 
 use super::texture_map::TextureMap;
+use crate::load::color::linear_from_srgb;
 use crate::load::external::{External, meanings, shortened};
-use crate::load::linear_from_srgb;
 use crate::{AlphaMode, LoadError, Material};
 use glam::{Vec3, Vec4};
 use std::collections::{BTreeSet, HashMap};
