@@ -6,6 +6,7 @@
 
 pub mod frame;
 mod ground;
+mod ground_hit;
 pub mod primary_hits;
 mod shade;
 mod surface;
@@ -28,7 +29,7 @@ use crate::scene::opacity::HIDES_FROM;
 use crate::shadow::cpu::ShadowAt;
 use crate::view::{View, size_px};
 use glam::{DVec2, DVec3, DVec4};
-use ground::GroundHit;
+use ground_hit::GroundHit;
 use primary_hits::Hits;
 use std::sync::atomic::{AtomicU32, Ordering};
 

@@ -6,7 +6,6 @@
 //! model: it has no lines but the borders of shadows (in styles whose shadows have lines by their states), hides no lines,
 //! casts no shadow, and changes neither the view nor what depends on the model's size. A clipping plane does not cut it.
 
-use crate::plan::{Plan, Reason};
 use crate::scene::Scene;
 #[cfg(feature = "gpu")]
 use glam::Vec3;
@@ -111,29 +110,6 @@ pub(crate) fn bounds_with(ground: Option<&GroundPlan>, scene: &Scene) -> Option<
         let of_ground = ground.bounds();
         (low.min(of_ground.0), high.max(of_ground.1))
     }))
-}
-
-impl Plan {
-    /// The ground, if there is one.
-    pub fn ground(&self) -> Option<&GroundPlan> {
-        self.shadow.as_ref().and_then(|shadow| shadow.ground.as_ref())
-    }
-
-    /// Says why there is a ground, or why there is none although the scene asks for it.
-    pub(crate) fn explain_ground(&mut self, scene: &Scene) {
-        if !scene.ground {
-            return;
-        }
-        let why_not = match &self.shadow {
-            None => "the picture shows no shadows",
-            Some(shadow) if shadow.ground.is_none() => "the light that casts shadows is not above it",
-            Some(_) => {
-                let why = "shadows fall on a plane under the model".to_owned();
-                return self.passes.push(Reason { pass: GROUND, why });
-            }
-        };
-        self.left_out.push(Reason { pass: GROUND, why: why_not.to_owned() });
-    }
 }
 
 /// The name of the pass.

@@ -5,6 +5,7 @@
 //! the same scene is cheap.
 
 mod explain;
+mod ground;
 pub mod resources;
 
 pub use explain::part_of_pass;
@@ -236,10 +237,9 @@ impl Plan {
         }
         plan.explain(style, textured);
         plan.explain_ground(scene);
-        plan.left_out.extend(authored_left_out(scene, style, plan.edge_lines.as_ref()));
-        if plan.edge_lines.is_some() {
-            plan.passes.extend(explain::cut_lines(scene));
-        }
+        let authored = authored_left_out(scene, style, plan.edge_lines.as_ref());
+        plan.left_out.extend(authored.map(|why| Reason { pass: "lines of the file", why: why.to_owned() }));
+        plan.explain_cut_lines(scene);
         Ok(plan)
     }
 

@@ -11,6 +11,7 @@ use npr_harness::gpu::surface_wgsl;
 use npr_harness::style::{Style, styles};
 
 const LINE: &str = include_str!("../../npr-outline/src/segment.wgsl");
+const CONTOUR: &str = include_str!("../../npr-outline/src/contour.wgsl");
 const LINE_INK: &str = include_str!("../../npr-outline/src/line_ink.wgsl");
 const LINE_UNVEILED: &str = include_str!("../../npr-outline/src/line_unveiled.wgsl");
 const LINE_VEILED: &str = include_str!("../../npr-outline/src/line_veiled.wgsl");
@@ -99,8 +100,8 @@ fn every_shader_translates() {
     let shaders = vec![
         ("resolve", RESOLVE.into()),
         ("shadow map", SHADOW_MAP.into()),
-        ("lines", [LINE, LINE_INK, LINE_UNVEILED, LINE_PASS].concat()),
-        ("lines behind see-through surfaces", [LINE, LINE_INK, LINE_VEILED, LINE_PASS].concat()),
+        ("lines", [CONTOUR, LINE, LINE_INK, LINE_UNVEILED, LINE_PASS].concat()),
+        ("lines behind see-through surfaces", [CONTOUR, LINE, LINE_INK, LINE_VEILED, LINE_PASS].concat()),
         ("printed fins", [NORMAL_FORMAT, FIN_PRINTED, FIN_PASS].concat()),
         ("inverted hulls", [HULL, HULL_PASS].concat()),
         ("shadow volumes", [SHADOW_VOLUME, SHADOW_PASS].concat()),

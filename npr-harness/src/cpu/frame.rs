@@ -4,6 +4,13 @@ use crate::color::to_bytes;
 use crate::image_lines::gbuffer::texel::GBufferTexel;
 use crate::picture::Image;
 use glam::{DVec2, DVec4};
+use npr_outline::segment::VEIL_LAYERS;
+
+/// The nearest [`VEIL_LAYERS`] blended surfaces with an alpha below 0.5 at a pixel: their depths in the depth buffer, 0
+/// where there is none, and their alphas.
+pub(crate) type Veils = [DVec4; 2];
+
+const _: () = assert!(VEIL_LAYERS == 4);
 
 /// Options of a CPU frame that are not part of its plan: they change how the scene is sampled, not what is rendered.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -1,22 +1,16 @@
 //! The ground on the CPU. On the GPU it is drawn by `gpu/ground.rs`.
 
 use super::FrameContext;
+use super::ground_hit::GroundHit;
 use crate::ground::GroundPlan;
 use crate::hatch::cpu::Hatching;
 use crate::image_lines::cpu::texel_of_ground;
 use crate::image_lines::gbuffer::texel::{self, GBufferTexel};
 use crate::rays::Hit;
 use crate::shade::Shading;
-use crate::shadow::cpu::{ShadowAt, shadow_on_ground};
+use crate::shadow::cpu::shadow_on_ground;
 use glam::{DVec2, DVec3};
 use npr_toon::border::toon_border_width;
-
-/// A point of the ground that is seen.
-#[derive(Clone, Copy)]
-pub(super) struct GroundHit {
-    at: DVec3,
-    shadow: ShadowAt,
-}
 
 impl FrameContext<'_> {
     fn ground_plan(&self) -> Option<&GroundPlan> {

@@ -1,16 +1,11 @@
 //! The see-through surfaces that dim the edge lines behind them.
 
 use super::FrameContext;
+use super::frame::Veils;
 use crate::rays::Hit;
 use crate::scene::opacity::HIDES_FROM;
 use glam::DVec4;
 use npr_outline::segment::VEIL_LAYERS;
-
-/// The nearest [`VEIL_LAYERS`] blended surfaces with an alpha below 0.5 at a pixel: their depths in the depth buffer, 0
-/// where there is none, and their alphas.
-pub(crate) type Veils = [DVec4; 2];
-
-const _: () = assert!(VEIL_LAYERS == 4);
 
 impl FrameContext<'_> {
     /// Per pixel, in rows from the top.

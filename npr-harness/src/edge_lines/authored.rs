@@ -1,7 +1,6 @@
 //! Lines that the file itself draws, in styles that have no edge lines.
 
 use super::plan::{EdgeLinePlan, INK};
-use crate::plan::Reason;
 use crate::scene::Scene;
 use crate::style::{Lines, Style};
 use npr_imagespace::composite::Composite;
@@ -38,15 +37,18 @@ pub(crate) fn authored_alone(scene: &Scene, lines: &Lines) -> Option<LineStyle> 
 }
 
 /// Why the scene's lines are not drawn, if it has some.
-pub(crate) fn authored_left_out(scene: &Scene, style: &Style, edge_lines: Option<&EdgeLinePlan>) -> Option<Reason> {
+pub(crate) fn authored_left_out(
+    scene: &Scene,
+    style: &Style,
+    edge_lines: Option<&EdgeLinePlan>,
+) -> Option<&'static str> {
     if !has_lines(scene) {
         return None;
     }
-    let why = match edge_lines {
-        Some(lines) if lines.style.width_px[LineKind::Authored as usize] > 0.0 => return None,
-        Some(_) => "the style gives them no width",
-        None if scene.clip.is_some() && style.lines != Lines::NONE => "lines along edges are not clipped",
-        None => "the style draws no lines",
-    };
-    Some(Reason { pass: "lines of the file", why: why.to_owned() })
+    match edge_lines {
+        Some(lines) if lines.style.width_px[LineKind::Authored as usize] > 0.0 => None,
+        Some(_) => Some("the style gives them no width"),
+        None if scene.clip.is_some() && style.lines != Lines::NONE => Some("lines along edges are not clipped"),
+        None => Some("the style draws no lines"),
+    }
 }

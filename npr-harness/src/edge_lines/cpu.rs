@@ -1,8 +1,7 @@
 //! Edge lines on the CPU: the same segments, coverage and visibility as on the GPU, in f64.
 
 use super::plan::EdgeLinePlan;
-use crate::cpu::frame::CpuFrame;
-use crate::cpu::veils::Veils;
+use crate::cpu::frame::{CpuFrame, Veils};
 use crate::scene::{Mesh, Object, Scene};
 use crate::view::View;
 use glam::{DVec2, DVec3};

@@ -11,6 +11,13 @@ use crate::variant::Part;
 use std::fmt;
 
 impl Plan {
+    /// Lists the lines along cuts, if edge lines are drawn.
+    pub(super) fn explain_cut_lines(&mut self, scene: &Scene) {
+        if self.edge_lines.is_some() {
+            self.passes.extend(cut_lines(scene));
+        }
+    }
+
     /// Lists the passes that are used and those that are left out, with reasons.
     pub(super) fn explain(&mut self, style: &Style, textured: bool) {
         let (mut passes, mut left_out) = (Vec::new(), Vec::new());
@@ -201,7 +208,7 @@ impl Plan {
 }
 
 /// The lines along the cuts of a scene's meshes, if there are any.
-pub(super) fn cut_lines(scene: &Scene) -> Option<Reason> {
+fn cut_lines(scene: &Scene) -> Option<Reason> {
     let cuts = || scene.meshes().iter().map(|mesh| mesh.cut_lines()).filter(|cuts| !cuts.edges.is_empty());
     let segments: usize = cuts().map(|cuts| cuts.edges.len()).sum();
     let step = cuts().map(|cuts| cuts.step).max()?;

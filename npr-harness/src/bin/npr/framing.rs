@@ -1,6 +1,6 @@
 //! The flags of the view.
 
-use crate::shot::checked;
+use crate::range::checked;
 use crate::terminal::tell;
 use clap::{Args, ValueEnum};
 use glam::{DVec3, DVec4};

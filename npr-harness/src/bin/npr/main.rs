@@ -18,6 +18,7 @@ mod measured;
 mod paths;
 mod picture;
 mod plan;
+mod range;
 mod render;
 mod report;
 mod shot;

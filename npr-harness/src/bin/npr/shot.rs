@@ -3,6 +3,7 @@
 use crate::backend::BackendName;
 use crate::framing::{FramingOptions, numbers};
 use crate::loading::{Loading, load};
+use crate::range::checked;
 use crate::style::{known_style, style_file};
 use crate::terminal::{one_line, tell};
 use clap::Args;
@@ -81,10 +82,6 @@ fn parse_line_kind(text: &str) -> Result<(String, LineKind), String> {
 
 pub fn elapsed_ms(start: Instant) -> f64 {
     start.elapsed().as_secs_f64() * 1e3
-}
-
-pub fn checked(what: &'static str, value: f64, low: f64, high: f64, range: &'static str) -> Result<f64, HarnessError> {
-    if (low..=high).contains(&value) { Ok(value) } else { Err(HarnessError::Range { what, value, range }) }
 }
 
 /// Arguments that are within their ranges.
