@@ -51,7 +51,7 @@ fn meshes_that_nothing_places_are_named_as_that() {
     assert_fails(&empty, "no triangle in it");
     assert_fails(
         &doc.set(&format!("{PRIMITIVE}/mode"), json!(0)),
-        "no triangle in it (mesh 0 primitive 0: Points are left out)",
+        "no triangle in it (primitives of points are left out)",
     );
 }
 

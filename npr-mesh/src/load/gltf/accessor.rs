@@ -97,7 +97,9 @@ impl<'d> Accessor<'d> {
     /// The fault with the index of the accessor.
     pub fn new(document: &'d Document, index: Index<json::Accessor>, purpose: Purpose) -> Result<Self, String> {
         let number = index.value();
-        let accessor = &document.root.accessors[number];
+        // Those of extensions are not among the indices that are checked at first.
+        let accessor =
+            document.root.accessors.get(number).ok_or_else(|| format!("accessor {number} does not exist"))?;
         let fail = |fault: String| format!("accessor {number}: {fault}");
         let Checked::Valid(component) = accessor.component_type else {
             return Err(fail("unknown component type".to_owned()));
