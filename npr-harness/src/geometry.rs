@@ -127,8 +127,10 @@ fn split_by_region(faces: &[[u32; 3]], face_region: &[u32], vertices: usize) -> 
 /// Faces of a mesh that have the same material, or materials of the same appearance, drawn by one call.
 pub(crate) struct Batch {
     /// The index in the mesh of the first of these materials.
+    #[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "a device alone reads it"))]
     pub(crate) material: usize,
     /// Whether only the fronts of its faces are shown, whatever the material says.
+    #[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "a device alone reads it"))]
     pub(crate) one_sided: bool,
     pub(crate) indices: Range<u32>,
 }
