@@ -115,12 +115,12 @@ fn small_and_large(capabilities: &Capabilities, small: (u32, u32)) -> (Scene, [P
 #[test]
 fn frames_of_the_cpu_take_longer_with_more_pixels() {
     let executor = Executor::Cpu { why: None };
-    let (scene, plans) = small_and_large(&executor.capabilities(), (96, 54));
+    let (scene, plans) = small_and_large(&executor.capabilities(), (192, 108));
     let cases = plans.each_ref().map(|plan| FrameCase { scene: &scene, plan });
     let told = RefCell::new(Vec::new());
-    let rounds = Rounds { rounds: 5, ..Rounds::default() };
+    let rounds = Rounds { rounds: 9, ..Rounds::default() };
     let timed = time_frames(&executor, &cases, &rounds, &|share| told.borrow_mut().push(share)).expect("frames");
-    assert!(timed.iter().all(|timed| timed.device.is_none() && timed.wall.times_ms().len() == 5));
+    assert!(timed.iter().all(|timed| timed.device.is_none() && timed.wall.times_ms().len() == 9));
     let ratio = timed[1].wall.relative_to(&timed[0].wall).median;
     assert!((2.0..=8.0).contains(&ratio), "four times the pixels take {ratio} times as long");
     let told = told.borrow();
