@@ -30,6 +30,7 @@ use crate::shadow::cpu::ShadowAt;
 use crate::view::{View, size_px};
 use glam::{DVec2, DVec3, DVec4};
 use ground_hit::GroundHit;
+use npr_mesh::AlphaMode;
 use primary_hits::Hits;
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -168,6 +169,14 @@ impl<'a> FrameContext<'a> {
     }
 }
 
+/// The relative difference of distances up to which two faces are at one place.
+const AT_PLACE: f64 = 1e-12;
+
+/// The farthest distance that is that of a face at `t`, up to rounding.
+fn at_place(t: f64) -> f64 {
+    t * (1.0 + AT_PLACE)
+}
+
 impl FrameContext<'_> {
     /// The visible unblended surface at a point of the picture, px: its position and the display-referred colour of a
     /// pixel centred there. Blended surfaces are ignored.
@@ -294,13 +303,14 @@ impl FrameContext<'_> {
                 && !self.is_inset(hit, x, y)
         };
         let nearest = self.scene.closest(origin, direction, self.plan.view.camera.depth_range(), is_solid)?;
-        if !self.scene.placed(nearest.object).1.has_layers() {
+        if !self.scene.has_layers() {
             return Some(nearest);
         }
-        // Of faces at one place, whose distances are equal up to rounding, the later is seen.
-        let slack = 1e-12 * nearest.t.abs();
-        let at_place = self.scene.all(origin, direction, (nearest.t - slack, nearest.t + slack), is_solid);
-        at_place.into_iter().filter(|hit| hit.object == nearest.object).max_by_key(|hit| hit.face)
+        // Of faces at one place, whose distances are equal up to rounding, what is left of a cut-out is seen, and of several
+        // the later.
+        let at_place = self.scene.all(origin, direction, (nearest.t * (1.0 - AT_PLACE), at_place(nearest.t)), is_solid);
+        let is_cut = |hit: &Hit| matches!(self.material(hit).alpha_mode, AlphaMode::Mask { .. });
+        at_place.into_iter().max_by_key(|hit| (is_cut(hit), hit.object, hit.face))
     }
 
     /// The nearest surface at a pixel that hides lines behind it: `solid`, the nearest unblended one, or a blended one in
@@ -308,7 +318,7 @@ impl FrameContext<'_> {
     fn first_hiding(&self, solid: Option<Hit>, x: u32, y: u32) -> Option<Hit> {
         let (origin, direction) = self.rays.through(self.sample_point(f64::from(x), f64::from(y)));
         let range = self.plan.view.camera.depth_range();
-        let nearer = (range.0, solid.map_or(range.1, |hit| hit.t));
+        let nearer = (range.0, solid.map_or(range.1, |hit| at_place(hit.t)));
         let hides = |hit: &Hit| {
             self.is_blended(hit)
                 && self.is_shown(hit)
@@ -328,7 +338,7 @@ impl FrameContext<'_> {
         if self.plan.blended {
             let (origin, direction) = self.rays.through(self.sample_point(f64::from(x), f64::from(y)));
             let range = self.plan.view.camera.depth_range();
-            let nearer = (range.0, solid.map_or(range.1, |hit| hit.t));
+            let nearer = (range.0, solid.map_or(range.1, |hit| at_place(hit.t)));
             let is_blended =
                 |hit: &Hit| self.is_shown(hit) && self.is_blended(hit) && self.scene.keeps(origin + direction * hit.t);
             let mut hits = self.scene.all(origin, direction, nearer, is_blended);

@@ -154,11 +154,10 @@ pub(crate) fn add_batches(
         (0..faces.len() as u32).filter(|&f| model.materials[material(f)].alpha_mode != AlphaMode::Blend).collect();
     // The sort is stable: the faces of a material keep the order of the file, in which neighbours share vertices.
     solid.sort_by_key(|&face| look(face));
-    // Of coincident faces the first drawn is seen, and the later in the file is to be. Those that are hidden whole are
-    // gone; what is left of cut-outs has to be drawn before what is seen through them.
+    // What is left of a cut-out is seen on an opaque face at its place, and of several the later in the file.
     if mesh.has_layers() {
         let is_cut_out = |face: u32| matches!(model.materials[material(face)].alpha_mode, AlphaMode::Mask { .. });
-        solid.sort_by_key(|&face| if is_cut_out(face) { (false, u32::MAX - face) } else { (true, 0) });
+        solid.sort_by_key(|&face| (is_cut_out(face), if is_cut_out(face) { face } else { 0 }));
     }
     let mut batches: Vec<Batch> = Vec::new();
     indices.reserve(3 * solid.len());

@@ -439,6 +439,13 @@ impl Scene {
         !is_one_sided && self.material(object, face).double_sided
     }
 
+    /// Whether a cut-out face may be at the place of another face, of the same object or another.
+    pub(crate) fn has_layers(&self) -> bool {
+        let is_cut = |material: &Material| matches!(material.alpha_mode, AlphaMode::Mask { .. });
+        self.meshes.iter().any(|mesh| mesh.has_layers())
+            || self.materials.iter().any(is_cut) && self.objects.iter().any(|object| object.unseparated.is_some())
+    }
+
     /// The corners of an object's face.
     pub(crate) fn face_corners(&self, object: u32, face: u32) -> [DVec3; 3] {
         let (object, mesh) = self.placed(object);

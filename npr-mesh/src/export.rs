@@ -19,7 +19,7 @@ pub use error::ExportError;
 use crate::{Model, Object, SideVisibility};
 use buffer::{Buffer, Component};
 use glam::DAffine3;
-use materials::Materials;
+use materials::{Materials, STRENGTH};
 use serde_json::{Map, Value, json};
 
 /// The extension that the classes of edges are written in.
@@ -60,8 +60,10 @@ pub fn glb(meshes: &[Model], objects: &[Object], options: &ExportOptions) -> Res
         "meshes": written,
     });
     let Value::Object(members) = &mut root else { unreachable!("made as an object") };
-    if options.edges.is_some() {
-        members.insert("extensionsUsed".to_owned(), json!([EXTENSION]));
+    let used = [(options.edges.is_some(), EXTENSION), (materials.have_strength(), STRENGTH)];
+    let used: Vec<&str> = used.into_iter().filter(|(is_used, _)| *is_used).map(|(_, name)| name).collect();
+    if !used.is_empty() {
+        members.insert("extensionsUsed".to_owned(), json!(used));
     }
     materials.finish(members);
     let binary = buffer.finish(members);

@@ -233,7 +233,8 @@ fn lines_objects_materials_and_textures_are_written() {
         texture,
         alpha_mode,
         double_sided: false,
-        ..Material::default()
+        emissive: Vec3::new(0.25, 3.0, 0.0),
+        emissive_texture: texture,
     };
     let model = Model {
         uvs: vec![Vec2::ZERO, Vec2::X, Vec2::Y, Vec2::new(0.25, -3.0)],

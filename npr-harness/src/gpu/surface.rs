@@ -25,6 +25,7 @@ use glam::{DVec2, DVec3, DVec4};
 use npr_imagespace::artist::{ArtistRotation, LineKind};
 use npr_imagespace::format::texel::{DepthCode, TexelLayout};
 use npr_imagespace::pass::fused::texel_format;
+use npr_mesh::AlphaMode;
 use npr_outline::filled_buffer::filled_buffer;
 use npr_toon::painter::PainterUniform;
 use std::cell::{Cell, RefCell};
@@ -179,6 +180,7 @@ struct Variant {
     cull_back: bool,
     mirrored: bool,
     blended: bool,
+    cut_out: bool,
     hiding: bool,
     /// Whether only what is behind a layer of see-through surfaces is drawn.
     behind_layer: bool,
@@ -497,6 +499,7 @@ impl SurfacePass {
                 cull_back: !casts && (plan.cull_back || drawn.one_sided || !material.double_sided),
                 mirrored: drawn.mirrored,
                 blended,
+                cut_out: matches!(material.alpha_mode, AlphaMode::Mask { .. }),
                 hiding,
                 behind_layer: layer_before.is_some(),
                 biased: casts,
@@ -575,6 +578,7 @@ impl SurfacePass {
                 cull_back: true,
                 mirrored: false,
                 blended: false,
+                cut_out: false,
                 hiding: false,
                 behind_layer: false,
                 biased: false,
@@ -756,8 +760,8 @@ impl SurfacePass {
                 format: variant.depth,
                 // The ground hides no lines, so that it stands in the depth buffer only where shadows are computed.
                 depth_write_enabled: Some(!blended && (!ground || !colored && !inked)),
-                // A blended face is seen on an opaque one at its place.
-                depth_compare: Some(if blended {
+                // A face that is blended or cut out is seen on an opaque one at its place.
+                depth_compare: Some(if blended || variant.hiding || variant.cut_out {
                     wgpu::CompareFunction::GreaterEqual
                 } else {
                     wgpu::CompareFunction::Greater

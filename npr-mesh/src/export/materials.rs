@@ -7,6 +7,9 @@ use image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
 use serde_json::{Map, Value, json};
 use std::collections::HashMap;
 
+/// The extension for emission above 1.
+pub(super) const STRENGTH: &str = "KHR_materials_emissive_strength";
+
 /// What the meshes of a file share. Equal materials of different meshes are one.
 #[derive(Default)]
 pub(super) struct Materials {
@@ -66,6 +69,11 @@ impl Materials {
         Ok(number)
     }
 
+    /// Whether any material needs [`STRENGTH`].
+    pub fn have_strength(&self) -> bool {
+        self.materials.iter().any(|material| material.get("extensions").is_some())
+    }
+
     pub fn finish(self, members: &mut Map<String, Value>) {
         let Self { materials, textures, samplers, images, .. } = self;
         let all = [("materials", materials), ("textures", textures), ("samplers", samplers), ("images", images)];
@@ -109,6 +117,18 @@ fn material_json(material: &Material, textures: &[usize]) -> Value {
         surface["baseColorTexture"] = json!({"index": textures[texture as usize]});
     }
     let mut value = json!({"pbrMetallicRoughness": surface, "doubleSided": material.double_sided});
+    let strength = material.emissive.max_element();
+    if strength > 0.0 {
+        // A factor is at most 1; what is above is a strength.
+        let factor = material.emissive / strength.max(1.0);
+        value["emissiveFactor"] = json!(factor.to_array().map(f64::from));
+        if strength > 1.0 {
+            value["extensions"] = json!({STRENGTH: {"emissiveStrength": f64::from(strength)}});
+        }
+    }
+    if let Some(texture) = material.emissive_texture {
+        value["emissiveTexture"] = json!({"index": textures[texture as usize]});
+    }
     if !material.name.is_empty() {
         value["name"] = json!(material.name);
     }

@@ -16,7 +16,7 @@ pub struct Cli {
 
 #[derive(Subcommand)]
 pub enum Command {
-    /// A picture of a model (.obj, .gltf, .glb).
+    /// A picture of a model (.obj, .gltf, .glb, .ply, .stl).
     Render(render::Options),
     /// How a picture would be made, and why; within a budget of error or time, the way that suits it.
     Plan(plan::Options),
