@@ -15,6 +15,10 @@ use npr_mesh::{AlphaMode, Model, Texture};
 const MOST_CELLS: f64 = (1 << 24) as f64;
 const MOST_SEGMENTS: usize = 1 << 19;
 
+/// Faces with larger coordinates in the texture's grid have no cut lines: the texture repeats more often there than f32
+/// tells apart.
+const FARTHEST_TEXEL: f64 = (1 << 30) as f64;
+
 /// The cut lines of a mesh.
 #[derive(Clone, Debug, Default)]
 pub struct CutLines {
@@ -108,7 +112,8 @@ impl<'a> CutFace<'a> {
             None => [DVec2::ZERO, DVec2::X, DVec2::Y],
         };
         let axes = DMat2::from_cols(corners[1] - corners[0], corners[2] - corners[0]);
-        let is_good = corners.iter().all(|corner| corner.is_finite()) && axes.determinant().abs() > 1e-12;
+        let is_near = |corner: &DVec2| corner.is_finite() && corner.abs().max_element() <= FARTHEST_TEXEL;
+        let is_good = corners.iter().all(is_near) && axes.determinant().abs() > 1e-12;
         let factor = f64::from(material.base_color.w);
         let alpha = |vertex: usize| factor * model.colors.get(vertex).map_or(1.0, |color| f64::from(color.w));
         is_good.then(|| Self {
