@@ -11,7 +11,7 @@ use npr_harness::executor::Executor;
 use npr_harness::picture::Image;
 use npr_harness::scene::Scene;
 use npr_harness::style::{Style, style};
-use npr_mesh::{Material, Model, Object};
+use npr_mesh::{AlphaMode, Material, Model, Object};
 
 const SIZE: (u32, u32) = (160, 120);
 /// Colour, lines along edges and in the image, shadows and hatching.
@@ -163,6 +163,39 @@ fn a_mark_on_a_sheet_is_whole_if_it_is_later_and_hidden_if_it_is_earlier() {
         assert!((found / share - 1.0).abs() < 0.2, "{what}: {found} of {share}");
     });
     in_all_ways(&[mark, sheet], [25.0, 155.0], &|picture, what| assert_eq!(counts(picture)[0], 0, "{what}"));
+}
+
+#[test]
+fn what_is_left_of_a_cut_out_mark_is_seen_on_a_sheet() {
+    let (sheet, mut mark) = (polygon(&SQUARE, 0, false, BLUE), polygon(&MARK, 1, false, RED));
+    mark.materials[0].alpha_mode = AlphaMode::Mask { cutoff: 0.5 };
+    // Alpha falls from the lower to the upper corners.
+    mark.colors = [1.0, 1.0, 0.0, 0.0].map(|alpha| Vec3::ONE.extend(alpha)).to_vec();
+    let share = 0.7375 / 4.0;
+    in_all_ways(&[sheet, mark], [25.0, 155.0], &|picture, what| {
+        let [red, _, blue] = counts(picture);
+        let found = red as f64 / (red + blue) as f64;
+        assert!((0.3..0.6).contains(&(found / share)), "{what}: {found} of {share}");
+    });
+}
+
+#[test]
+fn executors_agree_on_glass_before_the_back_of_an_opaque_face() {
+    let Some(device) = device() else { return };
+    let (mut glass, red) = (polygon(&SQUARE, 0, false, BLUE), polygon(&SQUARE, 1, true, RED));
+    glass.materials[0].base_color.w = 0.6;
+    glass.materials[0].alpha_mode = AlphaMode::Blend;
+    for turn in turns() {
+        for as_objects in [false, true] {
+            let scene = scene(&[glass.clone(), red.clone()], turn, as_objects);
+            for (name, yaw_deg) in [("cartoon", 30.0), ("ink-image", 30.0), ("toon-shadow", 30.0), ("cartoon", 210.0)] {
+                let (style, camera) = (named(name), camera(&scene, yaw_deg));
+                let share =
+                    difference(&on_cpu(&scene, &style, &camera), &rendered(&device, &scene, &style, &camera, SIZE));
+                assert!(share <= 0.001, "{name} from {yaw_deg}, objects: {as_objects}: {share}");
+            }
+        }
+    }
 }
 
 struct Random(u64);
