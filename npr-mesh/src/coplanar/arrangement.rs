@@ -85,7 +85,13 @@ pub(super) fn arrange(
     let mut pieces = Vec::new();
     for face in cdt.inner_faces() {
         let corners = face.vertices().map(|vertex| point_of[&vertex.index()]);
-        let middle = corners.iter().map(|&point| flat[point as usize]).sum::<DVec2>() / 3.0;
+        let [a, b, c] = corners.map(|point| flat[point as usize]);
+        let longest = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a)).sqrt();
+        // Between a side and the points that it is led through, there is nothing but rounding, and no certain normal.
+        if (b - a).perp_dot(c - a).abs() <= 4.0 * rounding * longest {
+            continue;
+        }
+        let middle = (a + b + c) / 3.0;
         let mut of = Vec::new();
         tree.touching([middle.extend(0.0); 2], |triangle| {
             if contains(triangles[triangle as usize].map(|point| flat[point as usize]), middle) {

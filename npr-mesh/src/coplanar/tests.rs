@@ -255,6 +255,24 @@ fn sources_and_coincident_faces_are_named() {
 }
 
 #[test]
+fn no_piece_is_so_slim_that_its_normal_is_uncertain() {
+    let mut random = Random(17);
+    let square = [DVec2::NEG_ONE, DVec2::new(1.0, -1.0), DVec2::ONE, DVec2::new(-1.0, 1.0)];
+    let mark = square.map(|corner| corner * 0.4);
+    let of = |corners: [DVec2; 4]| [[corners[0], corners[1], corners[2]], [corners[0], corners[2], corners[3]]];
+    for _ in 0..200 {
+        let turn = turn(&mut random);
+        let soup = Soup::new([of(square), of(mark)].concat(), turn, DVec3::ZERO);
+        let separated = separate(&soup.model).expect("the mark is on the square").model;
+        for face in 0..separated.faces.len() as u32 {
+            let [a, b, c] = corners_of(&separated, face);
+            let normal = (b - a).cross(c - a).normalize();
+            assert!(normal.dot(turn * DVec3::Z) > 0.999, "{normal} of {:?}", [a, b, c]);
+        }
+    }
+}
+
+#[test]
 fn pieces_have_what_the_file_says_of_their_sides() {
     let square = [DVec2::NEG_ONE, DVec2::new(1.0, -1.0), DVec2::ONE, DVec2::new(-1.0, 1.0)];
     let [a, b, c, d] = square;
