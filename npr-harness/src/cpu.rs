@@ -48,6 +48,8 @@ pub(crate) struct FrameContext<'a> {
     strokes: Option<Strokes<'a>>,
     /// In px of the sample grid.
     boundary_inset_px: f64,
+    /// Whether a cut-out face may be at the place of another.
+    has_layers: bool,
 }
 
 /// Renders a frame.
@@ -158,6 +160,7 @@ impl<'a> FrameContext<'a> {
             shift_px: options.shift_px * f64::from(*samples),
             strokes: plan.hatch().map(|hatch| Strokes::new(hatch, *samples)),
             boundary_inset_px: options.boundary_inset_px * f64::from(*samples),
+            has_layers: scene.has_layers(),
         }
     }
 
@@ -303,7 +306,7 @@ impl FrameContext<'_> {
                 && !self.is_inset(hit, x, y)
         };
         let nearest = self.scene.closest(origin, direction, self.plan.view.camera.depth_range(), is_solid)?;
-        if !self.scene.has_layers() {
+        if !self.has_layers {
             return Some(nearest);
         }
         // Of faces at one place, whose distances are equal up to rounding, what is left of a cut-out is seen, and of several

@@ -148,8 +148,7 @@ pub(crate) fn add_batches(
 ) -> Vec<Batch> {
     let model = mesh.model();
     let material = |face: u32| model.face_material[face as usize] as usize;
-    let one_sided = |face: u32| model.one_sided.get(face as usize) == Some(&true);
-    let look = |face: u32| (duplicates[material(face)], one_sided(face));
+    let look = |face: u32| (duplicates[material(face)], model.is_one_sided(face));
     let mut solid: Vec<u32> =
         (0..faces.len() as u32).filter(|&f| model.materials[material(f)].alpha_mode != AlphaMode::Blend).collect();
     // The sort is stable: the faces of a material keep the order of the file, in which neighbours share vertices.
@@ -167,9 +166,11 @@ pub(crate) fn add_batches(
         indices.extend(faces[face as usize].map(|vertex| first_vertex + vertex));
         match batches.last_mut() {
             Some(batch) if last == Some(look(face)) => batch.indices.end += 3,
-            _ => {
-                batches.push(Batch { material: material(face), one_sided: one_sided(face), indices: start..start + 3 })
-            }
+            _ => batches.push(Batch {
+                material: material(face),
+                one_sided: model.is_one_sided(face),
+                indices: start..start + 3,
+            }),
         }
         last = Some(look(face));
     }

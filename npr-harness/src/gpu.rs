@@ -367,12 +367,7 @@ impl<'a> GpuRenderer<'a> {
             };
             let style = &LineStyle { width_px: style.width_px.map(|width_px| width_px * scale), ..style };
             let pass = self.lines(method, frame.plan.veiled);
-            match &layers {
-                Some(layers) => {
-                    pass.record_veiled(frame.device, encoder, &groups, style, &line_targets, layers)?;
-                }
-                None => pass.record(frame.device, encoder, &groups, style, &line_targets)?,
-            }
+            pass.record_through(frame.device, encoder, &groups, style, &line_targets, layers.as_ref())?;
         }
         Ok(())
     }

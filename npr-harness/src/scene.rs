@@ -435,8 +435,7 @@ impl Scene {
 
     /// Whether the back of an object's face is shown.
     pub fn shows_back(&self, object: u32, face: u32) -> bool {
-        let is_one_sided = self.placed(object).1.model().one_sided.get(face as usize) == Some(&true);
-        !is_one_sided && self.material(object, face).double_sided
+        !self.placed(object).1.model().is_one_sided(face) && self.material(object, face).double_sided
     }
 
     /// Whether a cut-out face may be at the place of another face, of the same object or another.
@@ -809,10 +808,7 @@ impl Scene {
             }
             // Edges are found per object, so vertices of touching objects are not merged.
             let welded = mesh.edges().representative.clone();
-            let matrix = object.scene_from_mesh().matrix3;
-            let scale =
-                [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(DVec3::length).into_iter().fold(0.0, f64::max);
-            let tolerance = f64::from(mesh.edges().tolerance) * scale;
+            let tolerance = f64::from(mesh.edges().tolerance) * object.largest_scale();
             let mut found = mesh::find_edges_welded(&model, welded, tolerance as f32);
             found.edges.extend_from_slice(&mesh.cut_lines().edges);
             edges.append(&found, flat.positions.len() as u32, flat.faces.len() as u32);

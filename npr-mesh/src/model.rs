@@ -144,10 +144,14 @@ impl Model {
         self.materials.get(*self.face_material.get(face as usize)? as usize)
     }
 
+    /// Whether a face is one of [`Model::one_sided`].
+    pub fn is_one_sided(&self, face: u32) -> bool {
+        self.one_sided.get(face as usize) == Some(&true)
+    }
+
     /// Whether the back of a face is shown.
     pub fn shows_back(&self, face: u32) -> bool {
-        let is_one_sided = self.one_sided.get(face as usize) == Some(&true);
-        !is_one_sided && self.material_of(face).is_none_or(|material| material.double_sided)
+        !self.is_one_sided(face) && self.material_of(face).is_none_or(|material| material.double_sided)
     }
 
     /// If faces have no material ([`Model::face_material`] is empty), adds [`Material::default`] and assigns it to

@@ -231,7 +231,7 @@ impl LinePass {
         Self::make(device, color_format, on_device, false)
     }
 
-    /// As [`Self::new`], for lines that see-through surfaces dim ([`Self::record_veiled`]).
+    /// As [`Self::new`], for lines that see-through surfaces dim ([`Self::record_through`]).
     ///
     /// # Errors
     /// As of [`Self::new`].
@@ -409,26 +409,14 @@ impl LinePass {
         self.record_through(device, encoder, groups, style, targets, None)
     }
 
-    /// As [`Self::record`], with lines dimmed by the see-through surfaces in front of them.
+    /// As [`Self::record`], with lines dimmed by the layers of see-through surfaces in front of them, if there are any.
     ///
     /// # Errors
     /// As of [`Self::record`].
     ///
     /// # Panics
-    /// If the pass was not made by [`Self::veiled`].
-    pub fn record_veiled(
-        &self,
-        device: &wgpu::Device,
-        encoder: &mut wgpu::CommandEncoder,
-        groups: &[LineGroup<'_>],
-        style: &LineStyle,
-        targets: &LineTargets<'_>,
-        layers: &VeilLayers<'_>,
-    ) -> Result<(), OutlineError> {
-        self.record_through(device, encoder, groups, style, targets, Some(layers))
-    }
-
-    fn record_through(
+    /// If there are layers and the pass was not made by [`Self::veiled`], or the reverse.
+    pub fn record_through(
         &self,
         device: &wgpu::Device,
         encoder: &mut wgpu::CommandEncoder,

@@ -433,7 +433,7 @@ impl SurfacePass {
         let instances = uploaded.instances.borrow();
         let duplicates = &uploaded.materials.duplicates;
         let look = |&[object, face]: &[u32; 2]| {
-            let one_sided = scene.placed(object).1.model().one_sided.get(face as usize) == Some(&true);
+            let one_sided = scene.placed(object).1.model().is_one_sided(face);
             (object, duplicates[scene.material_number(object, face)], one_sided)
         };
         let hiding = match targets.purpose {

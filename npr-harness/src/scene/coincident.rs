@@ -39,27 +39,23 @@ impl Scene {
             let [object, face] = faces[source as usize];
             pieces[object as usize].entry(face).or_default().push(piece);
         }
-        let is_taken = |number: usize, objects: &[Object]| {
-            let mesh = objects[number].mesh;
-            (0..objects.len()).any(|other| other != number && !changed[other] && objects[other].mesh == mesh)
-        };
-        let taken: Vec<bool> = (0..self.objects.len()).map(|number| is_taken(number, &self.objects)).collect();
-        let mut replaced = vec![false; self.meshes.len()];
+        // Meshes that an object keeps.
+        let mut kept = vec![false; self.meshes.len()];
+        for (object, _) in self.objects.iter().zip(&changed).filter(|(_, changed)| !**changed) {
+            kept[object.mesh] = true;
+        }
         for number in (0..self.objects.len()).filter(|&number| changed[number]) {
             let object = &self.objects[number];
             let unseparated = Unseparated { mesh: object.mesh, scene_from_mesh: *object.scene_from_mesh() };
             let own = self.file_meshes[object.mesh].model().clone().transformed(object.scene_from_mesh());
             let own = with_pieces(own, &pieces[number], &model);
             // Rounding in scene space may be coarser than in the mesh's own.
-            let matrix = unseparated.scene_from_mesh.matrix3;
-            let scale =
-                [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(DVec3::length).into_iter().fold(0.0, f64::max);
-            let of_file = f64::from(self.file_meshes[object.mesh].edges().tolerance) * scale;
+            let of_file = f64::from(self.file_meshes[object.mesh].edges().tolerance) * object.largest_scale();
             let tolerance = (of_file as f32).max(rounding_tolerance(&own.positions, &own.faces));
             let mesh = Arc::new(Mesh::of_separated(own, tolerance));
             // The mesh of the file makes way if no other object has it.
             let at = unseparated.mesh;
-            let place = if taken[number] || std::mem::replace(&mut replaced[at], true) {
+            let place = if std::mem::replace(&mut kept[at], true) {
                 self.meshes.push(mesh);
                 self.first_materials.push(self.first_materials[at]);
                 self.meshes.len() - 1
@@ -124,7 +120,7 @@ impl Scene {
                 let [a, b, c] = corners.map(&mut add);
                 merged.faces.push(if object.is_mirrored() { [a, c, b] } else { [a, b, c] });
                 merged.face_material.push(self.material_number(number, face) as u32);
-                merged.one_sided.push(model.one_sided.get(face as usize) == Some(&true));
+                merged.one_sided.push(model.is_one_sided(face));
                 let [p, q, r] = model.side_visibility.get(face as usize).copied().unwrap_or_default();
                 merged.side_visibility.push(if object.is_mirrored() { [r, q, p] } else { [p, q, r] });
                 faces.push([number, face]);
@@ -200,7 +196,7 @@ fn with_pieces(mut own: Model, pieces: &HashMap<u32, Vec<u32>>, from: &Model) ->
                     own.positions.len() as u32 - 1
                 })
             });
-            let one_sided = from.one_sided.get(piece as usize) == Some(&true);
+            let one_sided = from.is_one_sided(piece);
             add(&mut own, corners, one_sided, &from.side_visibility, piece as usize);
         }
     }

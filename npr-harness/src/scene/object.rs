@@ -165,6 +165,12 @@ impl Object {
         self.placement.scale
     }
 
+    /// The largest factor of its transform for lengths along an axis of the mesh.
+    pub(super) fn largest_scale(&self) -> f64 {
+        let DMat3 { x_axis, y_axis, z_axis } = self.placement.scene_from_mesh.matrix3;
+        [x_axis, y_axis, z_axis].map(DVec3::length).into_iter().fold(0.0, f64::max)
+    }
+
     /// Transforms a position from mesh space to scene space.
     pub fn point(&self, position: Vec3) -> DVec3 {
         let position = position.as_dvec3();

@@ -94,7 +94,7 @@ impl Output {
         let mut sources = Vec::with_capacity(model.faces.len());
         for face in 0..model.faces.len() as u32 {
             let vertices = model.faces[face as usize];
-            let is_one_sided = model.one_sided.get(face as usize) == Some(&true);
+            let is_one_sided = model.is_one_sided(face);
             let shows_back = model.shows_back(face);
             let sides = model.side_visibility.get(face as usize).copied().unwrap_or_default();
             match self.fates.remove(&face) {

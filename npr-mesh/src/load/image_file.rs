@@ -7,6 +7,7 @@ use std::io::Cursor;
 use std::path::Path;
 
 /// A decoded image.
+#[derive(Debug)]
 pub(super) struct Decoded {
     pub width: u32,
     pub height: u32,
@@ -19,11 +20,11 @@ pub(super) struct Decoded {
 
 /// The formats of glTF 2.0, 3.8.3 "Images", and of `EXT_texture_webp`.
 #[cfg(feature = "gltf")]
-const OF_GLTF: [ImageFormat; 3] = [ImageFormat::Png, ImageFormat::Jpeg, ImageFormat::WebP];
+pub(super) const OF_GLTF: [ImageFormat; 3] = [ImageFormat::Png, ImageFormat::Jpeg, ImageFormat::WebP];
 
 /// The formats that exporters of OBJ files name in material files.
 #[cfg(feature = "obj")]
-const OF_OBJ: [ImageFormat; 7] = [
+pub(super) const OF_OBJ: [ImageFormat; 7] = [
     ImageFormat::Png,
     ImageFormat::Jpeg,
     ImageFormat::Bmp,
@@ -32,39 +33,6 @@ const OF_OBJ: [ImageFormat; 7] = [
     ImageFormat::WebP,
     ImageFormat::Tiff,
 ];
-
-/// Decodes a PNG, JPEG or WebP file in memory: width, height and `width * height * 4` bytes, rows from the top.
-///
-/// The format is determined by the first bytes, not by the file extension. The size in the header is checked against
-/// [`Limits::texels`] and, added to `so_far`, against [`Limits::texels_in_all`] before memory is allocated. 16-bit
-/// samples are rounded to 8 bits. Colour profiles and Exif orientation are ignored, as glTF 2.0 requires (3.8.2).
-///
-/// # Errors
-/// [`LoadError::ImageTooLarge`] and [`LoadError::Malformed`] with `path` and the name of the image.
-#[cfg(feature = "gltf")]
-pub(super) fn decode(
-    bytes: &[u8],
-    name: &str,
-    path: &Path,
-    limits: &Limits,
-    so_far: &mut u64,
-) -> Result<(u32, u32, Vec<u8>), LoadError> {
-    let image = decode_one_of(&OF_GLTF, bytes, name, path, limits, so_far)?;
-    Ok((image.width, image.height, image.rgba8))
-}
-
-/// Decodes a PNG, JPEG, BMP, TGA, GIF (its first frame), WebP or TIFF file in memory, otherwise as `decode`. TGA files
-/// have no mark, so any other bytes are read as TGA if the name says so.
-#[cfg(feature = "obj")]
-pub(super) fn decode_any(
-    bytes: &[u8],
-    name: &str,
-    path: &Path,
-    limits: &Limits,
-    so_far: &mut u64,
-) -> Result<Decoded, LoadError> {
-    decode_one_of(&OF_OBJ, bytes, name, path, limits, so_far)
-}
 
 /// Checks the number of texels of an image and, added to `so_far`, of all images.
 ///
@@ -88,7 +56,16 @@ pub(super) fn check_texels(
     Ok(())
 }
 
-fn decode_one_of(
+/// Decodes a file in memory, of an animation the first picture.
+///
+/// The format, one of `formats`, is determined by the first bytes, not by the file extension. TGA files have no mark, so
+/// that any other bytes are read as TGA if the name says so. The size in the header is checked against
+/// [`Limits::texels`] and, added to `so_far`, against [`Limits::texels_in_all`] before memory is allocated. 16-bit
+/// samples are rounded to 8 bits. Colour profiles and Exif orientation are ignored, as glTF 2.0 requires (3.8.2).
+///
+/// # Errors
+/// [`LoadError::ImageTooLarge`] and [`LoadError::Malformed`] with `path` and the name of the image.
+pub(super) fn decode(
     formats: &[ImageFormat],
     bytes: &[u8],
     name: &str,
@@ -139,20 +116,20 @@ mod tests {
 
     #[test]
     fn a_png_comes_back_with_its_rows_from_the_top() {
-        let (width, height, rgba8) = decode(&png(3, 2), "a", Path::new("m.obj"), &Limits::default(), &mut 0).unwrap();
-        assert_eq!((width, height), (3, 2));
-        let texels: Vec<_> = rgba8.chunks(4).map(|t| [t[0], t[1], t[2], t[3]]).collect();
+        let image = decode(&OF_GLTF, &png(3, 2), "a", Path::new("m.obj"), &Limits::default(), &mut 0).unwrap();
+        assert_eq!((image.width, image.height), (3, 2));
+        let texels: Vec<_> = image.rgba8.chunks(4).map(|t| [t[0], t[1], t[2], t[3]]).collect();
         assert_eq!(texels[4], [1, 1, 7, 200]);
     }
 
     #[test]
     fn too_many_texels_are_refused() {
         let limits = Limits { texels: 5, ..Limits::default() };
-        let error = decode(&png(3, 2), "a", Path::new("m.obj"), &limits, &mut 0).unwrap_err();
+        let error = decode(&OF_GLTF, &png(3, 2), "a", Path::new("m.obj"), &limits, &mut 0).unwrap_err();
         assert!(matches!(error, LoadError::ImageTooLarge { count: 6, limit: 5, .. }), "{error}");
         let limits = Limits { texels_in_all: 10, ..Limits::default() };
-        assert!(decode(&png(3, 2), "a", Path::new("m.obj"), &limits, &mut 4).is_ok());
-        let error = decode(&png(3, 2), "a", Path::new("m.obj"), &limits, &mut 5).unwrap_err();
+        assert!(decode(&OF_GLTF, &png(3, 2), "a", Path::new("m.obj"), &limits, &mut 4).is_ok());
+        let error = decode(&OF_GLTF, &png(3, 2), "a", Path::new("m.obj"), &limits, &mut 5).unwrap_err();
         assert!(matches!(error, LoadError::ImageTooLarge { count: 11, limit: 10, .. }), "{error}");
     }
 
@@ -160,7 +137,7 @@ mod tests {
     fn garbage_is_malformed_and_named() {
         let whole = png(8, 8);
         for bytes in [&b""[..], b"not an image at all", &whole[..20], &whole[..whole.len() - 30]] {
-            let error = decode(bytes, "wall", Path::new("m.obj"), &Limits::default(), &mut 0).unwrap_err();
+            let error = decode(&OF_GLTF, bytes, "wall", Path::new("m.obj"), &Limits::default(), &mut 0).unwrap_err();
             assert!(matches!(error, LoadError::Malformed { .. }), "{error}");
             assert!(error.to_string().contains("wall") && error.to_string().contains("m.obj"), "{error}");
         }

@@ -4,12 +4,13 @@ use super::document::{self, Document};
 use super::extensions::WEBP;
 use super::files;
 use crate::load::external::shortened;
-use crate::load::image_file;
+use crate::load::image_file::{self, Decoded};
 use crate::{AlphaMode, LoadError, Material, Model, Texture, Wrap};
 use glam::{Vec2, Vec3, Vec4};
 use gltf::json::texture::{Info, MagFilter, WrappingMode};
 use gltf::json::validation::Checked;
 use gltf::json::{self, Index, material};
+use std::borrow::Cow;
 use std::collections::HashMap;
 
 /// Materials and images of the file, converted on first use by a primitive.
@@ -255,21 +256,20 @@ fn decode(document: &Document, number: usize, texels: &mut u64) -> Result<Textur
     if name.is_empty() {
         name = format!("#{number}");
     }
-    let limits = document.limits;
-    let (width, height, rgba8) = match (image.buffer_view, image.uri.as_deref()) {
-        (Some(view), _) => {
-            image_file::decode(files::view(document, view).map_err(fail)?.0, &name, document.path, limits, texels)?
-        }
+    let bytes: Cow<[u8]> = match (image.buffer_view, image.uri.as_deref()) {
+        (Some(view), _) => files::view(document, view).map_err(fail)?.0.into(),
         (None, Some(uri)) => match files::data_uri(uri) {
-            Some(bytes) => image_file::decode(&bytes.map_err(fail)?, &name, document.path, limits, texels)?,
+            Some(bytes) => bytes.map_err(fail)?.into(),
             None => {
                 let file = document.external.find(&files::names(uri).map_err(fail)?)?;
                 name = shortened(uri);
-                image_file::decode(&document.external.read(&file)?, &name, document.path, limits, texels)?
+                document.external.read(&file)?.into()
             }
         },
         (None, None) => return Err(fail("neither a buffer view nor a URI".to_owned())),
     };
+    let image = image_file::decode(&image_file::OF_GLTF, &bytes, &name, document.path, document.limits, texels)?;
+    let Decoded { width, height, rgba8, .. } = image;
     Ok(Texture { name, width, height, rgba8: rgba8.into(), wrap: [Wrap::Repeat; 2], smooth: true })
 }
 

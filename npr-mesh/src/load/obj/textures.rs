@@ -143,7 +143,7 @@ fn texture(name: String, image: Decoded, wrap: Wrap) -> Texture {
 fn read_image(file: &Path, texels: &mut u64, external: &External) -> Result<(String, Decoded), LoadError> {
     let name = file.file_name().unwrap_or(file.as_os_str()).to_string_lossy().into_owned();
     let bytes = external.read(file)?;
-    let image = image_file::decode_any(&bytes, &shortened(&name), file, external.limits, texels)?;
+    let image = image_file::decode(&image_file::OF_OBJ, &bytes, &shortened(&name), file, external.limits, texels)?;
     Ok((name, image))
 }
 
