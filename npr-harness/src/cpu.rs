@@ -49,7 +49,7 @@ pub(crate) struct FrameContext<'a> {
     /// In px of the sample grid.
     boundary_inset_px: f64,
     /// Whether a cut-out face may be at the place of another.
-    has_layers: bool,
+    has_coincident_cut_outs: bool,
 }
 
 /// Renders a frame.
@@ -160,7 +160,7 @@ impl<'a> FrameContext<'a> {
             shift_px: options.shift_px * f64::from(*samples),
             strokes: plan.hatch().map(|hatch| Strokes::new(hatch, *samples)),
             boundary_inset_px: options.boundary_inset_px * f64::from(*samples),
-            has_layers: scene.has_layers(),
+            has_coincident_cut_outs: scene.has_coincident_cut_outs(),
         }
     }
 
@@ -173,11 +173,11 @@ impl<'a> FrameContext<'a> {
 }
 
 /// The relative difference of distances up to which two faces are at one place.
-const AT_PLACE: f64 = 1e-12;
+const COINCIDENT: f64 = 1e-12;
 
 /// The farthest distance that is that of a face at `t`, up to rounding.
-fn at_place(t: f64) -> f64 {
-    t * (1.0 + AT_PLACE)
+fn coincident_end(t: f64) -> f64 {
+    t * (1.0 + COINCIDENT)
 }
 
 impl FrameContext<'_> {
@@ -306,14 +306,15 @@ impl FrameContext<'_> {
                 && !self.is_inset(hit, x, y)
         };
         let nearest = self.scene.closest(origin, direction, self.plan.view.camera.depth_range(), is_solid)?;
-        if !self.has_layers {
+        if !self.has_coincident_cut_outs {
             return Some(nearest);
         }
         // Of faces at one place, whose distances are equal up to rounding, what is left of a cut-out is seen, and of several
         // the later.
-        let at_place = self.scene.all(origin, direction, (nearest.t * (1.0 - AT_PLACE), at_place(nearest.t)), is_solid);
+        let coincident =
+            self.scene.all(origin, direction, (nearest.t * (1.0 - COINCIDENT), coincident_end(nearest.t)), is_solid);
         let is_cut = |hit: &Hit| matches!(self.material(hit).alpha_mode, AlphaMode::Mask { .. });
-        at_place.into_iter().max_by_key(|hit| (is_cut(hit), hit.object, hit.face))
+        coincident.into_iter().max_by_key(|hit| (is_cut(hit), hit.object, hit.face))
     }
 
     /// The nearest surface at a pixel that hides lines behind it: `solid`, the nearest unblended one, or a blended one in
@@ -321,7 +322,7 @@ impl FrameContext<'_> {
     fn first_hiding(&self, solid: Option<Hit>, x: u32, y: u32) -> Option<Hit> {
         let (origin, direction) = self.rays.through(self.sample_point(f64::from(x), f64::from(y)));
         let range = self.plan.view.camera.depth_range();
-        let nearer = (range.0, solid.map_or(range.1, |hit| at_place(hit.t)));
+        let nearer = (range.0, solid.map_or(range.1, |hit| coincident_end(hit.t)));
         let hides = |hit: &Hit| {
             self.is_blended(hit)
                 && self.is_shown(hit)
@@ -341,7 +342,7 @@ impl FrameContext<'_> {
         if self.plan.blended {
             let (origin, direction) = self.rays.through(self.sample_point(f64::from(x), f64::from(y)));
             let range = self.plan.view.camera.depth_range();
-            let nearer = (range.0, solid.map_or(range.1, |hit| at_place(hit.t)));
+            let nearer = (range.0, solid.map_or(range.1, |hit| coincident_end(hit.t)));
             let is_blended =
                 |hit: &Hit| self.is_shown(hit) && self.is_blended(hit) && self.scene.keeps(origin + direction * hit.t);
             let mut hits = self.scene.all(origin, direction, nearer, is_blended);

@@ -154,7 +154,7 @@ pub(crate) fn add_batches(
     // The sort is stable: the faces of a material keep the order of the file, in which neighbours share vertices.
     solid.sort_by_key(|&face| look(face));
     // What is left of a cut-out is seen on an opaque face at its place, and of several the later in the file.
-    if mesh.has_layers() {
+    if mesh.has_coincident_cut_outs() {
         let is_cut_out = |face: u32| matches!(model.materials[material(face)].alpha_mode, AlphaMode::Mask { .. });
         solid.sort_by_key(|&face| (is_cut_out(face), if is_cut_out(face) { face } else { 0 }));
     }

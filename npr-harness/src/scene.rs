@@ -262,7 +262,7 @@ impl Scene {
         if farthest.is_nan() || farthest > FARTHEST {
             return Err(HarnessError::ObjectTransform { object, fault: "places it too far away" });
         }
-        let had_own_meshes = self.join_objects();
+        let had_own_meshes = self.restore_file_meshes();
         let was_mirrored = self.objects[object].is_mirrored();
         self.objects[object].place(scene_from_mesh);
         self.bounds = self.box_around_objects();
@@ -439,9 +439,9 @@ impl Scene {
     }
 
     /// Whether a cut-out face may be at the place of another face, of the same object or another.
-    pub(crate) fn has_layers(&self) -> bool {
+    pub(crate) fn has_coincident_cut_outs(&self) -> bool {
         let is_cut = |material: &Material| matches!(material.alpha_mode, AlphaMode::Mask { .. });
-        self.meshes.iter().any(|mesh| mesh.has_layers())
+        self.meshes.iter().any(|mesh| mesh.has_coincident_cut_outs())
             || self.materials.iter().any(is_cut) && self.objects.iter().any(|object| object.unseparated.is_some())
     }
 

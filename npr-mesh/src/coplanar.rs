@@ -2,10 +2,10 @@
 //!
 //! Where two faces are at one place, the rounding of depth decides which of them a renderer shows, and the picture is
 //! striped. [`separate`] cuts such faces by each other, so that pieces are the same triangle or do not overlap, and keeps
-//! of each place what is seen there by a rule:
+//! of faces at one place those that are visible by a rule:
 //!
-//! 1. The face that turns its front to the eye is seen.
-//! 2. Of several that do, the later in the file is seen, so that a mark on a sheet is whole if it follows the sheet.
+//! 1. The face that turns its front to the eye is visible.
+//! 2. Of several that do, the later in the file is visible, so that a mark on a sheet is whole if it follows the sheet.
 //! 3. Faces that are not opaque hide nothing. Both they and the first opaque face below them remain.
 //!
 //! A face that is hidden from behind only becomes [one-sided](Model::one_sided). One that is hidden from both sides goes.
@@ -27,7 +27,7 @@ use crate::weld::weld_within;
 use crate::{AlphaMode, Model};
 use arrangement::{Piece, Pieces, arrange};
 use glam::{DVec3, Vec3};
-use layers::{Layer, Seen, seen};
+use layers::{Layer, VisibleSides, visible_sides};
 use output::{Output, Part};
 use overlap::{Flat, Projection, normal_and_height, overlapping};
 use planes::Plane;
@@ -132,7 +132,7 @@ impl Groups {
         (!groups.is_empty()).then_some(Self { stacks, flats, groups, rounding })
     }
 
-    /// Cuts the faces of a group and selects what is seen of them.
+    /// Cuts the faces of a group and selects what is visible of them.
     fn separate(&self, model: &Model, group: &[usize], budget: &mut usize, output: &mut Output) {
         // The plane of the triangle with the largest height is the most certain.
         let Some(plane) = (group.iter().map(|&stack| self.flats[stack])).max_by(|a, b| a.height.total_cmp(&b.height))
@@ -146,9 +146,9 @@ impl Groups {
             faces
         };
         let faces = faces_of(&mut group.iter().copied());
-        let places = if let [stack] = *group {
+        let covered_triangles = if let [stack] = *group {
             let [a, b, c] = self.flats[stack].corners;
-            vec![Place::new(model, plane.normal, [a, b, c], faces.clone())]
+            vec![CoveredTriangle::new(model, plane.normal, [a, b, c], faces.clone())]
         } else {
             let corners: Vec<DVec3> =
                 group.iter().flat_map(|&stack| corners_of(model, self.stacks[stack][0])).collect();
@@ -158,65 +158,66 @@ impl Groups {
             };
             // Rounded here, once for all faces of a piece.
             points.extend(added.iter().map(|point| point.as_vec3().as_dvec3()));
-            let place = |Piece { corners, of }: &Piece| {
+            let covered = |Piece { corners, of }: &Piece| {
                 let faces = faces_of(&mut of.iter().map(|&at| group[at as usize]));
-                Place::new(model, plane.normal, corners.map(|point| points[point as usize]), faces)
+                CoveredTriangle::new(model, plane.normal, corners.map(|point| points[point as usize]), faces)
             };
-            pieces.iter().map(place).collect()
+            pieces.iter().map(covered).collect()
         };
         // Where nothing hides anything that would be shown, all stay as they are.
-        if places.iter().all(|place| place.is_natural(model)) {
+        if covered_triangles.iter().all(|triangle| triangle.is_unchanged(model)) {
             return;
         }
         let is_cut = group.len() > 1;
         faces.iter().for_each(|&face| output.change(face, is_cut));
-        places.iter().for_each(|place| place.select(model, along, is_cut, output));
+        covered_triangles.iter().for_each(|triangle| triangle.select(model, along, is_cut, output));
     }
 }
 
 /// A triangle that several faces cover.
-struct Place {
+struct CoveredTriangle {
     /// Counter-clockwise seen against the normal of the plane.
     corners: [DVec3; 3],
     /// In the order of the file.
     faces: Vec<u32>,
     layers: Vec<Layer>,
-    seen: Vec<Seen>,
-    /// Whether several faces are seen from one side, through each other.
+    visible: Vec<VisibleSides>,
+    /// Whether several faces are visible from one side, through each other.
     is_shared: bool,
 }
 
-impl Place {
+impl CoveredTriangle {
     fn new(model: &Model, normal: DVec3, corners: [DVec3; 3], faces: Vec<u32>) -> Self {
         let layers = layers(model, &faces, normal);
-        let seen = seen(&layers);
-        let is_up = |layer: &Layer, seen: &Seen| if layer.front { seen.front } else { seen.back };
-        let up = layers.iter().zip(&seen).filter(|(layer, seen)| is_up(layer, seen)).count();
-        let of_all = seen.iter().filter(|seen| seen.front).count() + seen.iter().filter(|seen| seen.back).count();
+        let visible = visible_sides(&layers);
+        let is_up = |layer: &Layer, visible: &VisibleSides| if layer.front { visible.front } else { visible.back };
+        let up = layers.iter().zip(&visible).filter(|(layer, visible)| is_up(layer, visible)).count();
+        let of_all = visible.iter().filter(|visible| visible.front).count()
+            + visible.iter().filter(|visible| visible.back).count();
         let [a, b, c] = corners;
         let is_counter_clockwise = (b - a).cross(c - a).dot(normal) > 0.0;
         let corners = if is_counter_clockwise { [a, b, c] } else { [a, c, b] };
-        Self { corners, faces, layers, seen, is_shared: up > 1 || of_all - up > 1 }
+        Self { corners, faces, layers, visible, is_shared: up > 1 || of_all - up > 1 }
     }
 
-    /// Whether all faces are seen as they would be alone, and none through another.
-    fn is_natural(&self, model: &Model) -> bool {
-        let alone = |face: u32| Seen { front: true, back: model.shows_back(face) };
-        !self.is_shared && self.faces.iter().zip(&self.seen).all(|(&face, &seen)| seen == alone(face))
+    /// Whether all faces are visible as they would be alone, and none through another.
+    fn is_unchanged(&self, model: &Model) -> bool {
+        let alone = |face: u32| VisibleSides { front: true, back: model.shows_back(face) };
+        !self.is_shared && self.faces.iter().zip(&self.visible).all(|(&face, &visible)| visible == alone(face))
     }
 
-    /// Adds what is seen of the faces to the result.
+    /// Adds what is visible of the faces to the result.
     fn select(&self, model: &Model, along: Projection, is_cut: bool, output: &mut Output) {
-        for ((&face, layer), &seen) in self.faces.iter().zip(&self.layers).zip(&self.seen) {
+        for ((&face, layer), &visible) in self.faces.iter().zip(&self.layers).zip(&self.visible) {
             if !(is_cut || self.is_shared) {
-                output.keep(face, seen);
+                output.keep(face, visible);
                 continue;
             }
-            // Faces that are seen through each other have equal corners in the same order, so that depths are equal.
-            let is_turned = self.is_shared && !layer.front && seen.front && seen.back;
+            // Faces that are visible through each other have equal corners in the same order, so that depths are equal.
+            let is_turned = self.is_shared && !layer.front && visible.front && visible.back;
             let [a, b, c] = self.corners;
             let corners = if layer.front { [a, b, c] } else { [a, c, b] };
-            output.add_piece(model, face, along, Part { corners, seen, is_turned });
+            output.add_piece(model, face, along, Part { corners, visible, is_turned });
         }
     }
 }
@@ -225,7 +226,7 @@ fn corners_of(model: &Model, face: u32) -> [DVec3; 3] {
     model.faces[face as usize].map(|vertex| model.positions[vertex as usize].as_dvec3())
 }
 
-/// What decides which of some faces is seen, in their order.
+/// What decides which of some faces is visible, in their order.
 fn layers(model: &Model, faces: &[u32], normal: DVec3) -> Vec<Layer> {
     let layer = |&face: &u32| {
         let [a, b, c] = corners_of(model, face);

@@ -26,7 +26,7 @@ impl Scene {
     ///
     /// All objects must have the meshes of the file.
     pub(super) fn separate_objects(&mut self) -> bool {
-        let Some((merged, faces)) = self.near_others() else { return false };
+        let Some((merged, faces)) = self.faces_near_other_objects() else { return false };
         let Some(Separated { model, sources, coincident }) = separate(&merged) else { return false };
         let mut changed = vec![false; self.objects.len()];
         coincident.iter().for_each(|&face| changed[faces[face as usize][0] as usize] = true);
@@ -71,7 +71,7 @@ impl Scene {
     }
 
     /// Returns all objects to the meshes of the file. Returns whether any had one of its own.
-    pub(super) fn join_objects(&mut self) -> bool {
+    pub(super) fn restore_file_meshes(&mut self) -> bool {
         let mut had_own = false;
         for object in &mut self.objects {
             if let Some(Unseparated { mesh, scene_from_mesh }) = object.unseparated.take() {
@@ -89,7 +89,7 @@ impl Scene {
 
     /// The faces in the boxes where objects touch, in scene space, each a polygon of its own; and of each its object and
     /// number. `None` if no boxes touch, or too many faces are there.
-    fn near_others(&self) -> Option<(Model, Vec<[u32; 2]>)> {
+    fn faces_near_other_objects(&self) -> Option<(Model, Vec<[u32; 2]>)> {
         let places = self.touching_boxes();
         if places.iter().all(Vec::is_empty) {
             return None;

@@ -170,7 +170,7 @@ impl Mesh {
     }
 
     /// Whether a cut-out face may be at the place of another face.
-    pub(crate) fn has_layers(&self) -> bool {
+    pub(crate) fn has_coincident_cut_outs(&self) -> bool {
         self.model.materials.iter().any(|m| matches!(m.alpha_mode, AlphaMode::Mask { .. }))
             && !(self.edges.further_faces.is_empty() && self.edges.overlaps.is_empty())
     }

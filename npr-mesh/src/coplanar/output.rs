@@ -1,6 +1,6 @@
 //! Builds the model whose coplanar faces are separated.
 
-use super::layers::Seen;
+use super::layers::VisibleSides;
 use super::overlap::Projection;
 use crate::{Model, SideVisibility};
 use glam::{DVec3, Vec2, Vec3, Vec4};
@@ -14,7 +14,7 @@ pub struct Separated {
     /// Per face of it: the face that it is, or that it is a piece of.
     pub sources: Vec<u32>,
     /// The faces, ascending, of the model before that share their place with others that they hide, are hidden by or are
-    /// seen through.
+    /// visible through.
     pub coincident: Vec<u32>,
 }
 
@@ -22,13 +22,13 @@ pub struct Separated {
 pub(super) struct Output {
     /// Whether any face is cut.
     is_cut: bool,
-    /// What is made of the faces that do not stay as they are.
-    fates: HashMap<u32, Fate>,
+    /// What replaces the faces that do not remain as they are.
+    replacements: HashMap<u32, Replacement>,
 }
 
-enum Fate {
+enum Replacement {
     /// The face as a whole.
-    Whole(Seen),
+    Whole(VisibleSides),
     Pieces(Vec<Piece>),
 }
 
@@ -36,14 +36,14 @@ enum Fate {
 pub(super) struct Part {
     /// In the winding of the face.
     pub corners: [DVec3; 3],
-    pub seen: Seen,
-    /// Whether the opposite winding and normals replace its own, which change nothing if both its sides are seen.
+    pub visible: VisibleSides,
+    /// Whether the opposite winding and normals replace its own, which change nothing if both its sides are visible.
     pub is_turned: bool,
 }
 
 struct Piece {
     corners: [Corner; 3],
-    seen: Seen,
+    visible: VisibleSides,
     is_turned: bool,
 }
 
@@ -57,18 +57,18 @@ struct Corner {
 
 impl Output {
     pub fn new() -> Self {
-        Self { is_cut: false, fates: HashMap::new() }
+        Self { is_cut: false, replacements: HashMap::new() }
     }
 
     /// Announces a face that shares its place with others. Nothing of it is there until it is kept or pieces are added.
     pub fn change(&mut self, face: u32, is_cut: bool) {
-        self.fates.insert(face, Fate::Pieces(Vec::new()));
+        self.replacements.insert(face, Replacement::Pieces(Vec::new()));
         self.is_cut |= is_cut;
     }
 
-    /// Keeps a whole face as far as it is seen.
-    pub fn keep(&mut self, face: u32, seen: Seen) {
-        self.fates.insert(face, Fate::Whole(seen));
+    /// Keeps a whole face as far as it is visible.
+    pub fn keep(&mut self, face: u32, visible: VisibleSides) {
+        self.replacements.insert(face, Replacement::Whole(visible));
     }
 
     /// Adds a piece of a face.
@@ -80,15 +80,15 @@ impl Output {
             let [u, v, w] = [(b - at).perp_dot(c - at), (c - at).perp_dot(a - at), (a - at).perp_dot(b - at)];
             Corner { position: position.as_vec3(), weights: [u, v, w].map(|x| (x / (u + v + w)).clamp(0.0, 1.0)) }
         };
-        let piece = Piece { corners: part.corners.map(corner), seen: part.seen, is_turned: part.is_turned };
-        if let Some(Fate::Pieces(pieces)) = self.fates.get_mut(&face) {
+        let piece = Piece { corners: part.corners.map(corner), visible: part.visible, is_turned: part.is_turned };
+        if let Some(Replacement::Pieces(pieces)) = self.replacements.get_mut(&face) {
             pieces.push(piece);
         }
     }
 
     /// The result; `None` if it is the model itself.
     pub fn finish(mut self, model: &Model) -> Option<Separated> {
-        let mut coincident: Vec<u32> = self.fates.keys().copied().collect();
+        let mut coincident: Vec<u32> = self.replacements.keys().copied().collect();
         coincident.sort_unstable();
         let mut builder = Builder::new(model);
         let mut sources = Vec::with_capacity(model.faces.len());
@@ -97,12 +97,14 @@ impl Output {
             let is_one_sided = model.is_one_sided(face);
             let shows_back = model.shows_back(face);
             let sides = model.side_visibility.get(face as usize).copied().unwrap_or_default();
-            match self.fates.remove(&face) {
+            match self.replacements.remove(&face) {
                 None => builder.push(vertices, sides, is_one_sided),
-                Some(Fate::Whole(seen)) => builder.push_seen(vertices, sides, seen, is_one_sided, shows_back),
-                Some(Fate::Pieces(pieces)) => {
-                    for Piece { corners, seen, is_turned } in pieces {
-                        if !(seen.front || seen.back) {
+                Some(Replacement::Whole(visible)) => {
+                    builder.push_visible(vertices, sides, visible, is_one_sided, shows_back)
+                }
+                Some(Replacement::Pieces(pieces)) => {
+                    for Piece { corners, visible, is_turned } in pieces {
+                        if !(visible.front || visible.back) {
                             continue;
                         }
                         let vertices = corners.map(|corner| builder.vertex(vertices, corner));
@@ -110,7 +112,7 @@ impl Output {
                         if is_turned {
                             builder.push_turned(vertices, sides, false);
                         } else {
-                            builder.push_seen(vertices, sides, seen, is_one_sided, shows_back);
+                            builder.push_visible(vertices, sides, visible, is_one_sided, shows_back);
                         }
                     }
                 }
@@ -188,20 +190,20 @@ impl<'a> Builder<'a> {
         self.push([a, c, b], SideVisibility::reversed(sides), is_one_sided);
     }
 
-    /// Adds a face as far as it is seen. `is_one_sided` and `shows_back` are those of the face before.
-    fn push_seen(
+    /// Adds a face as far as it is visible. `is_one_sided` and `shows_back` are those of the face before.
+    fn push_visible(
         &mut self,
         vertices: [u32; 3],
         sides: [SideVisibility; 3],
-        seen: Seen,
+        visible: VisibleSides,
         is_one_sided: bool,
         shows_back: bool,
     ) {
-        match seen {
-            Seen { front: true, back } => self.push(vertices, sides, is_one_sided || shows_back && !back),
+        match visible {
+            VisibleSides { front: true, back } => self.push(vertices, sides, is_one_sided || shows_back && !back),
             // Its back becomes the front of a one-sided face.
-            Seen { front: false, back: true } => self.push_turned(vertices, sides, true),
-            Seen { front: false, back: false } => {}
+            VisibleSides { front: false, back: true } => self.push_turned(vertices, sides, true),
+            VisibleSides { front: false, back: false } => {}
         }
     }
 
